@@ -1,0 +1,54 @@
+# make demo    set everything up, then chart speed against accuracy on the scenes
+# make test    set everything up, then run every test, C++ and Python
+# The rest is for those who work on polhode: see CONTRIBUTING.md.
+SHELL := /bin/bash
+.SHELLFLAGS := -euo pipefail -c
+.DEFAULT_GOAL := help
+
+VENV   := .venv
+BUILD  := build/dev
+PYTHON := $(CURDIR)/$(VENV)/bin/python
+JOBS   ?= $(shell nproc)
+inputs := $(shell find CMakeLists.txt pyproject.toml cpp python tests/cpp benchmarks/cpp scenes \
+            -type f -not -name '*.pyc' 2>/dev/null)
+
+.PHONY: help demo test check-long install sanitize stubs clean
+help:
+	@sed -n '1,3s/^# //p' Makefile
+
+$(VENV)/.ready: pyproject.toml .ci/prepare
+	@.ci/prepare $(VENV)
+
+# One editable build serves the Python module and the C++ tests; ninja rebuilds only what changed.
+build/.installed: $(VENV)/.ready $(inputs)
+	@echo "building polhode (the first time takes a few minutes)"
+	@CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) $(PYTHON) -m pip install -qq --disable-pip-version-check \
+	  --no-build-isolation --no-deps -Cbuild-dir=$(BUILD) -Ccmake.define.POLHODE_BUILD_TESTS=ON \
+	  -Ccmake.define.POLHODE_WERROR=ON \
+	  $$($(VENV)/bin/python .ci/eigen_prefix.py) -e .
+	@touch $@
+
+install: build/.installed
+
+demo: install
+	@$(PYTHON) -m polhode chart scenes/S*.toml -o demo
+
+test: install
+	@$(BUILD)/tests/cpp/polhode_tests
+	@$(PYTHON) -m pytest
+
+check-long: install
+	@$(PYTHON) -m pytest -m "long or not long"
+
+# The C++ tests under the address and undefined-behaviour sanitizers.
+sanitize: $(VENV)/.ready
+	@cmake -S . -B build/sanitize -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo -DPOLHODE_BUILD_TESTS=ON \
+	  -DPOLHODE_SANITIZE=ON $$($(VENV)/bin/python .ci/eigen_prefix.py --cmake) > /dev/null
+	@cmake --build build/sanitize -j $(JOBS) --target polhode_tests
+	@build/sanitize/tests/cpp/polhode_tests
+
+stubs: install
+	@$(PYTHON) tests/support/make_stubs.py
+
+clean:
+	@rm -rf build demo

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+namespace polhode {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// Hamilton quaternion, scalar last, as in every array, file and signature of polhode.
+/// As an attitude q_WB it maps body components to space components: v_W = q_WB (v_B, 0) conj(q_WB).
+struct Quat {
+  double x = 0.0;
+  double y = 0.0;
+  double z = 0.0;
+  double w = 1.0;
+
+  friend bool operator==(const Quat&, const Quat&) = default;
+};
+
+/// Hamilton product: the attitude of C in A from that of B in A and that of C in B.
+inline Quat operator*(const Quat& q_AB, const Quat& q_BC) {
+  const Quat &a = q_AB, &b = q_BC;
+  return {a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+          a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
+}
+
+inline Quat conjugate(const Quat& q) { return {-q.x, -q.y, -q.z, q.w}; }
+
+/// |q|, without overflow or underflow for any finite components.
+inline double norm(const Quat& q) { return std::hypot(std::hypot(q.x, q.y), std::hypot(q.z, q.w)); }
+
+/// q / |q|; the caller vouches for |q| > 0.
+inline Quat normalized(const Quat& q) {
+  const double n = norm(q);
+  return {q.x / n, q.y / n, q.z / n, q.w / n};
+}
+
+/// R_WB of a unit quaternion q_WB.
+inline Matrix3d to_matrix(const Quat& q) {
+  const double xx = q.x * q.x, yy = q.y * q.y, zz = q.z * q.z;
+  const double xy = q.x * q.y, xz = q.x * q.z, yz = q.y * q.z;
+  const double wx = q.w * q.x, wy = q.w * q.y, wz = q.w * q.z;
+  Matrix3d R_WB;
+  R_WB << 1 - 2 * (yy + zz), 2 * (xy - wz), 2 * (xz + wy),  //
+      2 * (xy + wz), 1 - 2 * (xx + zz), 2 * (yz - wx),      //
+      2 * (xz - wy), 2 * (yz + wx), 1 - 2 * (xx + yy);
+  return R_WB;
+}
+
+/// v_W = q_WB v_B for a unit quaternion.
+inline Vector3d rotate(const Quat& q_WB, const Vector3d& v_B) {
+  const double tx = 2 * (q_WB.y * v_B[2] - q_WB.z * v_B[1]);
+  const double ty = 2 * (q_WB.z * v_B[0] - q_WB.x * v_B[2]);
+  const double tz = 2 * (q_WB.x * v_B[1] - q_WB.y * v_B[0]);
+  return {v_B[0] + q_WB.w * tx + q_WB.y * tz - q_WB.z * ty, v_B[1] + q_WB.w * ty + q_WB.z * tx - q_WB.x * tz,
+          v_B[2] + q_WB.w * tz + q_WB.x * ty - q_WB.y * tx};
+}
+
+/// The attitude at the door: a quaternion within 1e-6 of unit norm is normalised, any other refused.
+Quat make_attitude(const Quat& q);
+
+}  // namespace polhode

@@ -1,0 +1,21 @@
+#include "polhode/core/quat.hpp"
+
+#include "polhode/core/error.hpp"
+
+namespace polhode {
+
+Quat make_attitude(const Quat& q) {
+  const double n = norm(q);
+  if (!std::isfinite(n)) {
+    throw InvalidInput("attitude", "a finite quaternion (x, y, z, w)",
+                       "(" + to_text(q.x) + ", " + to_text(q.y) + ", " + to_text(q.z) + ", " + to_text(q.w) + ")");
+  }
+  if (n == 0.0) throw InvalidInput("attitude", "a unit quaternion (x, y, z, w)", "one of norm 0");
+  if (std::abs(n - 1.0) > 1e-6) {
+    throw InvalidInput("attitude", "a unit quaternion (x, y, z, w)", "norm " + to_text(n),
+                       "normalise it first, if it is meant to be an attitude");
+  }
+  return {q.x / n, q.y / n, q.z / n, q.w / n};
+}
+
+}  // namespace polhode

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace polhode::python {
+
+namespace py = pybind11;
+
+void bind_core(py::module_& m);
+void bind_math(py::module_& m);
+void bind_attitude(py::module_& m);
+void bind_inertia(py::module_& m);
+void bind_torque(py::module_& m);
+void bind_exact(py::module_& m);
+void bind_ode(py::module_& m);
+void bind_scene(py::module_& m);
+void bind_solve(py::module_& m);
+void bind_batch(py::module_& m);
+
+}  // namespace polhode::python

@@ -1,0 +1,7 @@
+#include "bind.hpp"
+
+namespace polhode::python {
+
+void bind_solve(py::module_&) {}
+
+}  // namespace polhode::python
