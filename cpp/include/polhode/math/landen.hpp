@@ -1,0 +1,95 @@
+#pragma once
+
+#include "polhode/math/double_double.hpp"
+
+namespace polhode::math {
+
+/// How many Landen stages bring a modulus k <= 0.985 below the rounding of N.
+template <class N>
+inline constexpr int landen_stages = 5;
+template <class T>
+inline constexpr int landen_stages<DoubleDouble<T>> = 6;
+
+/// The descending Landen (Gauss) chain of a modulus k and its complement k', both given, k^2 + k'^2 = 1:
+///   k_{i+1} = k_i^2 / (1 + k'_i)^2,  k'_{i+1} = 2 sqrt(k'_i) / (1 + k'_i).
+/// Everything positive, nothing subtracted: each k_i keeps its relative accuracy as k -> 0. For k^2 <= 0.97.
+/// Gauss 1818; formulas as in the NIST Handbook (dlmf.nist.gov) 19.8 and 22.7.
+template <class N>
+struct LandenChain {
+  static constexpr int stages = landen_stages<N>;
+  N k[stages + 1];
+  N kc[stages + 1];
+
+  POLHODE_INLINE LandenChain(N modulus, N complement) {
+    k[0] = modulus;
+    kc[0] = complement;
+    for (int i = 0; i < stages; ++i) {
+      const N s = N(1.0) + kc[i], ratio = k[i] / s;
+      k[i + 1] = ratio * ratio;
+      kc[i + 1] = (sqrt(kc[i]) + sqrt(kc[i])) / s;
+    }
+  }
+
+  /// 2 K(k) / pi, where K is the complete integral of the first kind.
+  POLHODE_INLINE N two_K_over_pi() const {
+    N product = N(1.0) + k[1];
+    for (int i = 2; i <= stages; ++i) product = product * (N(1.0) + k[i]);
+    return product;
+  }
+
+  /// The nome q = exp(-pi K'/K) with its relative accuracy for any k -> 0, without log or exp:
+  /// the product of the chain up to k_4, whose own nome is a short series in k_4^2 / 16.
+  POLHODE_INLINE N nome() const {
+    const N s0 = N(1.0) + kc[0], s1 = N(1.0) + kc[1], s2 = N(1.0) + kc[2], s3 = N(1.0) + kc[3];
+    const N x = k[4] * k[4] * N(0.0625);
+    const N tail = N(1.0) + x * (N(0.5) + x * N(3.375));
+    const N c = Constant<N>::of(0.8408964152537145, 4.099505010290748e-17);  // 2^(-1/4)
+    return k[0] * k[0] * c * tail / (s0 * s0 * s1 * sqrt(s2 * sqrt(s3)));
+  }
+};
+
+/// The end of an imaginary descent: with (P, Q, R) proportional to (sn, cn, dn)(y, k') and zeta = pi y / 2K,
+/// e^-zeta = Q / (P + H), cosh(zeta) e^-zeta = H / (P + H), sinh(zeta) e^-zeta = P / (P + H).
+template <class N>
+struct ImaginaryDescent {
+  N P, Q, H;
+  POLHODE_INLINE N exp_minus() const { return Q / (P + H); }
+};
+
+/// Jacobi's imaginary argument down the chain of k: only positive terms. Needs P >= 0, Q + R > 0.
+template <class N>
+POLHODE_INLINE ImaginaryDescent<N> descend_imaginary(const LandenChain<N>& chain, N P, N Q, N R) {
+  for (int i = 1; i <= chain.stages; ++i) {
+    P = P + P;
+    Q = (Q + R) * (N(1.0) + chain.k[i]);
+    const N slope = chain.k[i] * (P / Q);
+    R = Q * sqrt(N(1.0) + slope * slope);
+  }
+  // The hypotenuse from the larger leg: either may be 1e-200 of the other.
+  const auto P_larger = P > Q;
+  const N ratio = select(P_larger, Q / P, P / Q);
+  return {P, Q, select(P_larger, P, Q) * sqrt(N(1.0) + ratio * ratio)};
+}
+
+/// (X, Y) proportional to (cos z, sin z), z = pi u / 2K, from (P, C, Q, R) proportional to (sn, cn, 1, dn)(u, k):
+/// the descent of Landen's amplitude by angle doubling, right in every quadrant.
+template <class N>
+struct RealDescent {
+  N X, Y;
+};
+
+template <class N>
+POLHODE_INLINE RealDescent<N> descend_real(const LandenChain<N>& chain, N P, N C, N Q, N R) {
+  N X = C, Y = P;
+  for (int i = 1; i <= chain.stages; ++i) {
+    P = P + P;
+    Q = (Q + R) * (N(1.0) + chain.k[i]);
+    const N kP = chain.k[i] * P;
+    R = sqrt((Q - kP) * (Q + kP));
+    Y = Y * R;
+    X = X * Q * (N(1.0) + chain.k[i]);
+  }
+  return {X, Y};
+}
+
+}  // namespace polhode::math

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "polhode/math/double_double.hpp"
+
+namespace polhode::math {
+
+/// The fraction in [-1/2, 1/2] of t rate + start, in cycles: what an angle keeps after any number of turns.
+/// The rate (cycles a second) is a double-double, so the error is about 1e-32 |t rate| + 1e-17 cycles.
+template <class T>
+POLHODE_INLINE T cycle_fraction(T t, T rate_hi, T rate_lo, T start) {
+  const T p = t * rate_hi;
+  const T e = fma(t, rate_hi, -p);
+  const T f = (p - rint(p)) + (fma(t, rate_lo, e) + start);
+  return f - rint(f);
+}
+
+}  // namespace polhode::math
