@@ -22,6 +22,8 @@ $(VENV)/.ready: pyproject.toml .ci/prepare
 # One editable build serves the Python module and the C++ tests; ninja rebuilds only what changed.
 build/.installed: $(VENV)/.ready $(inputs)
 	@echo "building polhode (the first time takes a few minutes)"
+	@# The build imports an installed polhode (its CMake entry point), which fails when its Python is ahead of its core.
+	@$(PYTHON) -m pip uninstall -qq -y --disable-pip-version-check polhode
 	@CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) $(PYTHON) -m pip install -qq --disable-pip-version-check \
 	  --no-build-isolation --no-deps -Cbuild-dir=$(BUILD) -Ccmake.define.POLHODE_BUILD_TESTS=ON \
 	  -Ccmake.define.POLHODE_WERROR=ON \

@@ -71,7 +71,7 @@ Matrix3d symmetric_at_the_door(const Matrix3d& I_B, const char* where) {
 }
 
 void check_moments(const Matrix3d& I_B, const PrincipalAxes& principal, bool physical, const char* where,
-                   double slack) {
+                   double slack, const char* cause) {
   const Vector3d& m = principal.moments;
   const double largest = std::max(std::abs(m[0]), std::abs(m[2]));
   const double forgiven = InertiaTensor::tolerance * largest + slack;
@@ -80,9 +80,10 @@ void check_moments(const Matrix3d& I_B, const PrincipalAxes& principal, bool phy
     throw InvalidInput(where, "without negative moments",
                        to_text(m[0]) + " about the axis " + vector_text(principal.axes.col(0)) + ", " +
                            per_cent(-m[0] / largest) + " of the largest below zero",
-                       on_diagonal ? "a sign on the diagonal, or a difference taken the wrong way round?"
-                                   : "products of inertia larger than the diagonal entries allow: a slip in one entry, "
-                                     "or their order?");
+                       cause         ? cause
+                       : on_diagonal ? "a sign on the diagonal, or a difference taken the wrong way round?"
+                                     : "products of inertia larger than the diagonal entries allow: a slip in one "
+                                       "entry, or their order?");
   }
   const double excess = 0.5 * m[2] - 0.5 * m[1] - 0.5 * m[0];  // halves: no overflow
   if (physical && excess > 0.5 * forgiven) {
@@ -90,8 +91,13 @@ void check_moments(const Matrix3d& I_B, const PrincipalAxes& principal, bool phy
     throw InvalidInput(where, "within the triangle inequality: no moment above the sum of the two others",
                        to_text(m[2]) + " about the axis " + vector_text(principal.axes.col(2)) +
                            " against the sum " + to_text(m[0] + m[1]) + ", a deficit of " + per_cent(deficit),
-                       likely_cause(I_B, deficit));
+                       cause ? cause : likely_cause(I_B, deficit));
   }
+}
+
+double positive(double value, const char* where) {
+  if (!(value > 0 && std::isfinite(value))) throw InvalidInput(where, "positive and finite", to_text(value));
+  return value;
 }
 
 }  // namespace polhode::inertia

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "inertia/door.hpp"
 #include "inertia/jacobi.hpp"
 
 namespace polhode {
@@ -18,10 +20,13 @@ int nearest_axis(const Vector3d& v) {
   return k;
 }
 
-Vector3d towards_nearest_axis(const Vector3d& v) { return v[nearest_axis(v)] < 0 ? Vector3d(-v) : v; }
+Vector3d towards_nearest_axis(const Vector3d& v) {
+  const double sign = v[nearest_axis(v)] < 0 ? -1.0 : 1.0;
+  return (sign * v).array() + 0.0;  // no negative zeros
+}
 
 Vector3d cross(const Vector3d& a, const Vector3d& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  return {a[1] * b[2] - a[2] * b[1] + 0.0, a[2] * b[0] - a[0] * b[2] + 0.0, a[0] * b[1] - a[1] * b[0] + 0.0};
 }
 
 /// The given axis i carried along by the smallest turn that takes the given axis k (k != i) to the unit vector n.
@@ -29,7 +34,7 @@ Vector3d carried(int i, int k, const Vector3d& n) {
   Vector3d v = -n[i] / (1 + n[k]) * n;
   v[k] -= n[i] / (1 + n[k]);
   v[i] += 1;
-  return v;
+  return v.array() + 0.0;
 }
 
 Symmetry classify(const Vector3d& moments, double gap) {
@@ -93,11 +98,21 @@ const char* to_text(Symmetry symmetry) {
   return "triaxial";
 }
 
-int PrincipalAxes::arbitrary_dimensions() const {
-  return symmetry == Symmetry::spherical ? 3 : symmetry == Symmetry::triaxial ? 0 : 2;
+const char* to_text(Arbitrary arbitrary) {
+  switch (arbitrary) {
+    case Arbitrary::none: return "none";
+    case Arbitrary::plane: return "plane";
+    case Arbitrary::sphere: break;
+  }
+  return "sphere";
 }
 
-Vector3d PrincipalAxes::plane_normal() const {
+Arbitrary PrincipalAxes::arbitrary() const {
+  if (symmetry == Symmetry::spherical) return Arbitrary::sphere;
+  return symmetry == Symmetry::triaxial ? Arbitrary::none : Arbitrary::plane;
+}
+
+Vector3d PrincipalAxes::normal() const {
   if (symmetry == Symmetry::oblate) return axes.col(2);
   if (symmetry == Symmetry::prolate) return axes.col(0);
   return Vector3d::Zero();
@@ -118,11 +133,18 @@ std::size_t compute_principal_axes(const double* I_B, std::size_t count, double*
     inertia::Jacobi<lanes> solver;
     bool finite[lanes] = {};
     for (std::size_t lane = 0; lane < used; ++lane) {
-      const double* m = I_B + 9 * (first + lane);
+      const double* const m = I_B + 9 * (first + lane);
       double sum = 0;  // NaN when any entry is NaN or infinite
       for (int i = 0; i < 9; ++i) sum += 0 * m[i];
       finite[lane] = sum == 0;
-      if (finite[lane]) solver.load(lane, m[0], m[4], m[8], m[1], m[2], m[5]);
+      if (!finite[lane]) continue;
+      if (m[1] == m[3] && m[2] == m[6] && m[5] == m[7]) {
+        solver.load(lane, m[0], m[4], m[8], m[1], m[2], m[5]);
+      } else {
+        const std::string where = "matrices[" + std::to_string(first + lane) + "]";
+        const Matrix3d s = inertia::symmetric_at_the_door(Eigen::Map<const Matrix3d>(m).transpose(), where.c_str());
+        solver.load(lane, s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(0, 2), s(1, 2));
+      }
     }
     solver.run();
     for (std::size_t lane = 0; lane < used; ++lane) {

@@ -43,16 +43,16 @@ TEST_CASE("principal axes rebuild the tensor, right-handed, at every scale") {
 }
 
 TEST_CASE("classes and arbitrary directions") {
-  CHECK(InertiaTensor::from_moments({2, 2, 2}).principal().arbitrary_dimensions() == 3);
+  CHECK(InertiaTensor::from_moments({2, 2, 2}).principal().arbitrary() == Arbitrary::sphere);
   const auto coin = InertiaTensor::from_moments({1, 2, 1});
   CHECK(coin.symmetry() == Symmetry::oblate);
-  CHECK(coin.principal().plane_normal() == Vector3d(0, 1, 0));
+  CHECK(coin.principal().normal() == Vector3d(0, 1, 0));
   const auto rod = InertiaTensor::from_moments({0, 3, 3});
   CHECK(rod.symmetry() == Symmetry::prolate);
   CHECK(rod.axes() == Matrix3d::Identity());
   CHECK_FALSE(rod.is_positive_definite());
   CHECK(InertiaTensor(Matrix3d::Zero()).symmetry() == Symmetry::spherical);
-  CHECK(InertiaTensor(make(1, 1 + 1e-9, 1.5)).principal(1e-6).arbitrary_dimensions() == 2);
+  CHECK(InertiaTensor(make(1, 1 + 1e-9, 1.5)).principal(1e-6).arbitrary() == Arbitrary::plane);
 }
 
 TEST_CASE("turning a tensor keeps its moments and turns its axes") {

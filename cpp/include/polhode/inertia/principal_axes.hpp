@@ -10,8 +10,11 @@ namespace polhode {
 /// Which principal moments coincide. Oblate (a coin): the largest stands apart; prolate (a needle): the smallest.
 enum class Symmetry { spherical, oblate, prolate, triaxial };
 
-/// "spherical", "oblate", "prolate" or "triaxial".
-const char* to_text(Symmetry symmetry);
+/// Which directions are principal axes by the moments alone: those of the frame, any in a plane, or any.
+enum class Arbitrary { none, plane, sphere };
+
+const char* to_text(Symmetry symmetry);    ///< "spherical", "oblate", "prolate" or "triaxial"
+const char* to_text(Arbitrary arbitrary);  ///< "none", "plane" or "sphere"
 
 /// Moments closer than this part of the largest count as equal: what rounding leaves of equal moments when a tensor
 /// is turned once or twice. Data with fewer digits need a wider gap, given by the caller.
@@ -33,18 +36,23 @@ struct PrincipalAxes {
   Matrix3d axes = Matrix3d::Identity();     ///< R_BP
   Symmetry symmetry = Symmetry::spherical;  ///< by the gap asked for
 
-  /// How many dimensions of directions are arbitrary: 0 none, 2 the plane across `plane_normal()`, 3 all of them.
-  int arbitrary_dimensions() const;
-  /// The axis that stands apart, in the given axes: zero unless exactly two moments coincide.
-  Vector3d plane_normal() const;
+  /// Two equal moments leave every direction in the plane across `normal()` arbitrary, three every direction.
+  Arbitrary arbitrary() const;
+  /// The axis that stands apart, in the given axes; zero unless exactly two moments coincide.
+  Vector3d normal() const;
+
+  friend bool operator==(const PrincipalAxes& a, const PrincipalAxes& b) {
+    return a.moments == b.moments && a.axes == b.axes && a.symmetry == b.symmetry;
+  }
 };
 
 /// Principal axes of a symmetric, finite matrix (its lower triangle is not read), in given axes B.
 /// Jacobi's rotations; moments and residuals accurate to a few units of rounding of the largest moment, at any scale.
 PrincipalAxes compute_principal_axes(const Matrix3d& I_B, double gap = symmetry_gap);
 
-/// The same, bit for bit, for `count` matrices of 9 numbers each: moments (3 each), axes (9 each, row by row).
-/// A matrix that is not finite gives NaN; returns how many did.
+/// The same as InertiaTensor finds, bit for bit, for `count` matrices of 9 numbers each: moments (3 each), axes (9 each,
+/// row by row). Only symmetry is asked for, as at InertiaTensor's door: negative moments, too, have their axes.
+/// A matrix that is not finite gives NaN; returns how many did. Throws InvalidInput for one that is not symmetric.
 std::size_t compute_principal_axes(const double* I_B, std::size_t count, double* moments, double* axes);
 
 }  // namespace polhode

@@ -1,0 +1,67 @@
+"""Bodies of uniform density: `polhode.shapes.box(mass, half_sides)` and so on, each a `MassProperties`.
+
+Full heights, symmetry axis z, centre at the origin unless the shape says otherwise. The functions, their signatures and
+their docstrings are made from the core's list of shapes.
+"""
+
+from __future__ import annotations
+
+import inspect
+import textwrap
+from typing import Any, Callable
+
+import numpy.typing as npt
+
+from . import _core
+from ._core import MassProperties
+
+_Parameters = tuple[tuple[str, tuple[int, ...], str], ...]
+
+
+def _docstring(doc: str, parameters: _Parameters) -> str:
+    lines = [*textwrap.wrap(doc, 110), "", "Parameters", "----------"]
+    for name, size, meaning in parameters:
+        lines += [f"{name} : " + (f"array_like, shape {size}" if size else "float"), f"    {meaning}"]
+    lines += ["", "Returns", "-------", "MassProperties", "", "Raises", "------", "InvalidInput"]
+    return "\n".join([*lines, "    A mass or a length that is not positive and finite, or a wrong shape."])
+
+
+def _make(name: str, doc: str, parameters: _Parameters) -> Callable[..., MassProperties]:
+    kind = inspect.Parameter.POSITIONAL_OR_KEYWORD
+    signature = inspect.Signature(
+        [inspect.Parameter(p, kind, annotation=npt.ArrayLike if size else float) for p, size, _ in parameters],
+        return_annotation=MassProperties,
+    )
+
+    def shape(*args: Any, **kwargs: Any) -> MassProperties:
+        try:
+            values = signature.bind(*args, **kwargs).arguments
+        except TypeError as error:
+            raise TypeError(f"{name}{signature_text}: {error}") from None
+        return _core.make_shape(name, [values[p] for p, _, _ in parameters])
+
+    signature_text = "(" + ", ".join(p for p, _, _ in parameters) + ")"
+    shape.__name__ = shape.__qualname__ = name
+    shape.__doc__ = _docstring(doc, parameters)
+    shape.__annotations__ = {p: npt.ArrayLike if size else float for p, size, _ in parameters}
+    shape.__annotations__["return"] = MassProperties
+    shape.__signature__ = signature  # type: ignore[attr-defined]
+    return shape
+
+
+def table() -> str:
+    """The shapes as a Markdown table: name, parameters, and what each is."""
+    rows = ["| shape | parameters | body |", "|---|---|---|"]
+    for name, doc, parameters in _core.shape_records():
+        meanings = "; ".join(f"`{p}`: {meaning}" for p, _, meaning in parameters[1:])
+        rows.append(f"| `{name}` | {meanings} | {doc} |")
+    return "\n".join(rows)
+
+
+_functions = {name: _make(name, doc, parameters) for name, doc, parameters in _core.shape_records()}
+globals().update(_functions)
+__all__ = [*_functions, "table"]
+
+
+def __getattr__(name: str) -> Callable[..., MassProperties]:  # for type checkers; at run time only a wrong name comes here
+    raise AttributeError(f"no shape '{name}'; there are {', '.join(_functions)}")
