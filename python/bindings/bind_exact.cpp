@@ -2,6 +2,8 @@
 
 namespace polhode::python {
 
-void bind_exact(py::module_&) {}
+void bind_free_motion(py::module_& m);
+
+void bind_exact(py::module_& m) { bind_free_motion(m); }
 
 }  // namespace polhode::python

@@ -111,7 +111,7 @@ POLHODE_INLINE DoubleDouble<T> select(M mask, DoubleDouble<T> a, DoubleDouble<T>
 }
 
 template <class T>
-POLHODE_INLINE DoubleDouble<T> fma(DoubleDouble<T> a, DoubleDouble<T> b, DoubleDouble<T> c) {
+POLHODE_INLINE DoubleDouble<T> madd(DoubleDouble<T> a, DoubleDouble<T> b, DoubleDouble<T> c) {
   return a * b + c;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 // The closed forms are templates over a number type N. `double` is one; vectors of 4 or 8 doubles, each in its own
 // namespace, and double-doubles over any of these are others. Such code may use + - * /, comparisons, and the few
@@ -17,12 +19,48 @@
 namespace polhode::math {
 
 POLHODE_INLINE double fma(double a, double b, double c) { return std::fma(a, b, c); }  ///< a b + c, rounded once
-POLHODE_INLINE double rint(double a) { return std::rint(a); }                          ///< nearest integer, ties to even
+
+/// a b + c, rounded once where the machine can, else twice: without the instruction std::fma is a slow call.
+POLHODE_INLINE double madd(double a, double b, double c) {
+#ifdef __FMA__
+  return std::fma(a, b, c);
+#else
+  return a * b + c;
+#endif
+}
+
+/// The nearest integer, ties to even.
+POLHODE_INLINE double rint(double a) {
+#ifdef __SSE4_1__
+  return std::rint(a);
+#else
+  const double magic = std::copysign(0x1p52, a);  // adding it leaves no fraction; beyond it there is none
+  return std::fabs(a) < 0x1p52 ? (a + magic) - magic : a;
+#endif
+}
+
 POLHODE_INLINE double sqrt(double a) { return std::sqrt(a); }
 POLHODE_INLINE double abs(double a) { return std::fabs(a); }
 POLHODE_INLINE double copysign(double size, double sign) { return std::copysign(size, sign); }
 POLHODE_INLINE double select(bool mask, double a, double b) { return mask ? a : b; }
+
+/// 2^n for an integer n in [-1022, 1023].
+POLHODE_INLINE double power_of_two(double n) {
+  return std::bit_cast<double>(static_cast<std::int64_t>(n + 1023.0) << 52);
+}
+
+/// 2^floor(log2 |a|), not below 2^-1022.
+POLHODE_INLINE double power_of_two_below(double a) {
+  const double p = std::bit_cast<double>(std::bit_cast<std::uint64_t>(a) & 0x7ff0000000000000u);
+  return p < 0x1p-1022 ? 0x1p-1022 : p;
+}
+
 POLHODE_INLINE bool any(bool mask) { return mask; }
+
+template <class N>
+POLHODE_INLINE N min(N a, N b) {
+  return select(b < a, b, a);
+}
 
 template <class N>
 POLHODE_INLINE N max(N a, N b) {
@@ -33,11 +71,11 @@ POLHODE_INLINE N max(N a, N b) {
 template <class N>
 using Mask = decltype(N{} < N{});
 
-/// c[0] + c[1] x + c[2] x^2 + ..., by Horner's rule with fused steps.
-template <class N, int n>
-POLHODE_INLINE N polynomial(const double (&c)[n], N x) {
+/// c[0] + c[1] x + c[2] x^2 + ..., by Horner's rule.
+template <class C, class N, int n>
+POLHODE_INLINE N polynomial(const C (&c)[n], N x) {
   N sum = N(c[n - 1]);
-  for (int i = n - 2; i >= 0; --i) sum = fma(sum, x, N(c[i]));
+  for (int i = n - 2; i >= 0; --i) sum = madd(sum, x, N(c[i]));
   return sum;
 }
 

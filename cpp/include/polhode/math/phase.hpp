@@ -8,9 +8,8 @@ namespace polhode::math {
 /// The rate (cycles a second) is a double-double, so the error is about 1e-32 |t rate| + 1e-17 cycles.
 template <class T>
 POLHODE_INLINE T cycle_fraction(T t, T rate_hi, T rate_lo, T start) {
-  const T p = t * rate_hi;
-  const T e = fma(t, rate_hi, -p);
-  const T f = (p - rint(p)) + (fma(t, rate_lo, e) + start);
+  const auto p = two_prod(t, rate_hi);
+  const T f = (p.hi - rint(p.hi)) + (madd(t, rate_lo, p.lo) + start);
   return f - rint(f);
 }
 

@@ -1,0 +1,139 @@
+#pragma once
+
+#include "polhode/math/exp.hpp"
+#include "polhode/math/phase.hpp"
+#include "polhode/math/sincos.hpp"
+
+// Torque-free motion as theta series: the constants of one body and their evaluation at a time.
+// Working axes: a proper signed permutation of the principal axes with m3 >= 0 about the axis the motion encircles;
+// working space frame: third axis along the angular momentum. docs/exact.md derives everything here.
+namespace polhode::exact {
+
+// Named here so that the C library's own names of the global namespace are never meant.
+using math::DoubleDouble;
+using math::abs, math::copysign, math::madd, math::max, math::min, math::rint, math::select, math::sqrt;
+using math::cycle_fraction, math::polynomial, math::sincos_cycles, math::exp_minus, math::two_prod, math::two_sum;
+
+/// What an evaluation gives: the unit quaternion from working axes to the working space frame, and omega in
+/// working axes.
+template <class T>
+struct FreeState {
+  T x, y, z, w;
+  T omega[3];
+};
+
+/// k^2 <= 0.97: alpha = w + iz = e^{i kappa t} sum_{j even} G_j e^{ij phi}, beta = x + iy with j odd, up to a common
+/// factor, phi = phi0 + nu t; both sums as polynomials in X = cos 2 phi. Rates in cycles per unit of time.
+/// Cayley-Klein form of Jacobi's solution (Jacobi 1850; Klein & Sommerfeld 1897-1910), nome q^2.
+template <class T>
+struct FreeTrig {
+  T nu_hi, nu_lo, phi0, kappa_hi, kappa_lo;
+  T even_cos[4], even_sin[3], odd_cos[4], odd_sin[4];
+  T omega1[5], omega2[5], omega3[5];  ///< theta_1, theta_2, theta_4 with the factors of omega, over sin, cos, 1
+};
+
+/// k^2 > 0.97: the same sums after Poisson's transformation, in e^-|v|, v running through one half period.
+template <class T>
+struct FreeHyper {
+  T rate_hi, rate_lo, start_hi, start_lo;  ///< half turns of the theta argument (nu / pi); 0 on the separatrix
+  T v_hi, v_lo;                            ///< v = v_hi * (fraction of a half turn); on the separatrix dv/dt
+  T v0_hi, v0_lo;                          ///< v at t = 0 on the separatrix, else 0
+  T kappa_hi, kappa_lo, eta;               ///< cycles per unit of time; cycles
+  T parity0;                               ///< half turns to add (0 or 1)
+  T q;                                     ///< the complementary nome
+  T C[4], S[4];                            ///< cos, sin((2n + 1) eta / 2)
+  T omega1, omega2, omega3;
+  T homoclinic;                            ///< 1 exactly on the separatrix, else 0
+};
+
+/// 1 / sqrt(|alpha|^2 + |beta|^2) turns the pair into a unit quaternion.
+template <class T>
+POLHODE_INLINE void turn_and_normalise(T re_a, T im_a, T re_b, T im_b, T size2, T sine, T cosine, FreeState<T>& out) {
+  const T scale = T(1.0) / sqrt(size2);
+  const T c = cosine * scale, s = sine * scale;
+  out.w = re_a * c - im_a * s;
+  out.z = re_a * s + im_a * c;
+  out.x = re_b * c - im_b * s;
+  out.y = re_b * s + im_b * c;
+}
+
+template <class T, class C>
+POLHODE_INLINE FreeState<T> evaluate(const FreeTrig<C>& body, T t) {
+  T s, c, ks, kc;
+  sincos_cycles(cycle_fraction(t, T(body.nu_hi), T(body.nu_lo), T(body.phi0)), s, c);
+  sincos_cycles(cycle_fraction(t, T(body.kappa_hi), T(body.kappa_lo), T(0.0)), ks, kc);
+  const T X = (c - s) * (c + s), sin2 = (s + s) * c;
+  const T re_a = polynomial(body.even_cos, X), im_a = sin2 * polynomial(body.even_sin, X);
+  const T re_b = c * polynomial(body.odd_cos, X), im_b = s * polynomial(body.odd_sin, X);
+  const T size2 = madd(re_a, re_a, im_a * im_a) + madd(re_b, re_b, im_b * im_b);
+  FreeState<T> out;
+  turn_and_normalise(re_a, im_a, re_b, im_b, size2, ks, kc, out);
+  const T inverse = T(1.0) / size2;
+  out.omega[0] = s * polynomial(body.omega1, X) * inverse;
+  out.omega[1] = c * polynomial(body.omega2, X) * inverse;
+  out.omega[2] = polynomial(body.omega3, X) * inverse;
+  return out;
+}
+
+template <class T, class C>
+POLHODE_INLINE FreeState<T> evaluate(const FreeHyper<C>& body, T t) {
+  // The theta argument in half turns as a pair: near v = 0 its error is multiplied by pi^2 / lambda.
+  const auto p = two_prod(t, T(body.rate_hi));
+  const T n = rint(p.hi);
+  const auto turns = DoubleDouble<T>(two_sum(p.hi - n, madd(t, T(body.rate_lo), p.lo))) +
+                     DoubleDouble<T>(T(body.start_hi), T(body.start_lo));
+  const T n2 = rint(turns.hi), f = turns.hi - n2;
+  const T half = T(0.5) * ((n + n2) + T(body.parity0));
+  const T flip = T(1.0) - T(4.0) * abs(half - rint(half));  // (-1)^N
+  // On the separatrix f = 0 and v grows with t itself.
+  const T drive = select(T(body.homoclinic) > T(0.5), t, f);
+  const auto vp = two_prod(drive, T(body.v_hi));
+  const T tail = madd(drive, T(body.v_lo), madd(turns.lo, T(body.v_hi), vp.lo)) + T(body.v0_lo);
+  const auto vs = two_sum(vp.hi, T(body.v0_hi));
+  const T v = vs.hi + (vs.lo + tail);
+
+  T sine, cosine;
+  const T turn = madd(T(body.eta), f, cycle_fraction(t, T(body.kappa_hi), T(body.kappa_lo), T(0.0)));
+  sincos_cycles(turn - rint(turn), sine, cosine);
+
+  const T sign = copysign(T(1.0), v), E = exp_minus(abs(v));
+  const T g = select(T(body.q) < T(1e-290), T(0.0), T(body.q) / E);
+  const T q = T(body.q);
+  T u[4], d[4];
+  u[0] = T(1.0);
+  d[0] = E;
+  T qn = T(1.0);
+  for (int i = 0; i < 3; ++i) {
+    u[i + 1] = u[i] * g * qn;
+    qn = qn * q;
+    d[i + 1] = d[i] * E * qn;
+  }
+  T re_a = T(0.0), im_a = T(0.0), re_b = T(0.0), im_b = T(0.0);
+  for (int i = 3; i >= 0; --i) {
+    const T sum = u[i] + d[i], difference = sign * (u[i] - d[i]);
+    const T b = (i % 2 ? -flip : flip);
+    re_a = madd(sum, T(body.C[i]), re_a);
+    im_a = im_a - difference * T(body.S[i]);
+    re_b = madd(b * difference, T(body.C[i]), re_b);
+    im_b = im_b - b * sum * T(body.S[i]);
+  }
+  const T size2 = madd(re_a, re_a, im_a * im_a) + madd(re_b, re_b, im_b * im_b);
+  FreeState<T> out;
+  turn_and_normalise(re_a, im_a, re_b, im_b, size2, sine, cosine, out);
+
+  T D = T(0.0), V = T(0.0), Wp = E, Wm = E;
+  for (int i = 2; i >= 0; --i) {
+    const T uu = u[i] * u[i], dd = d[i] * d[i], cross = madd(u[i + 1], u[i], d[i + 1] * d[i]);
+    D = D + (uu + dd);
+    V = i % 2 ? V - (uu - dd) : V + (uu - dd);
+    Wp = Wp + cross;
+    Wm = i % 2 ? Wm + cross : Wm - cross;  // (-1)^n of n = i + 1
+  }
+  const T inverse = T(1.0) / D;
+  out.omega[0] = flip * T(body.omega1) * Wm * inverse;
+  out.omega[1] = flip * sign * T(body.omega2) * V * inverse;
+  out.omega[2] = T(body.omega3) * Wp * inverse;
+  return out;
+}
+
+}  // namespace polhode::exact

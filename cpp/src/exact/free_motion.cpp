@@ -1,0 +1,239 @@
+#include "polhode/exact/free_motion.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "polhode/core/error.hpp"
+#include "polhode/exact/free_setup_hyper.hpp"
+
+namespace polhode {
+namespace {
+
+using math::DD;
+
+constexpr double most_radians = 1e25;  // beyond it even 106 bits leave fewer than 7 digits of the phase
+constexpr double hyper_from = 0.97;    // k^2; either form is good to 1e-15 on both sides of it
+
+std::string vector_text(const Vector3d& v) {
+  return "(" + to_text(v[0]) + ", " + to_text(v[1]) + ", " + to_text(v[2]) + ")";
+}
+
+int exponent_of(const Vector3d& v) { return std::ilogb(v.cwiseAbs().maxCoeff()); }
+
+Vector3d ldexp(const Vector3d& v, int e) { return {std::ldexp(v[0], e), std::ldexp(v[1], e), std::ldexp(v[2], e)}; }
+
+/// What is computed in scaled units, back in SI; refused where float64 cannot hold it.
+double representable(double scaled, int exponent, const char* name) {
+  const double value = std::ldexp(scaled, exponent);
+  if (!std::isfinite(value) || (scaled != 0.0 && std::abs(value) < std::numeric_limits<double>::min())) {
+    throw InvalidInput(name, "within the range of float64", to_text(scaled) + " * 2^" + std::to_string(exponent),
+                       "omega or the moments are too large or too small for it; choose other units");
+  }
+  return value;
+}
+
+}  // namespace
+
+const char* to_text(FreeKind kind) {
+  constexpr const char* names[] = {"rest",    "spherical",   "steady",         "oblate",
+                                   "prolate", "about_least", "about_greatest", "separatrix"};
+  return names[static_cast<int>(kind)];
+}
+
+FreeMotion::FreeMotion(const Vector3d& moments, const Vector3d& omega, const Quat& attitude)
+    : FreeMotion(InertiaTensor::from_moments(moments), omega, attitude) {}
+
+FreeMotion::FreeMotion(const InertiaTensor& inertia, const Vector3d& omega, const Quat& attitude)
+    : inertia_(inertia), omega_(omega), attitude_(make_attitude(attitude)) {
+  if (!omega.allFinite()) throw InvalidInput("omega", "finite", vector_text(omega));
+  if (!inertia.is_positive_definite()) {
+    throw InvalidInput("inertia", "positive about every axis", "principal moments " + vector_text(inertia.moments()),
+                       "a rod or a point has no moment about some axis, and its spin there no meaning");
+  }
+  const bool exact_axes = inertia.is_diagonal();
+  if (exact_axes) {
+    set_up(inertia.matrix().diagonal(), Matrix3d::Identity(), true);
+  } else {
+    set_up(inertia.moments(), inertia.axes(), false);
+  }
+}
+
+void FreeMotion::classify(const Vector3d& I, const Vector3d& w, bool exact_axes) {
+  Symmetry symmetry = Symmetry::triaxial;
+  const double gap = exact_axes ? 0.0 : symmetry_gap * I[2];
+  if (I[2] - I[0] <= gap) {
+    symmetry = Symmetry::spherical;
+  } else if (I[1] - I[0] <= gap) {
+    symmetry = Symmetry::oblate;
+  } else if (I[2] - I[1] <= gap) {
+    symmetry = Symmetry::prolate;
+  }
+  // Rounding of a turned tensor leaves as much of a component that should be zero.
+  const double nothing = exact_axes ? 0.0 : 4 * symmetry_gap * w.cwiseAbs().maxCoeff();
+  const bool zero[] = {std::abs(w[0]) <= nothing, std::abs(w[1]) <= nothing, std::abs(w[2]) <= nothing};
+  const int zeros = zero[0] + zero[1] + zero[2];
+  if (symmetry == Symmetry::spherical) {
+    kind_ = FreeKind::spherical;
+  } else if (zeros == 2 || (symmetry == Symmetry::oblate && zero[2]) || (symmetry == Symmetry::prolate && zero[0])) {
+    kind_ = FreeKind::steady;
+  } else if (symmetry != Symmetry::triaxial) {
+    kind_ = symmetry == Symmetry::oblate ? FreeKind::oblate : FreeKind::prolate;
+  } else if (form_ == Form::hyper && hyper_.homoclinic > 0.0) {
+    kind_ = FreeKind::separatrix;
+  }
+}
+
+void FreeMotion::set_up(const Vector3d& moments, const Matrix3d& R_BP, bool exact_axes) {
+  if (omega_.isZero(0.0)) return;
+  time_exponent_ = exponent_of(omega_);
+  moment_exponent_ = exponent_of(moments);
+  time_scale_ = std::ldexp(1.0, time_exponent_);
+  const Vector3d w = R_BP.transpose() * ldexp(omega_, -time_exponent_), I = ldexp(moments, -moment_exponent_);
+
+  exact::FreeStart<double> start{};
+  for (int a = 0; a < 3; ++a) start.I[a] = I[a], start.w[a] = w[a], start.M[a][a] = 1.0;
+  const auto constants = exact::analyse(start);
+  twice_T_ = constants.twice_T.hi;
+  L_ = constants.L.hi;
+  longest_ = most_radians / w.norm();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const exact::FreeStart<double>& s = constants.start;
+
+  double precession_cycles = nan;
+  if (s.w[0] == 0.0 && s.w[2] == 0.0 && s.I[0] != s.I[1] && s.I[1] != s.I[2]) {
+    // Exactly the unstable axis: omega is constant, the half angle in cycles is w2 t / (4 pi).
+    form_ = Form::intermediate;
+    const DD half = DD(s.w[1]) * DD(0.15915494309189535, -9.839338337591243e-18) * DD(0.5);
+    trig_.kappa_hi = half.hi, trig_.kappa_lo = half.lo;
+    precession_cycles = std::abs(2.0 * half.hi);
+  } else if (constants.k.hi * constants.k.hi > hyper_from) {
+    form_ = Form::hyper;
+    hyper_ = exact::set_up_hyper(constants);
+    precession_cycles = 2.0 * hyper_.kappa_hi + 0.5 * hyper_.rate_hi;
+    if (hyper_.homoclinic > 0.0) precession_cycles = L_ / s.I[1] / (2.0 * std::numbers::pi);
+  } else {
+    form_ = Form::trig;
+    trig_ = exact::set_up_trig(constants);
+    precession_cycles = 2.0 * trig_.kappa_hi + trig_.nu_hi;
+  }
+  precession_ = 2.0 * std::numbers::pi * precession_cycles;
+
+  Vector3d I_sorted = I, w_sorted = w;
+  for (const auto& [a, b] : {std::pair{0, 1}, std::pair{1, 2}, std::pair{0, 1}}) {
+    if (I_sorted[a] > I_sorted[b]) std::swap(I_sorted[a], I_sorted[b]), std::swap(w_sorted[a], w_sorted[b]);
+  }
+  kind_ = s.I[2] > s.I[0] ? FreeKind::about_greatest : FreeKind::about_least;
+  classify(I_sorted, w_sorted, exact_axes);
+
+  // Everything fixed into two matrices: omega = 2^e R_BP M omega', q = q0 conj(S Q(0)) (S Q'), S = R_BP M on vectors.
+  Matrix3d M;
+  for (int c = 0; c < 3; ++c)
+    for (int a = 0; a < 3; ++a) M(c, a) = s.M[c][a];
+  const Matrix3d S = R_BP * M;
+  for (int c = 0; c < 3; ++c)
+    for (int a = 0; a < 3; ++a) omega_from_working_[static_cast<std::size_t>(3 * c + a)] = S(c, a) * time_scale_;
+  const auto turned = [&S](double x, double y, double z, double qw) {
+    const Vector3d v = S * Vector3d(x, y, z);
+    return Quat{v[0], v[1], v[2], qw};
+  };
+  const auto first = evaluate_working(0.0);
+  const Quat left = normalized(attitude_ * conjugate(turned(first.x, first.y, first.z, first.w)));
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Quat q = left * turned(i == 0, i == 1, i == 2, i == 3);
+    attitude_from_working_[i] = q.x;
+    attitude_from_working_[4 + i] = q.y;
+    attitude_from_working_[8 + i] = q.z;
+    attitude_from_working_[12 + i] = q.w;
+  }
+}
+
+exact::FreeState<double> FreeMotion::evaluate_working(double scaled_time) const {
+  if (form_ == Form::trig) return exact::evaluate(trig_, scaled_time);
+  if (form_ == Form::hyper) return exact::evaluate(hyper_, scaled_time);
+  // About the second working axis.
+  exact::FreeState<double> state{};
+  math::sincos_cycles(math::cycle_fraction(scaled_time, trig_.kappa_hi, trig_.kappa_lo, 0.0), state.y, state.w);
+  return state;
+}
+
+double FreeMotion::checked_time(double t) const {
+  const double scaled = t * time_scale_;
+  if (std::isnan(t) || std::isinf(t)) throw InvalidInput("t", "finite", to_text(t));
+  if (form_ != Form::rest && !(std::abs(scaled) <= longest_)) {
+    throw InvalidInput("t", "such that |omega t| <= 1e25 rad", to_text(t) + " s",
+                       "beyond that no digit worth having is left of the phase");
+  }
+  return scaled;
+}
+
+void FreeMotion::evaluate(double t, double* omega, double* attitude) const {
+  const double scaled = checked_time(t);
+  if (form_ == Form::rest) {
+    if (omega) std::fill_n(omega, 3, 0.0);
+    if (attitude) attitude[0] = attitude_.x, attitude[1] = attitude_.y, attitude[2] = attitude_.z, attitude[3] = attitude_.w;
+    return;
+  }
+  const exact::FreeState<double> s = evaluate_working(scaled);
+  if (omega) {
+    const auto& m = omega_from_working_;
+    for (std::size_t c = 0; c < 3; ++c)
+      omega[c] = m[3 * c] * s.omega[0] + m[3 * c + 1] * s.omega[1] + m[3 * c + 2] * s.omega[2];
+    if (form_ == Form::intermediate) std::copy_n(omega_.data(), 3, omega);
+  }
+  if (attitude) {
+    const auto& m = attitude_from_working_;
+    for (std::size_t c = 0; c < 4; ++c)
+      attitude[c] = (m[4 * c] * s.x + m[4 * c + 1] * s.y) + (m[4 * c + 2] * s.z + m[4 * c + 3] * s.w);
+  }
+}
+
+State FreeMotion::at(double t) const {
+  State state;
+  state.t = t;
+  double q[4];
+  evaluate(t, state.omega.data(), q);
+  state.attitude = {q[0], q[1], q[2], q[3]};
+  return state;
+}
+
+void FreeMotion::at(const double* t, std::size_t n, double* omega, double* attitude) const {
+  for (std::size_t i = 0; i < n; ++i) evaluate(t[i], omega ? omega + 3 * i : nullptr, attitude ? attitude + 4 * i : nullptr);
+}
+
+double FreeMotion::period() const {
+  switch (kind_) {
+    case FreeKind::rest:
+    case FreeKind::spherical:
+    case FreeKind::steady:
+      return 0.0;
+    case FreeKind::separatrix:
+      return std::numeric_limits<double>::infinity();
+    default:
+      break;
+  }
+  const double scaled = form_ == Form::trig ? 1.0 / trig_.nu_hi : 2.0 / hyper_.rate_hi;
+  return representable(std::abs(scaled), -time_exponent_, "period");
+}
+
+double FreeMotion::precession_rate() const { return std::ldexp(precession_, time_exponent_); }
+
+double FreeMotion::energy() const {
+  return representable(0.5 * twice_T_, moment_exponent_ + 2 * time_exponent_, "energy");
+}
+
+/// L_B(0) in scaled units.
+Vector3d FreeMotion::momentum_direction() const {
+  const Vector3d w = ldexp(omega_, -time_exponent_);
+  if (inertia_.is_diagonal()) return ldexp(inertia_.matrix().diagonal(), -moment_exponent_).cwiseProduct(w);
+  return inertia_.matrix() * w * std::ldexp(1.0, -moment_exponent_);
+}
+
+Vector3d FreeMotion::angular_momentum() const {
+  if (form_ == Form::rest) return Vector3d::Zero();
+  representable(L_, moment_exponent_ + time_exponent_, "angular_momentum");
+  return ldexp(rotate(attitude_, momentum_direction()), moment_exponent_ + time_exponent_);
+}
+
+}  // namespace polhode

@@ -1,0 +1,79 @@
+#include <cmath>
+#include <string>
+
+#include "polhode/core/error.hpp"
+#include "polhode/exact/free_motion.hpp"
+
+// What teachers and analysts ask of a free motion: Poinsot's picture, Euler's angles, the racket's flips.
+namespace polhode {
+namespace {
+
+using math::DD;
+
+/// The shortest turn that takes space z to the direction v.
+Quat turn_to(const Vector3d& v) {
+  const Vector3d d = v.normalized();
+  // (e_z + d) / |e_z + d| bisects; for d near -e_z any axis across z does, and x is taken.
+  const double c = std::hypot(d[0], d[1]);
+  if (d[2] < 0.0 && c < 1e-150) return {1.0, 0.0, 0.0, 0.0};
+  const double half = 0.5 * std::atan2(c, d[2]), s = std::sin(half);
+  if (c == 0.0) return {};
+  return {-d[1] / c * s, d[0] / c * s, 0.0, std::cos(half)};
+}
+
+}  // namespace
+
+Vector3d FreeMotion::euler_angles(double t) const {
+  if (form_ == Form::rest) throw InvalidInput("omega", "other than zero for angles about the angular momentum", "rest");
+  const Quat q_WL = turn_to(rotate(attitude_, momentum_direction()));
+  const Quat q_LB = conjugate(q_WL) * at(t).attitude;
+  const double sum = std::atan2(q_LB.z, q_LB.w), difference = std::atan2(q_LB.y, q_LB.x);
+  const double theta = 2.0 * std::atan2(std::hypot(q_LB.x, q_LB.y), std::hypot(q_LB.z, q_LB.w));
+  constexpr double turn = 6.283185307179586;
+  return {std::remainder(sum + difference, turn), theta, std::remainder(sum - difference, turn)};
+}
+
+Vector3d FreeMotion::polhode(double t) const {
+  if (form_ == Form::rest) throw InvalidInput("omega", "other than zero for a polhode", "rest");
+  // omega' / sqrt(2 T') carries 2^(-moment exponent / 2).
+  const double odd = moment_exponent_ % 2 == 0 ? 1.0 : std::sqrt(2.0);
+  const int e = (moment_exponent_ % 2 == 0 ? moment_exponent_ : moment_exponent_ - 1) / 2;
+  const double scale = 1.0 / (std::sqrt(twice_T_) * odd);
+  const Vector3d w = at(t).omega;
+  Vector3d point;
+  for (int a = 0; a < 3; ++a) point[a] = std::ldexp(std::ldexp(w[a], -time_exponent_) * scale, -e);
+  return point;
+}
+
+Vector3d FreeMotion::herpolhode(double t) const { return rotate(at(t).attitude, polhode(t)); }
+
+std::vector<double> FreeMotion::flip_times(double begin, double end) const {
+  const double first = checked_time(begin), last = checked_time(end);
+  if (!(end >= begin)) throw InvalidInput("end", "at or after begin", to_text(end));
+  std::vector<double> times;
+  if (kind_ != FreeKind::about_least && kind_ != FreeKind::about_greatest && kind_ != FreeKind::separatrix) return times;
+  if (kind_ == FreeKind::separatrix) {
+    const DD t = -(DD(hyper_.v0_hi, hyper_.v0_lo) / DD(hyper_.v_hi, hyper_.v_lo));
+    const double at_zero = std::ldexp(t.hi, -time_exponent_);
+    if (begin <= at_zero && at_zero <= end) times.push_back(at_zero);
+    return times;
+  }
+  // The theta argument in half turns, start + rate t', is a whole number where sn = 0.
+  const bool trig = form_ == Form::trig;
+  const DD rate = trig ? math::scaled(DD(trig_.nu_hi, trig_.nu_lo), 2.0) : DD(hyper_.rate_hi, hyper_.rate_lo);
+  const DD start = trig ? math::scaled(DD(trig_.phi0) + DD(0.25), 2.0) : DD(hyper_.start_hi, hyper_.start_lo);
+  const double n_begin = (start + rate * DD(first)).hi, n_end = (start + rate * DD(last)).hi;
+  const double low = std::ceil(std::min(n_begin, n_end)), high = std::floor(std::max(n_begin, n_end));
+  constexpr double most = 1e8;
+  if (high - low > most) {
+    throw InvalidInput("end", "near enough to begin for at most 1e8 flips", to_text(high - low + 1) + " flips");
+  }
+  for (double n = low; n <= high; n += 1.0) {
+    const double forward = rate.hi > 0.0 ? n : high - (n - low);
+    const double t = std::ldexp(((DD(forward) - start) / rate).hi, -time_exponent_);
+    if (begin <= t && t <= end) times.push_back(t);
+  }
+  return times;
+}
+
+}  // namespace polhode

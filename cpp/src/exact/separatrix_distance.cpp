@@ -1,0 +1,54 @@
+#include <initializer_list>
+
+#include "polhode/exact/free_setup.hpp"
+
+// Shewchuk 1997, "Adaptive precision floating-point arithmetic", Discrete Comput. Geom. 18, 305: expansions.
+namespace polhode::exact {
+namespace {
+
+using math::DD;
+
+/// A sum of doubles that do not overlap, smallest first; exact.
+struct Expansion {
+  double term[48];
+  int size = 0;
+
+  void add(double b) {
+    double carry = b;
+    int kept = 0;
+    for (int i = 0; i < size; ++i) {
+      const DD s = math::two_sum(carry, term[i]);
+      carry = s.hi;
+      if (s.lo != 0.0) term[kept++] = s.lo;
+    }
+    if (carry != 0.0 || kept == 0) term[kept++] = carry;
+    size = kept;
+  }
+};
+
+Expansion product(const Expansion& e, double b) {
+  Expansion p;
+  for (int i = 0; i < e.size; ++i) {
+    const DD t = math::two_prod(e.term[i], b);
+    p.add(t.lo);
+    p.add(t.hi);
+  }
+  return p;
+}
+
+}  // namespace
+
+DoubleDouble<double> separatrix_distance_exact(double I1, double I2, double I3, double w1, double w3) {
+  const DD high = math::two_diff(I3, I2), low = math::two_diff(I2, I1);
+  Expansion third, first;
+  third.add(high.lo), third.add(high.hi);
+  first.add(-low.lo), first.add(-low.hi);
+  for (const double factor : {I3, w3, w3}) third = product(third, factor);
+  for (const double factor : {I1, w1, w1}) first = product(first, factor);
+  for (int i = 0; i < first.size; ++i) third.add(first.term[i]);
+  DD sum(0.0);
+  for (int i = third.size - 1; i >= 0; --i) sum = sum + third.term[i];
+  return sum;
+}
+
+}  // namespace polhode::exact

@@ -1,0 +1,177 @@
+#include <pybind11/operators.h>
+
+#include "convert.hpp"
+#include "polhode/core/error.hpp"
+#include "polhode/exact/free_motion.hpp"
+
+namespace polhode::python {
+namespace {
+
+FreeMotion make(py::handle inertia, py::handle omega, py::handle attitude) {
+  const Vector3d w = to_vector3(omega, "omega");
+  const Quat q = to_attitude(attitude, "attitude");
+  if (py::isinstance<InertiaTensor>(inertia)) return {inertia.cast<const InertiaTensor&>(), w, q};
+  return {to_vector3(inertia, "inertia"), w, q};
+}
+
+/// A new array of shape t.shape + (width,).
+Array result_for(const Array& t, py::ssize_t width) {
+  std::vector<py::ssize_t> shape(t.shape(), t.shape() + t.ndim());
+  shape.push_back(width);
+  return Array(shape);
+}
+
+py::tuple at(const FreeMotion& motion, py::handle t) {
+  if (PyFloat_CheckExact(t.ptr())) {
+    const State state = motion.at(PyFloat_AS_DOUBLE(t.ptr()));
+    return py::make_tuple(from_vector3(state.omega), from_quat(state.attitude));
+  }
+  const Array times = to_array(t, "t");
+  Array omega = result_for(times, 3), attitude = result_for(times, 4);
+  const double* in = times.data();
+  double *w = omega.mutable_data(), *q = attitude.mutable_data();
+  const auto n = static_cast<std::size_t>(times.size());
+  {
+    py::gil_scoped_release nogil;
+    motion.at(in, n, w, q);
+  }
+  return py::make_tuple(omega, attitude);
+}
+
+using Curve = Vector3d (FreeMotion::*)(double) const;
+
+template <Curve curve>
+Array along(const FreeMotion& motion, py::handle t) {
+  const Array times = to_array(t, "t");
+  Array points = result_for(times, 3);
+  const double* in = times.data();
+  double* out = points.mutable_data();
+  const py::ssize_t n = times.size();
+  py::gil_scoped_release nogil;
+  for (py::ssize_t i = 0; i < n; ++i) Eigen::Map<Vector3d>(out + 3 * i) = (motion.*curve)(in[i]);
+  return points;
+}
+
+}  // namespace
+
+void bind_free_motion(py::module_& m) {
+  py::class_<FreeMotion> cls(m, "FreeMotion", R"(Torque-free motion of any rigid body, in closed form at any time.
+
+One class for the sphere, symmetric and triaxial bodies, steady rotation, rest, needles and the separatrix, exactly and
+nearly. The error against the exact motion of the same float64 input is a few units of rounding at every time.
+
+Parameters
+----------
+inertia : InertiaTensor, or array_like of shape (3,)
+    About the centre of mass (or a fixed point), in body axes [kg m^2]; three numbers are principal moments in the given
+    axes, in any order.
+omega : array_like, shape (3,)
+    Angular velocity at t = 0, in body axes [rad/s].
+attitude : array_like of shape (4,), or a Rotation
+    Body to space at t = 0, (x, y, z, w).
+
+Raises
+------
+InvalidInput
+    Not finite, a body no mass makes, one without a moment about some axis, or an attitude that is not unit.
+
+Notes
+-----
+Jacobi (1850), "Sur la rotation d'un corps", J. reine angew. Math. 39, in the Cayley-Klein form; see docs/exact.md.)");
+  cls.attr("__module__") = "polhode";
+  cls.def(py::init(&make), py::arg("inertia"), py::arg("omega"), py::arg("attitude") = py::make_tuple(0, 0, 0, 1))
+      .def("at", &at, py::arg("t"), R"(Angular velocity and attitude at the given times.
+
+Parameters
+----------
+t : array_like, any shape
+    Times [s], negative ones too, up to abs(omega t) = 1e25 rad.
+
+Returns
+-------
+omega : ndarray, shape (..., 3)
+    In body axes [rad/s].
+attitude : ndarray, shape (..., 4)
+    Body to space, unit, (x, y, z, w).)")
+      .def("euler_angles", &along<&FreeMotion::euler_angles>, py::arg("t"), R"(Angles about the angular momentum.
+
+Parameters
+----------
+t : array_like, any shape
+    Times [s].
+
+Returns
+-------
+ndarray, shape (..., 3)
+    (phi, theta, psi) [rad], intrinsic z-x-z of the body axes in a space frame whose z axis is the angular momentum
+    (space z turned there the shortest way): precession, nutation and spin. phi and psi in [-pi, pi].)")
+      .def("polhode", &along<&FreeMotion::polhode>, py::arg("t"), R"(Poinsot's point of contact in body axes.
+
+Parameters
+----------
+t : array_like, any shape
+    Times [s].
+
+Returns
+-------
+ndarray, shape (..., 3)
+    omega / sqrt(2 T), on the inertia ellipsoid [kg^-1/2 m^-1].)")
+      .def("herpolhode", &along<&FreeMotion::herpolhode>, py::arg("t"), R"(Poinsot's point of contact in space axes.
+
+Parameters
+----------
+t : array_like, any shape
+    Times [s].
+
+Returns
+-------
+ndarray, shape (..., 3)
+    The polhode's point turned by the attitude; it stays in the plane L . v = sqrt(2 T) [kg^-1/2 m^-1].)")
+      .def(
+          "flip_times",
+          [](const FreeMotion& motion, py::handle begin, py::handle end) {
+            const auto times = motion.flip_times(to_real(begin, "begin"), to_real(end, "end"));
+            Array result(static_cast<py::ssize_t>(times.size()));
+            std::copy(times.begin(), times.end(), result.mutable_data());
+            return result;
+          },
+          py::arg("begin"), py::arg("end"), R"(When the racket flips.
+
+Parameters
+----------
+begin, end : float
+    The span [s], both ends included.
+
+Returns
+-------
+ndarray, shape (n,)
+    Ascending times at which omega's component along the intermediate axis passes through zero. Empty unless the three
+    moments differ and the motion is not steady.)")
+      .def_property_readonly("kind", [](const FreeMotion& f) { return to_text(f.kind()); },
+                             "'rest', 'spherical', 'steady', 'oblate', 'prolate', 'about_least', 'about_greatest' (the\n"
+                             "principal axis that omega encircles) or 'separatrix'.")
+      .def_property_readonly("period", &FreeMotion::period,
+                             "Period of omega [s]: infinite on the separatrix, 0 where omega is constant.")
+      .def_property_readonly("precession_rate", &FreeMotion::precession_rate,
+                             "Mean rate of precession about the angular momentum [rad/s].")
+      .def_property_readonly("energy", &FreeMotion::energy, "Kinetic energy [J].")
+      .def_property_readonly("angular_momentum", [](const FreeMotion& f) { return from_vector3(f.angular_momentum()); },
+                             "(3,) in space axes, constant [kg m^2/s].")
+      .def_property_readonly("inertia", &FreeMotion::inertia, "The InertiaTensor.")
+      .def_property_readonly("omega", [](const FreeMotion& f) { return from_vector3(f.omega()); },
+                             "(3,) omega at t = 0, in body axes [rad/s].")
+      .def_property_readonly("attitude", [](const FreeMotion& f) { return from_quat(f.attitude()); },
+                             "(4,) attitude at t = 0.")
+      .def(py::self == py::self)
+      .def("__hash__",
+           [](const FreeMotion& f) { return py::hash(py::make_tuple(f.omega()[0], f.omega()[1], f.omega()[2])); })
+      .def("__repr__", [](const FreeMotion& f) {
+        const auto text = [](const Array& a) { return py::cast<std::string>(py::str(a.attr("tolist")())); };
+        return "FreeMotion(" + py::cast<std::string>(py::repr(py::cast(f.inertia()))) +
+               ", omega=" + text(from_vector3(f.omega())) + ", attitude=" + text(from_quat(f.attitude())) + ")";
+      });
+  cls.def(py::pickle([](const FreeMotion& f) { return py::make_tuple(f.inertia(), from_vector3(f.omega()), from_quat(f.attitude())); },
+                     [](const py::tuple& s) { return make(s[0], s[1], s[2]); }));
+}
+
+}  // namespace polhode::python
