@@ -1,0 +1,37 @@
+"""Links in the documents lead somewhere, and the examples of the homework run."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("scenes/**/*.md"), *ROOT.glob("tests/**/*.md")])
+
+
+def anchors(text):
+    headings = re.findall(r"^#+ (.+)$", text, flags=re.M)
+    slugs = {re.sub(r"[^\w\- ]", "", h.lower()).strip().replace(" ", "-") for h in headings}
+    return slugs | set(re.findall(r'<a id="([^"]+)">', text))
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: str(p.relative_to(ROOT)))
+def test_local_links_lead_somewhere(page):
+    for target in re.findall(r"\]\(([^)\s]+)\)", re.sub(r"```.*?```", "", page.read_text(), flags=re.S)):
+        if re.match(r"[a-z]+:", target):
+            continue
+        path, _, anchor = target.partition("#")
+        file = (page.parent / path).resolve() if path else page
+        assert file.exists(), f"{target}: no such file"
+        assert not anchor or anchor in anchors(file.read_text()), f"{target}: no such heading"
+
+
+def test_the_bibliography_names_each_work_once():
+    keys = re.findall(r'<a id="(\w+)"></a>\*\*(\w+)\*\*', (ROOT / "docs/bibliography.md").read_text())
+    assert len(keys) > 30 and all(a == b for a, b in keys)
+    assert len({a for a, _ in keys}) == len(keys)
+
+
+def test_the_examples_of_the_homework_run():
+    for block in re.findall(r"```python\n(.*?)```", (ROOT / "docs/seed.md").read_text(), flags=re.S):
+        exec(compile(block, "docs/seed.md", "exec"), {})
