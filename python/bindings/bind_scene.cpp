@@ -1,7 +1,78 @@
-#include "bind.hpp"
+#include "bind_scene.hpp"
+
+#include <pybind11/stl.h>
+
+#include "convert.hpp"
+#include "polhode/core/error.hpp"
+#include "polhode/scene/scene.hpp"
 
 namespace polhode::python {
+namespace {
 
-void bind_scene(py::module_&) {}
+std::vector<double> to_times(py::handle value) {
+  const Array array = to_array(value, "scene.times");
+  if (array.ndim() != 1) throw InvalidInput("scene.times", "a one-dimensional array", std::to_string(array.ndim()) + " dimensions");
+  return {array.data(), array.data() + array.size()};
+}
+
+Wanted to_wanted(py::handle value) {
+  Wanted want{false, false};
+  const auto take = [&](const std::string& name) {
+    if (name != "omega" && name != "attitude") throw InvalidInput("scene.want", "'omega', 'attitude' or both", "'" + name + "'");
+    (name == "omega" ? want.omega : want.attitude) = true;
+  };
+  if (py::isinstance<py::str>(value)) {
+    take(value.cast<std::string>());
+  } else {
+    for (const py::handle one : py::iter(value)) take(std::string(py::str(one)));
+  }
+  return want;
+}
+
+Array view(const std::vector<double>& values, const py::object& base) {
+  Array array(py::array::ShapeContainer{static_cast<py::ssize_t>(values.size())}, values.data(), base);
+  array.attr("flags").attr("writeable") = false;
+  return array;
+}
+
+}  // namespace
+
+InertiaTensor to_inertia(py::handle value, const char* name) {
+  if (py::isinstance<InertiaTensor>(value)) return value.cast<const InertiaTensor&>();
+  const Array array = to_array(value, name);
+  if (array.ndim() == 1) return InertiaTensor::from_moments(to_vector3(value, name));
+  return InertiaTensor(to_matrix3(value, name));
+}
+
+void bind_scene(py::module_& m) {
+  py::class_<Scene>(m, "Scene")
+      .def(py::init([](py::handle inertia, py::handle omega, py::handle attitude, const py::iterable& torques,
+                       py::handle times, py::handle want, py::handle t0, const std::string& name) {
+             std::vector<AnyTorque> list;
+             for (const py::handle one : torques) list.push_back(to_torque(one, "scene.torques[" + std::to_string(list.size()) + "]"));
+             return Scene(SceneParts{to_inertia(inertia, "scene.inertia"), to_vector3(omega, "scene.omega"),
+                                     to_attitude(attitude, "scene.attitude"), std::move(list), to_times(times),
+                                     to_wanted(want), to_real(t0, "scene.t0"), name});
+           }),
+           py::arg("inertia"), py::arg("omega"), py::arg("attitude"), py::arg("torques"), py::arg("times"),
+           py::arg("want"), py::arg("t0"), py::arg("name"))
+      .def_property_readonly("inertia", &Scene::inertia_B)
+      .def_property_readonly("omega", [](const Scene& scene) { return from_vector3(scene.omega()); })
+      .def_property_readonly("attitude", [](const Scene& scene) { return from_quat(scene.attitude()); })
+      .def_property_readonly("torques", [](const Scene& scene) {
+        py::list list;
+        for (const AnyTorque& torque : scene.torques()) list.append(from_torque(torque));
+        return py::tuple(list);
+      })
+      .def_property_readonly("times", [](const py::object& self) { return view(self.cast<const Scene&>().times(), self); })
+      .def_property_readonly("want", [](const Scene& scene) {
+        py::list list;
+        if (scene.want().omega) list.append("omega");
+        if (scene.want().attitude) list.append("attitude");
+        return py::tuple(list);
+      })
+      .def_property_readonly("t0", &Scene::t0)
+      .def_property_readonly("name", &Scene::name);
+}
 
 }  // namespace polhode::python

@@ -1,7 +1,165 @@
-#include "bind.hpp"
+#include <pybind11/functional.h>
+#include <pybind11/stl.h>
+
+#include <memory>
+
+#include "bind_scene.hpp"
+#include "convert.hpp"
+#include "polhode/core/error.hpp"
+#include "polhode/solve/invariants.hpp"
+#include "polhode/solve/lagrangian_problem.hpp"
+#include "polhode/solve/euler_problem.hpp"
+#include "polhode/solve/solve.hpp"
 
 namespace polhode::python {
+namespace {
 
-void bind_solve(py::module_&) {}
+/// Lets Ctrl-C and a user's callback end a long run. Called without the GIL, a few times a second.
+std::function<bool(double, double)> make_progress(const py::object& callback) {
+  return [&callback](double reached, double last) {
+    py::gil_scoped_acquire gil;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    if (callback.is_none()) return true;
+    const py::object answer = callback(reached, last);
+    return answer.is_none() || py::bool_(answer);
+  };
+}
+
+SceneEvent to_event(const py::object& function, int direction, bool terminal) {
+  if (!PyCallable_Check(function.ptr())) {
+    throw InvalidInput("events", "callable as event(t, omega, attitude)", std::string(py::str(py::type::of(function))));
+  }
+  // A raw pointer: `function` outlives the run, and the copies of this closure are made without the GIL.
+  PyObject* pointer = function.ptr();
+  return {[pointer](const State& state) {
+            py::gil_scoped_acquire gil;
+            return to_real(py::reinterpret_borrow<py::object>(pointer)(state.t, from_vector3(state.omega), from_quat(state.attitude)),
+                           "the event's function");
+          },
+          direction, terminal};
+}
+
+/// An array that owns the numbers of a vector, without a copy.
+Array adopt(std::vector<double>&& values, py::ssize_t columns) {
+  auto* owner = new std::vector<double>(std::move(values));
+  const py::capsule capsule(owner, [](void* pointer) { delete static_cast<std::vector<double>*>(pointer); });
+  const auto size = static_cast<py::ssize_t>(owner->size());
+  if (columns == 1) return Array({size}, owner->data(), capsule);
+  return Array({size / columns, columns}, owner->data(), capsule);
+}
+
+template <class T>
+std::optional<double> to_optional(const T& value, const char* name) {
+  if (value.is_none()) return std::nullopt;
+  return to_real(value, name);
+}
+
+py::dict solve_scene(const Scene& scene, const py::object& accuracy, const py::object& method, const py::object& rtol,
+                     const py::object& atol, const py::object& step, long max_steps, bool dense,
+                     const std::string& formulation, const py::list& events, const py::object& progress) {
+  SolveOptions options;
+  options.accuracy = to_optional(accuracy, "accuracy");
+  if (!method.is_none()) options.method = std::string(py::str(method));
+  options.rtol = to_optional(rtol, "rtol");
+  options.atol = to_optional(atol, "atol");
+  options.step = to_optional(step, "step");
+  options.max_steps = max_steps;
+  options.dense = dense;
+  if (formulation != "euler" && formulation != "lagrangian") {
+    throw InvalidInput("formulation", "'euler' or 'lagrangian'", "'" + formulation + "'");
+  }
+  options.formulation = formulation == "euler" ? Formulation::euler : Formulation::lagrangian;
+  for (const py::handle item : events) {
+    const py::tuple event = item.cast<py::tuple>();
+    options.events.push_back(to_event(event[0], event[1].cast<int>(), event[2].cast<bool>()));
+  }
+  options.progress = make_progress(progress);
+
+  std::shared_ptr<Motion> motion = std::make_shared<Motion>();
+  {
+    py::gil_scoped_release nogil;   // Python callables take it back for themselves
+    *motion = solve(scene, options);
+  }
+  py::dict result;
+  const bool has_omega = scene.want().omega, has_attitude = scene.want().attitude;
+  py::list hits;
+  for (const MotionEvent& hit : motion->events) {
+    hits.append(py::make_tuple(hit.event, hit.state.t, from_vector3(hit.state.omega), from_quat(hit.state.attitude)));
+  }
+  const ode::Counts& counts = motion->stats;
+  py::dict stats;
+  stats["steps"] = counts.steps;
+  stats["rejected"] = counts.rejected;
+  stats["derivatives"] = counts.derivatives;
+  stats["events"] = counts.events;
+  result["stats"] = stats;
+  result["status"] = std::string(to_text(motion->status));
+  result["message"] = motion->message;
+  result["plan"] = py::make_tuple(motion->plan.model, motion->plan.method, motion->plan.state);
+  result["error"] = motion->error;
+  result["error_kind"] = motion->error_kind;
+  result["asked"] = motion->asked;
+  result["events"] = hits;
+  result["t"] = adopt(std::move(motion->t), 1);
+  result["omega"] = has_omega ? py::object(adopt(std::move(motion->omega), 3)) : py::none();
+  result["attitude"] = has_attitude ? py::object(adopt(std::move(motion->attitude), 4)) : py::none();
+  result["dense"] = motion->has_dense ? py::cast(motion) : py::none();
+  return result;
+}
+
+std::size_t rows(const Array& array) { return static_cast<std::size_t>(array.size() == 0 ? 0 : array.shape(0)); }
+
+}  // namespace
+
+void bind_solve(py::module_& m) {
+  py::class_<Motion, std::shared_ptr<Motion>>(m, "DenseMotion")
+      .def("__call__", [](const Motion& motion, py::handle times) {
+        const Array t = to_array(times, "motion(t)");
+        const auto n = t.size();
+        std::vector<py::ssize_t> shape(t.shape(), t.shape() + t.ndim());
+        auto with = [&](py::ssize_t last) {
+          auto full = shape;
+          full.push_back(last);
+          return full;
+        };
+        Array omega(with(3)), attitude(with(4));
+        for (py::ssize_t i = 0; i < n; ++i) {
+          const State state = motion.at(t.data()[i]);
+          std::copy_n(state.omega.data(), 3, omega.mutable_data() + 3 * i);
+          double* q = attitude.mutable_data() + 4 * i;
+          q[0] = state.attitude.x, q[1] = state.attitude.y, q[2] = state.attitude.z, q[3] = state.attitude.w;
+        }
+        return py::make_tuple(omega, attitude);
+      });
+
+  m.def("solve", &solve_scene, py::arg("scene"), py::arg("accuracy"), py::arg("method"), py::arg("rtol"),
+        py::arg("atol"), py::arg("step"), py::arg("max_steps"), py::arg("dense"), py::arg("formulation"),
+        py::arg("events"), py::arg("progress"));
+
+  m.def("energy", [](const Scene& scene, const Array& t, const Array& omega, const py::object& attitude) {
+    Array energy(t.size());
+    const Array q = attitude.is_none() ? Array(py::array::ShapeContainer{0}) : attitude.cast<Array>();
+    compute_energy(scene, rows(t), t.data(), omega.data(), attitude.is_none() ? nullptr : q.data(), energy.mutable_data());
+    return energy;
+  });
+  m.def("angular_momentum", [](const Scene& scene, const Array& omega, const Array& attitude) {
+    Array L({omega.shape(0), py::ssize_t{3}});
+    compute_angular_momentum(scene, rows(omega), omega.data(), attitude.data(), L.mutable_data());
+    return L;
+  });
+  m.def("drift", [](const Scene& scene, const Array& t, const py::object& omega, const py::object& attitude) {
+    Motion motion;
+    motion.t0 = scene.t0();
+    const auto fill = [](const Array& array) { return std::vector<double>(array.data(), array.data() + array.size()); };
+    motion.t = fill(t);
+    if (!omega.is_none()) motion.omega = fill(omega.cast<Array>());
+    if (!attitude.is_none()) motion.attitude = fill(attitude.cast<Array>());
+    return compute_drift(scene, motion);
+  });
+  m.def("generalised_forces", [](py::handle torque, py::handle angles) {
+    const Vector3d tau_B = to_vector3(torque, "torque"), q = to_vector3(angles, "angles");
+    return from_vector3(LagrangianProblem<NoTorque>::compute_rate_map(q[1], q[2]).transpose() * tau_B);
+  });
+}
 
 }  // namespace polhode::python

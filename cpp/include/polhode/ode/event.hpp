@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <vector>
+
+namespace polhode::ode {
+
+/// A function of the solution whose zeros are wanted.
+struct Event {
+  std::function<double(double t, const double* y)> function;
+  int direction = 0;       ///< +1: only where it rises along the integration, -1: only where it falls, 0: both
+  bool terminal = false;   ///< the integration ends at the first zero
+};
+
+struct EventHit {
+  int event;               ///< index of the event
+  double t;
+  std::vector<double> y;
+};
+
+/// Follows the sign of one event function along the integration and finds each zero once.
+class EventTracker {
+ public:
+  EventTracker(const Event& event, double t, const double* y) : event_(&event) { side_ = sign(event.function(t, y)); t_ = t; }
+
+  /// Looks at the piece (previous time, t]; `evaluate(t, y)` gives the solution there. True when a zero of the wanted
+  /// direction lies in it, at `root`.
+  template <class Evaluate>
+  bool crosses(double t, const double* y, Evaluate&& evaluate, long& count, double& root) {
+    const double value = call(t, y, count);
+    const int side = sign(value);
+    const double start = t_;
+    t_ = t;
+    if (side_ == 0 || side == side_) {
+      if (side_ == 0) side_ = side;
+      return false;
+    }
+    const int before = side_;
+    side_ = side == 0 ? -before : side;      // an exact zero counts as crossed, so it is not met a second time
+    root = side == 0 ? t : bisect(start, t, before, evaluate, count);
+    const bool repeated = found_ && root == last_root_;
+    found_ = true;
+    last_root_ = root;
+    return !repeated && (event_->direction == 0 || event_->direction == side_);
+  }
+
+ private:
+  static int sign(double value) { return (value > 0) - (value < 0); }
+  double call(double t, const double* y, long& count) {
+    ++count;
+    return event_->function(t, y);
+  }
+
+  /// Interpolate-truncate-project root finding (Oliveira & Takahashi 2021, ACM TOMS 47, 5) would save a few calls;
+  /// the Illinois rule with bisection behind it needs no parameter and also ends at neighbouring doubles.
+  template <class Evaluate>
+  double bisect(double a, double b, int side_a, Evaluate&& evaluate, long& count) {
+    double y[64];
+    evaluate(a, y);
+    double fa = call(a, y, count);
+    if (sign(fa) != side_a) fa = 0.0;         // the piece's own end disagrees by rounding: only bisect
+    evaluate(b, y);
+    double fb = call(b, y, count);
+    int stalled = 0;
+    for (int i = 0; i < 200; ++i) {
+      double m = 0.5 * (a + b);
+      if (m == a || m == b) break;
+      if (fa != 0.0 && fb != 0.0 && fa != fb && stalled < 3) {
+        const double secant = b - fb * (b - a) / (fb - fa);
+        if ((secant > a && secant < b) || (secant < a && secant > b)) m = secant;
+      }
+      evaluate(m, y);
+      const double fm = call(m, y, count);
+      if (fm == 0.0) return m;
+      const double width = std::abs(b - a);
+      if (sign(fm) == side_a) {
+        a = m;
+        fa = fm;
+        if (fb != 0.0) fb *= 0.5;
+      } else {
+        b = m;
+        fb = fm;
+        if (fa != 0.0) fa *= 0.5;
+      }
+      stalled = std::abs(b - a) > 0.5 * width ? stalled + 1 : 0;
+    }
+    return b;
+  }
+
+  const Event* event_;
+  int side_ = 0;
+  double t_ = 0.0, last_root_ = 0.0;
+  bool found_ = false;
+};
+
+}  // namespace polhode::ode

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <concepts>
+
+namespace polhode::ode {
+
+/// y' = f(t, y) on a plain array of `dimension` numbers, and how its errors are measured.
+template <class P>
+concept Problem = requires(const P& problem, double t, const double* y, double* out) {
+  { P::dimension } -> std::convertible_to<int>;
+  problem.compute_derivative(t, y, out);
+  /// |error| against the sizes of y at both ends of the step, in units of (atol + rtol size): 1 is just acceptable.
+  { problem.error_norm(y, y, y, t, t) } -> std::convertible_to<double>;
+  /// Brings y, and its derivative with it, back to where it belongs (a unit quaternion); called after each accepted step.
+  problem.restore(out, out);
+};
+
+struct Tolerances {
+  double rtol = 1e-9;
+  double atol = 0.0;
+};
+
+/// What a run cost.
+struct Counts {
+  long steps = 0;           ///< accepted
+  long rejected = 0;
+  long derivatives = 0;     ///< right-hand sides
+  long events = 0;          ///< evaluations of event functions
+};
+
+}  // namespace polhode::ode

@@ -1,0 +1,172 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "polhode/ode/problem.hpp"
+#include "polhode/ode/step_control.hpp"
+
+namespace polhode::ode {
+
+enum class StepResult { accepted, underflow, not_finite };
+
+/// Any embedded explicit Runge-Kutta pair whose last stage is the next step's first, with a continuous extension of
+/// order 4 made of the cubic Hermite polynomial and one quartic bump. The tableau is data; nothing here knows it.
+template <class Tableau, Problem P>
+class RungeKuttaStepper {
+ public:
+  static constexpr int N = P::dimension;
+  static constexpr int segment_size = 5 * N;      ///< numbers that describe one step for evaluate()
+
+  RungeKuttaStepper(const P& problem, double t0, const double* y0, double t_end, const Tolerances& tolerances)
+      : problem_(problem), control_(Tableau::error_order), tolerances_(tolerances), t_old_(t0), t_(t0) {
+    std::copy_n(y0, N, y_);
+    compute(t0, y_, k_[0]);
+    h_ = initial_step(t_end);
+  }
+
+  double t() const { return t_; }
+  double t_old() const { return t_old_; }
+  const double* y() const { return y_; }
+  double next_step() const { return h_; }
+  const Counts& counts() const { return counts_; }
+  long& event_count() { return counts_.events; }
+
+  /// One accepted step towards t_end and not beyond it.
+  StepResult advance(double t_end) {
+    const double direction = t_end < t_ ? -1.0 : 1.0;
+    if (fresh_) {
+      fresh_ = false;
+    } else {
+      std::copy_n(k_[Tableau::stages - 1], N, k_[0]);
+      problem_.restore(y_, k_[0]);
+    }
+    bool finite = true;
+    for (;;) {
+      const double rest = t_end - t_;
+      const bool last = std::abs(h_) * 1.01 >= std::abs(rest);
+      const double h = last ? rest : h_;
+      if (!(std::abs(h) > 8 * std::numeric_limits<double>::epsilon() * std::abs(t_)) && !last) {
+        return finite ? StepResult::underflow : StepResult::not_finite;
+      }
+      if (std::abs(h) < std::numeric_limits<double>::min()) return finite ? StepResult::underflow : StepResult::not_finite;
+      compute_stages(h, std::make_integer_sequence<int, Tableau::stages - 1>{});
+      combine_error(h);
+      const double error = problem_.error_norm(error_, y_, y_new_, tolerances_.rtol, tolerances_.atol);
+      if (error <= 1.0) {
+        t_old_ = t_;
+        t_ = last ? t_end : t_ + h;
+        h_taken_ = h;
+        const double next = h * control_.accepted(error);
+        // A step cut short by the end says little about the next one; keep the longer of the two.
+        h_ = last ? direction * std::max(std::abs(next), std::abs(h_)) : next;
+        std::copy_n(y_, N, y_old_);
+        std::copy_n(y_new_, N, y_);
+        segment_ready_ = false;
+        ++counts_.steps;
+        return StepResult::accepted;
+      }
+      finite = std::isfinite(error);
+      ++counts_.rejected;
+      h_ = h * control_.rejected(error);
+    }
+  }
+
+  /// y at a time within the last step.
+  void interpolate(double t, double* out) {
+    prepare_segment();
+    evaluate(segment_, (t - t_old_) / h_taken_, out);
+  }
+
+  const double* segment() {
+    prepare_segment();
+    return segment_;
+  }
+
+  /// The continuous extension at the fraction s of a step: the cubic Hermite polynomial in nested form, and the bump.
+  static void evaluate(const double* segment, double s, double* out) {
+    const double r = 1.0 - s;
+    for (int i = 0; i < N; ++i) {
+      const double* c = segment + 5 * i;
+      out[i] = c[0] + s * (c[1] + r * (c[2] + s * (c[3] + r * c[4])));
+    }
+  }
+
+ private:
+  void compute(double t, const double* y, double* dydt) {
+    problem_.compute_derivative(t, y, dydt);
+    ++counts_.derivatives;
+  }
+
+  template <int... S>
+  void compute_stages(double h, std::integer_sequence<int, S...>) {
+    (compute_stage<S + 1>(h, std::make_integer_sequence<int, S + 1>{}), ...);
+  }
+
+  template <int S, int... J>
+  void compute_stage(double h, std::integer_sequence<int, J...>) {
+    for (int i = 0; i < N; ++i) {
+      double sum = 0.0;
+      ((Tableau::a[S][J] != 0.0 ? void(sum += Tableau::a[S][J] * k_[J][i]) : void()), ...);
+      y_new_[i] = y_[i] + h * sum;
+    }
+    compute(t_ + Tableau::c[S] * h, y_new_, k_[S]);
+  }
+
+  void combine_error(double h) {
+    for (int i = 0; i < N; ++i) {
+      double sum = 0.0;
+      for (int s = 0; s < Tableau::stages; ++s) sum += Tableau::error[s] * k_[s][i];
+      error_[i] = h * sum;
+    }
+  }
+
+  void prepare_segment() {
+    if (segment_ready_) return;
+    segment_ready_ = true;
+    const double h = h_taken_;
+    for (int i = 0; i < N; ++i) {
+      double bump = 0.0;
+      for (int s = 0; s < Tableau::stages; ++s) bump += Tableau::bump[s] * k_[s][i];
+      double* c = segment_ + 5 * i;
+      c[0] = y_old_[i];
+      c[1] = y_[i] - y_old_[i];
+      c[2] = h * k_[0][i] - c[1];
+      c[3] = c[1] - h * k_[Tableau::stages - 1][i] - c[2];
+      c[4] = h * bump;
+    }
+  }
+
+  /// Hairer, Norsett, Wanner 1993, Solving ODEs I, sec. II.4, algorithm 4.14.
+  double initial_step(double t_end) {
+    const double span = t_end - t_, direction = span < 0 ? -1.0 : 1.0;
+    if (span == 0.0) return 0.0;
+    const double d0 = problem_.error_norm(y_, y_, y_, tolerances_.rtol, tolerances_.atol);
+    const double d1 = problem_.error_norm(k_[0], y_, y_, tolerances_.rtol, tolerances_.atol);
+    double h0 = d0 > 0 && d1 > 0 && std::isfinite(d1) ? 0.01 * d0 / d1 : 1e-3 * std::abs(span);
+    h0 = std::min(h0, std::abs(span));
+    double y1[N], f1[N], change[N];
+    for (int i = 0; i < N; ++i) y1[i] = y_[i] + direction * h0 * k_[0][i];
+    compute(t_ + direction * h0, y1, f1);
+    for (int i = 0; i < N; ++i) change[i] = (f1[i] - k_[0][i]) / h0;
+    const double d2 = problem_.error_norm(change, y_, y1, tolerances_.rtol, tolerances_.atol);
+    const double largest = std::max(d2, std::isfinite(d1) ? d1 / std::max(std::abs(span), h0) : 0.0);
+    const double h1 = largest > 0 ? std::pow(0.01 / largest, 1.0 / Tableau::order) : 100 * h0;
+    const double h = std::isfinite(h1) ? std::min(100 * h0, h1) : h0;
+    return direction * std::min(h, std::abs(span));
+  }
+
+  const P& problem_;
+  StepControl control_;
+  Tolerances tolerances_;
+  Counts counts_;
+  double t_old_, t_, h_ = 0.0, h_taken_ = 0.0;
+  bool fresh_ = true, segment_ready_ = false;
+  double y_[N], y_old_[N] = {}, y_new_[N] = {}, error_[N] = {};
+  double k_[Tableau::stages][N] = {};
+  double segment_[segment_size] = {};
+};
+
+}  // namespace polhode::ode

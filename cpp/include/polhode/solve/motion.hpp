@@ -1,0 +1,53 @@
+#pragma once
+
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "polhode/core/state.hpp"
+#include "polhode/ode/dense_output.hpp"
+#include "polhode/ode/problem.hpp"
+#include "polhode/scene/scene.hpp"
+
+namespace polhode {
+
+/// How a solve ended.
+enum class Status { finished, event, max_steps, stopped, failed };
+std::string_view to_text(Status status);
+
+/// Which model and method were taken.
+struct Plan {
+  std::string model;      ///< "euler" | "lagrangian"
+  std::string method;     ///< a name of ph.methods()
+  std::string state;      ///< what is carried along: "omega", "omega, attitude", ...
+};
+
+struct MotionEvent {
+  int event;              ///< index of the event in the list that was given
+  State state;
+};
+
+/// The answer: where the body points and how fast it spins, at the times asked for, in the order asked for.
+/// Times that were not reached are left out. `omega` is (n, 3) and `attitude` (n, 4), row by row, empty when not wanted.
+struct Motion {
+  std::vector<double> t, omega, attitude;
+  Status status = Status::finished;
+  std::string message;
+  ode::Counts stats;
+  Plan plan;
+  double error = std::numeric_limits<double>::quiet_NaN();   ///< NaN: not estimated
+  std::string error_kind = "not estimated";
+  double asked = 0.0;                    ///< the accuracy, or the relative tolerance, that was asked for
+  std::vector<MotionEvent> events;
+  ode::DenseOutput dense_forward, dense_backward;
+  bool has_dense = false;
+  void (*unpack)(const double* y, double* omega, double* attitude) = nullptr;   ///< a dense state as omega and attitude
+  double t0 = 0.0;
+  double t_reached = 0.0;
+
+  /// The state at any time within the span, from the continuous extension. @throws InvalidInput without dense=true.
+  State at(double time) const;
+};
+
+}  // namespace polhode

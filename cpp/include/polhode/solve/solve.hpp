@@ -1,0 +1,42 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "polhode/solve/motion.hpp"
+
+namespace polhode {
+
+/// A function of time and state whose zeros are wanted.
+struct SceneEvent {
+  std::function<double(const State&)> function;
+  int direction = 0;       ///< +1: where it rises along the integration, -1: where it falls, 0: both
+  bool terminal = false;   ///< the run ends at its first zero
+};
+
+/// Euler's equations, or Lagrange's in the textbook's z-x-z angles (which fail where theta is 0 or pi).
+enum class Formulation { euler, lagrangian };
+
+struct SolveOptions {
+  std::optional<double> accuracy = {};    ///< of every sample, 0 < accuracy <= 1; excludes rtol and atol
+  std::optional<std::string> method = {}; ///< a name of ode::methods(); without it the best there is
+  std::optional<double> rtol = {};        ///< relative tolerance of a step
+  std::optional<double> atol = {};        ///< absolute tolerance of a step, in rad/s and in quaternion components
+  std::optional<double> step = {};        ///< [s], for fixed-step methods alone
+  long max_steps = 10'000'000;
+  bool dense = false;                     ///< keep the continuous extension, for motion.at(t)
+  Formulation formulation = Formulation::euler;
+  std::vector<SceneEvent> events = {};
+  /// Called about twenty times a second with the time reached and the last time; false ends the run.
+  std::function<bool(double reached, double last)> progress = {};
+};
+
+/// Turns the body. @throws InvalidInput for options that contradict each other; what a torque throws comes through.
+Motion solve(const Scene& scene, const SolveOptions& options = {});
+
+/// False when the run did not reach its end, or an invariant that should hold moved by more than was asked.
+bool succeeded(const Scene& scene, const Motion& motion);
+
+}  // namespace polhode

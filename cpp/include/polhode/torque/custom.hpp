@@ -1,0 +1,65 @@
+#pragma once
+
+#include <memory>
+#include <type_traits>
+
+#include "polhode/torque/record.hpp"
+
+namespace polhode::torques {
+
+/// A user's own torque: a compiled function with a C signature, or any C++ callable.
+class Custom {
+ public:
+  /// omega: w_B, 3 numbers; attitude: unit q_WB, 4 numbers (x, y, z, w); torque: tau_B, 3 numbers to be written.
+  using Function = void (*)(double t, const double* omega, const double* attitude, double* torque, void* data);
+  /// The potential energy [J], for the energy's drift.
+  using Potential = double (*)(double t, const double* attitude, void* data);
+
+  /// What the function looks at; a false claim here makes plans wrong, so claim nothing when in doubt.
+  struct Claims {
+    bool uses_time = true;
+    bool uses_attitude = true;
+    bool uses_rates = true;
+  };
+
+  /// @param owner  kept alive as long as this torque is, for functions whose data has an owner
+  Custom(Function function, void* data, const Claims& claims, Potential potential = nullptr,
+         std::shared_ptr<const void> owner = nullptr);
+  explicit Custom(Function function, void* data = nullptr) : Custom(function, data, Claims{}) {}
+
+  /// From a callable `void(double t, const double* omega, const double* attitude, double* torque)`.
+  template <class Callable>
+    requires(std::is_invocable_v<Callable&, double, const double*, const double*, double*>)
+  static Custom from(Callable callable, const Claims& claims) {
+    auto owner = std::make_shared<Callable>(std::move(callable));
+    const Function call = [](double t, const double* omega, const double* attitude, double* torque, void* data) {
+      (*static_cast<Callable*>(data))(t, omega, attitude, torque);
+    };
+    void* data = owner.get();
+    return Custom(call, data, claims, nullptr, std::move(owner));
+  }
+
+  static const TorqueRecord& record();
+
+  TorqueTraits traits() const {
+    return {.uses_time = claims_.uses_time,
+            .uses_attitude = claims_.uses_attitude,
+            .uses_rates = claims_.uses_rates,
+            .has_potential = potential_ != nullptr};
+  }
+
+  /// @throws InvalidInput when the function returns what is not finite; its own exceptions come through.
+  void add(const TorqueInput& in, double* tau_B) const;
+  double compute_potential(const TorqueInput& in) const;
+
+  const std::shared_ptr<const void>& owner() const { return owner_; }
+
+ private:
+  Function function_;
+  void* data_;
+  Claims claims_;
+  Potential potential_;
+  std::shared_ptr<const void> owner_;
+};
+
+}  // namespace polhode::torques

@@ -1,0 +1,105 @@
+#include "polhode/solve/invariants.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace polhode {
+namespace {
+
+double compute_kinetic(const Matrix3d& I, const double* w) {
+  double sum = 0.0;
+  for (int i = 0; i < 3; ++i) sum += w[i] * (I(i, 0) * w[0] + I(i, 1) * w[1] + I(i, 2) * w[2]);
+  return 0.5 * sum;
+}
+
+double compute_potential(const Scene& scene, double t, const double* omega, const double* attitude) {
+  double sum = 0.0;
+  const TorqueInput in{t, omega, attitude, scene.inertia_B().matrix()};
+  for (const AnyTorque& torque : scene.torques()) {
+    std::visit([&](const auto& one) { sum += one.compute_potential(in); }, torque);
+  }
+  return sum;
+}
+
+/// |a - b| / scale, and 0 where nothing is there to move.
+double relative(double difference, double scale) {
+  return difference == 0.0 ? 0.0 : std::abs(difference) / scale;
+}
+
+}  // namespace
+
+void compute_energy(const Scene& scene, std::size_t n, const double* t, const double* omega, const double* attitude,
+                    double* energy) {
+  static constexpr double identity[4] = {0, 0, 0, 1};
+  for (std::size_t i = 0; i < n; ++i) {
+    const double* q = attitude != nullptr ? attitude + 4 * i : identity;
+    energy[i] = compute_kinetic(scene.inertia_B().matrix(), omega + 3 * i);
+    if (!scene.torques().empty()) energy[i] += compute_potential(scene, t[i], omega + 3 * i, q);
+  }
+}
+
+void compute_angular_momentum(const Scene& scene, std::size_t n, const double* omega, const double* attitude,
+                              double* L_W) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const double *w = omega + 3 * i, *q = attitude + 4 * i;
+    const Vector3d L_B = scene.inertia_B().matrix() * Vector3d{w[0], w[1], w[2]};
+    const Vector3d L = rotate({q[0], q[1], q[2], q[3]}, L_B);
+    std::copy_n(L.data(), 3, L_W + 3 * i);
+  }
+}
+
+std::map<std::string, double> compute_drift(const Scene& scene, const Motion& motion) {
+  std::map<std::string, double> drift;
+  const std::size_t n = motion.t.size();
+  if (motion.omega.empty() || n == 0) return drift;
+  const TorqueSum& sum = scene.torque_sum();
+  const bool free = scene.torques().empty();
+  const bool has_attitude = !motion.attitude.empty();
+  const bool sees_energy = free || (sum.has_potential && has_attitude);
+
+  const Quat& q0 = scene.attitude();
+  const double start_attitude[4] = {q0.x, q0.y, q0.z, q0.w};
+  const double* start_omega = scene.omega().data();
+
+  std::vector<double> L(has_attitude ? 3 * n : 0);
+  double L0[3] = {};
+  double largest_L = 0.0;
+  if (has_attitude) {
+    compute_angular_momentum(scene, n, motion.omega.data(), motion.attitude.data(), L.data());
+    compute_angular_momentum(scene, 1, start_omega, start_attitude, L0);
+    for (std::size_t i = 0; i < n; ++i) largest_L = std::max(largest_L, std::hypot(L[3 * i], L[3 * i + 1], L[3 * i + 2]));
+    largest_L = std::max(largest_L, std::hypot(L0[0], L0[1], L0[2]));
+  }
+  if (free && has_attitude) {
+    double moved = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      moved = std::max(moved, std::hypot(L[3 * i] - L0[0], L[3 * i + 1] - L0[1], L[3 * i + 2] - L0[2]));
+    }
+    drift["angular_momentum"] = relative(moved, std::hypot(L0[0], L0[1], L0[2]));
+  }
+  if (!free && sum.keeps_vertical && has_attitude) {
+    double moved = 0.0;
+    for (std::size_t i = 0; i < n; ++i) moved = std::max(moved, std::abs(L[3 * i + 2] - L0[2]));
+    drift["vertical_momentum"] = relative(moved, largest_L);
+  }
+  if (sees_energy && (sum.keeps_energy || (sum.keeps_jacobi && has_attitude))) {
+    const double rate = sum.keeps_energy ? 0.0 : sum.pattern_rate;
+    double start_energy = 0.0, largest_T = compute_kinetic(scene.inertia_B().matrix(), start_omega);
+    compute_energy(scene, 1, &motion.t0, start_omega, start_attitude, &start_energy);
+    double largest_V = std::abs(start_energy - largest_T), moved = 0.0;
+    std::vector<double> energy(n);
+    compute_energy(scene, n, motion.t.data(), motion.omega.data(), has_attitude ? motion.attitude.data() : nullptr,
+                   energy.data());
+    for (std::size_t i = 0; i < n; ++i) {
+      const double T = compute_kinetic(scene.inertia_B().matrix(), motion.omega.data() + 3 * i);
+      largest_V = std::max(largest_V, std::abs(energy[i] - T));
+      largest_T = std::max(largest_T, T);
+      const double turned = rate == 0.0 ? 0.0 : rate * (L[3 * i + 2] - L0[2]);
+      moved = std::max(moved, std::abs(energy[i] - start_energy - turned));
+    }
+    drift[sum.keeps_energy ? "energy" : "jacobi"] = relative(moved, largest_T + largest_V);
+  }
+  return drift;
+}
+
+}  // namespace polhode

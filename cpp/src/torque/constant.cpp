@@ -1,0 +1,30 @@
+#include "polhode/torque/constant.hpp"
+
+#include "checks.hpp"
+
+namespace polhode::torques {
+
+Constant::Constant(const Vector3d& torque, Frame frame) : torque_(torque), frame_(frame) {
+  require_finite("Constant.torque", torque.data(), 3);
+}
+
+const TorqueRecord& Constant::record() {
+  using Kind = TorqueParameter::Kind;
+  static constexpr TorqueParameter parameters[] = {
+      {"torque", Kind::vector, "N m", "its components in the frame named"},
+      {"frame", Kind::choice, "", "the axes in which the components are constant", "body", "body|space"},
+  };
+  static constexpr TorqueRecord record{
+      "Constant", "constant", "A torque with constant components, in body axes (a thruster) or in space axes.",
+      "Goldstein, Poole, Safko 2002, Classical Mechanics, sec. 5.5", parameters};
+  return record;
+}
+
+Constant Constant::from_values(std::span<const TorqueValue> values) {
+  return Constant(std::get<Vector3d>(values[0]),
+                  std::get<std::string>(values[1]) == "body" ? Frame::body : Frame::space);
+}
+
+TorqueValues Constant::values() const { return {torque_, std::string(frame_ == Frame::body ? "body" : "space")}; }
+
+}  // namespace polhode::torques

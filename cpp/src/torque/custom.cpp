@@ -1,0 +1,49 @@
+#include "polhode/torque/custom.hpp"
+
+#include <cmath>
+
+#include "checks.hpp"
+
+namespace polhode::torques {
+namespace {
+
+void normalise(const double* q, double* unit) {
+  const double s = 1.0 / std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  for (int i = 0; i < 4; ++i) unit[i] = s * q[i];
+}
+
+}  // namespace
+
+Custom::Custom(Function function, void* data, const Claims& claims, Potential potential,
+               std::shared_ptr<const void> owner)
+    : function_(function), data_(data), claims_(claims), potential_(potential), owner_(std::move(owner)) {
+  if (function_ == nullptr) throw InvalidInput("Custom.function", "a function", "a null pointer");
+}
+
+const TorqueRecord& Custom::record() {
+  static constexpr TorqueRecord record{"Custom", "custom",
+                                       "A torque of the user's own: a Python callable or a compiled function pointer.",
+                                       "", {}};
+  return record;
+}
+
+void Custom::add(const TorqueInput& in, double* tau_B) const {
+  double unit[4], torque[3] = {NAN, NAN, NAN};
+  normalise(in.attitude, unit);
+  function_(in.t, in.omega, unit, torque, data_);
+  for (int i = 0; i < 3; ++i) {
+    if (!std::isfinite(torque[i])) {
+      throw InvalidInput("the torque's function", "finite in all three components",
+                         to_text(torque[i]) + " in component " + std::to_string(i) + " at t = " + to_text(in.t) + " s");
+    }
+    tau_B[i] += torque[i];
+  }
+}
+
+double Custom::compute_potential(const TorqueInput& in) const {
+  double unit[4];
+  normalise(in.attitude, unit);
+  return potential_ == nullptr ? 0.0 : potential_(in.t, unit, data_);
+}
+
+}  // namespace polhode::torques

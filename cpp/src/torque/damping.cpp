@@ -1,0 +1,21 @@
+#include "polhode/torque/damping.hpp"
+
+#include "checks.hpp"
+
+namespace polhode::torques {
+
+Damping::Damping(const Matrix3d& matrix) : matrix_(matrix) { require_finite("Damping.matrix", matrix_.data(), 9); }
+
+const TorqueRecord& Damping::record() {
+  using Kind = TorqueParameter::Kind;
+  static constexpr TorqueParameter parameters[] = {
+      {"matrix", Kind::matrix, "N m s", "C in body axes; three numbers stand for a diagonal matrix"},
+  };
+  static constexpr TorqueRecord record{"Damping", "damping", "Linear damping: tau_B = -C w_B.",
+                                       "Hughes 1986, Spacecraft Attitude Dynamics, sec. 5.2", parameters};
+  return record;
+}
+
+Damping Damping::from_values(std::span<const TorqueValue> values) { return Damping(std::get<Matrix3d>(values[0])); }
+
+}  // namespace polhode::torques

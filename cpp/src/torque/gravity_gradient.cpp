@@ -1,0 +1,29 @@
+#include "polhode/torque/gravity_gradient.hpp"
+
+#include "checks.hpp"
+
+namespace polhode::torques {
+
+GravityGradient::GravityGradient(double mean_motion, double phase) : mean_motion_(mean_motion), phase_(phase) {
+  require_finite("GravityGradient.mean_motion", &mean_motion_, 1);
+  require_finite("GravityGradient.phase", &phase_, 1);
+}
+
+const TorqueRecord& GravityGradient::record() {
+  using Kind = TorqueParameter::Kind;
+  static constexpr TorqueParameter parameters[] = {
+      {"mean_motion", Kind::real, "rad/s", "n, the rate of the circular orbit, which lies in the plane z = 0 of space"},
+      {"phase", Kind::real, "rad", "the orbit angle from space x at t = 0", "0"},
+  };
+  static constexpr TorqueRecord record{
+      "GravityGradient", "gravity_gradient",
+      "Gravity gradient on a circular orbit: tau_B = 3 n^2 u x (I u), u = R_WB^T (cos a, sin a, 0), a = n t + phase.",
+      "Hughes 1986, Spacecraft Attitude Dynamics, sec. 8.1", parameters};
+  return record;
+}
+
+GravityGradient GravityGradient::from_values(std::span<const TorqueValue> values) {
+  return GravityGradient(std::get<double>(values[0]), std::get<double>(values[1]));
+}
+
+}  // namespace polhode::torques

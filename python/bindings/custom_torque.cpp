@@ -1,0 +1,170 @@
+#include "custom_torque.hpp"
+
+#include <cstdint>
+
+#include "convert.hpp"
+#include "polhode/core/error.hpp"
+#include "polhode/torque/custom.hpp"
+
+namespace polhode::python {
+namespace {
+
+using torques::Custom;
+
+/// What Python gave, kept alive with the torque. Its references are dropped with the GIL held.
+struct Owner {
+  py::object function, potential, data;
+  Custom::Claims claims;
+
+  ~Owner() {
+    if (!Py_IsInitialized()) {
+      function.release(), potential.release(), data.release();
+      return;
+    }
+    py::gil_scoped_acquire gil;
+    function = py::object(), potential = py::object(), data = py::object();
+  }
+};
+
+void call_python(double t, const double* omega, const double* attitude, double* torque, void* data) {
+  py::gil_scoped_acquire gil;
+  const Owner& owner = *static_cast<const Owner*>(data);
+  Array w(3), q(4);
+  std::copy_n(omega, 3, w.mutable_data());
+  std::copy_n(attitude, 4, q.mutable_data());
+  const py::object result = owner.function(t, w, q);
+  const Array tau = to_array(result, "the torque's function");
+  if (tau.ndim() != 1 || tau.shape(0) != 3) {
+    throw InvalidInput("the torque's function", "one that returns three numbers",
+                       "shape " + std::string(py::str(result.attr("__class__"))) + " of size " + std::to_string(tau.size()));
+  }
+  std::copy_n(tau.data(), 3, torque);
+}
+
+double call_python_potential(double t, const double* attitude, void* data) {
+  py::gil_scoped_acquire gil;
+  const Owner& owner = *static_cast<const Owner*>(data);
+  Array q(4);
+  std::copy_n(attitude, 4, q.mutable_data());
+  return to_real(owner.potential(t, q), "the torque's potential");
+}
+
+/// The address of a compiled function: numba's cfunc has `.address`, ctypes' function types are cast; 0 for anything else.
+std::uintptr_t find_address(py::handle function) {
+  if (py::isinstance<py::capsule>(function)) {
+    const py::capsule capsule = py::reinterpret_borrow<py::capsule>(function);
+    return reinterpret_cast<std::uintptr_t>(PyCapsule_GetPointer(capsule.ptr(), PyCapsule_GetName(capsule.ptr())));
+  }
+  if (py::hasattr(function, "address")) return function.attr("address").cast<std::uintptr_t>();
+  const py::module_ ctypes = py::module_::import("ctypes");
+  if (py::isinstance(function, ctypes.attr("_CFuncPtr"))) {
+    const py::object value = ctypes.attr("cast")(function, ctypes.attr("c_void_p")).attr("value");
+    return value.is_none() ? 0 : value.cast<std::uintptr_t>();
+  }
+  return 0;
+}
+
+bool is_compiled(py::handle function) {
+  return py::isinstance<py::capsule>(function) || py::hasattr(function, "address") ||
+         (py::hasattr(py::type::of(function), "_flags_") && py::hasattr(py::type::of(function), "_restype_"));
+}
+
+Custom make_custom(const py::object& function, bool uses_time, bool uses_attitude, bool uses_rates,
+                   const py::object& potential, const py::object& data) {
+  auto owner = std::make_shared<Owner>();
+  owner->function = function;
+  owner->potential = potential;
+  owner->data = data;
+  owner->claims = {uses_time, uses_attitude, uses_rates};
+  if (is_compiled(function)) {
+    const std::uintptr_t address = find_address(function);
+    const std::uintptr_t user = data.is_none() ? 0 : data.cast<std::uintptr_t>();
+    Custom::Potential compiled_potential = nullptr;
+    if (!potential.is_none()) {
+      if (!is_compiled(potential)) {
+        throw InvalidInput("Custom.potential", "compiled where the function is", std::string(py::repr(potential)));
+      }
+      compiled_potential = reinterpret_cast<Custom::Potential>(find_address(potential));
+    }
+    return Custom(reinterpret_cast<Custom::Function>(address), reinterpret_cast<void*>(user), owner->claims,
+                  compiled_potential, owner);
+  }
+  if (!PyCallable_Check(function.ptr())) {
+    throw InvalidInput("Custom.function", "callable as function(t, omega, attitude)",
+                       std::string(py::str(py::type::of(function))));
+  }
+  if (!potential.is_none() && !PyCallable_Check(potential.ptr())) {
+    throw InvalidInput("Custom.potential", "callable as potential(t, attitude)", std::string(py::str(py::type::of(potential))));
+  }
+  if (!data.is_none()) {
+    throw InvalidInput("Custom.data", "left out for a Python callable", std::string(py::repr(data)),
+                       "only a compiled function is handed a pointer");
+  }
+  void* pointer = owner.get();
+  return Custom(&call_python, pointer, owner->claims, potential.is_none() ? nullptr : &call_python_potential,
+                std::move(owner));
+}
+
+py::tuple get_state(const Custom& torque) {
+  const Owner& owner = *static_cast<const Owner*>(torque.owner().get());
+  return py::make_tuple(owner.function, owner.claims.uses_time, owner.claims.uses_attitude, owner.claims.uses_rates,
+                        owner.potential, owner.data);
+}
+
+constexpr const char* doc =
+    R"doc(Custom(function, *, uses_time=True, uses_attitude=True, uses_rates=True, potential=None, data=None)
+
+A torque of your own.
+
+Parameters
+----------
+function : callable or compiled function pointer
+    A Python callable ``function(t, omega, attitude)`` that returns the torque in body axes, shape (3,) [N m]; omega is
+    in body axes, shape (3,) [rad/s], attitude is the unit quaternion (x, y, z, w). Or a function with the C signature
+    ``void (double t, const double *omega, const double *attitude, double *torque, void *data)`` as a numba ``cfunc``,
+    a ctypes function or a capsule: it is called with no Python in the loop.
+uses_time, uses_attitude, uses_rates : bool
+    What the function looks at. A false claim makes answers wrong: claim only what is sure.
+potential : callable, optional
+    ``potential(t, attitude)`` [J], in the same form as the function
+    (``double (double t, const double *attitude, void *data)``), when the torque is conservative: energy is then watched.
+data : int, optional
+    The address handed to a compiled function.
+
+Raises
+------
+InvalidInput
+    For what cannot be called, or an answer that has another shape than (3,) or is not finite. What the function raises
+    comes through as it is.
+)doc";
+
+}  // namespace
+
+void bind_custom_torque(py::module_& m) {
+  py::class_<Custom> type(m, "Custom", doc);
+  type.def(py::init(&make_custom), py::arg("function"), py::kw_only(), py::arg("uses_time") = true,
+           py::arg("uses_attitude") = true, py::arg("uses_rates") = true, py::arg("potential") = py::none(),
+           py::arg("data") = py::none());
+  type.def_property_readonly("function", [](const Custom& torque) { return get_state(torque)[0]; });
+  type.def_property_readonly("traits", [](const Custom& torque) {
+    const TorqueTraits traits = torque.traits();
+    py::dict dict;
+    dict["uses_time"] = traits.uses_time;
+    dict["uses_attitude"] = traits.uses_attitude;
+    dict["uses_rates"] = traits.uses_rates;
+    dict["has_potential"] = traits.has_potential;
+    return dict;
+  });
+  type.def("__repr__", [](const Custom& torque) {
+    return "polhode.torques.Custom(" + std::string(py::repr(get_state(torque)[0])) + ")";
+  });
+  type.def("__eq__", [](const Custom& a, const py::object& b) {
+    return py::isinstance<Custom>(b) && get_state(a).equal(get_state(b.cast<const Custom&>()));
+  });
+  type.def("__hash__", [](const Custom& torque) { return py::hash(get_state(torque)[0]); });
+  type.def(py::pickle(&get_state, [](const py::tuple& s) {
+    return make_custom(s[0], s[1].cast<bool>(), s[2].cast<bool>(), s[3].cast<bool>(), s[4], s[5]);
+  }));
+}
+
+}  // namespace polhode::python
