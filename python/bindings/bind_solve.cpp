@@ -149,7 +149,7 @@ void bind_solve(py::module_& m) {
   });
   m.def("drift", [](const Scene& scene, const Array& t, const py::object& omega, const py::object& attitude) {
     Motion motion;
-    motion.t0 = scene.t0();
+    motion.start = scene.start();
     const auto fill = [](const Array& array) { return std::vector<double>(array.data(), array.data() + array.size()); };
     motion.t = fill(t);
     if (!omega.is_none()) motion.omega = fill(omega.cast<Array>());

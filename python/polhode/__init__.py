@@ -1,18 +1,21 @@
 """Rigid bodies that turn: where does the body point, and how fast does it spin, at time t?"""
 
-from . import inertia, shapes
-from ._core import FreeMotion, IntegrationFailure, InvalidInput, __version__, build_info
-from .inertia import InertiaTensor, MassProperties, PrincipalAxes
+from . import inertia as inertia
+from . import shapes as shapes
+from . import torques as torques
+from ._core import FreeMotion as FreeMotion
+from ._core import IntegrationFailure as IntegrationFailure
+from ._core import InvalidInput as InvalidInput
+from ._core import __version__ as __version__
+from ._core import build_info as build_info
+from .inertia import InertiaTensor as InertiaTensor
+from .inertia import MassProperties as MassProperties
+from .inertia import PrincipalAxes as PrincipalAxes
+from .motion import Motion as Motion
+from .scene import Scene as Scene
+from .solver import Event as Event
+from .solver import generalised_forces as generalised_forces
+from .solver import methods as methods
+from .solver import solve as solve
 
-__all__ = [
-    "FreeMotion",
-    "InertiaTensor",
-    "IntegrationFailure",
-    "InvalidInput",
-    "MassProperties",
-    "PrincipalAxes",
-    "__version__",
-    "build_info",
-    "inertia",
-    "shapes",
-]
+__all__ = sorted(name for name in globals() if not name.startswith("_")) + ["__version__"]

@@ -85,7 +85,7 @@ std::map<std::string, double> compute_drift(const Scene& scene, const Motion& mo
   if (sees_energy && (sum.keeps_energy || (sum.keeps_jacobi && has_attitude))) {
     const double rate = sum.keeps_energy ? 0.0 : sum.pattern_rate;
     double start_energy = 0.0, largest_T = compute_kinetic(scene.inertia_B().matrix(), start_omega);
-    compute_energy(scene, 1, &motion.t0, start_omega, start_attitude, &start_energy);
+    compute_energy(scene, 1, &motion.start.t, start_omega, start_attitude, &start_energy);
     double largest_V = std::abs(start_energy - largest_T), moved = 0.0;
     std::vector<double> energy(n);
     compute_energy(scene, n, motion.t.data(), motion.omega.data(), has_attitude ? motion.attitude.data() : nullptr,

@@ -1,6 +1,6 @@
 #include "polhode/solve/motion.hpp"
 
-#include <algorithm>
+#include <cmath>
 
 #include "polhode/core/error.hpp"
 
@@ -22,21 +22,19 @@ State Motion::at(double time) const {
     throw InvalidInput("motion(t)", "called on a motion solved with dense=True", "one without it",
                        "solve(scene, ..., dense=True) keeps the continuous extension");
   }
-  const double first = std::min({t0, dense_forward.t_end(), dense_backward.empty() ? t0 : dense_backward.t_end()});
-  const double last = std::max({t0, dense_forward.empty() ? t0 : dense_forward.t_end(), t0});
-  const double begin = dense_backward.empty() ? t0 : std::min(first, dense_backward.t_end());
-  if (!(time >= begin && time <= last)) {
-    throw InvalidInput("motion(t)", "a time between " + polhode::to_text(begin) + " and " + polhode::to_text(last) + " s",
+  const double begin = dense_backward.empty() ? start.t : dense_backward.t_end();
+  const double end = dense_forward.empty() ? start.t : dense_forward.t_end();
+  if (!(time >= begin && time <= end)) {
+    throw InvalidInput("motion(t)", "a time between " + polhode::to_text(begin) + " and " + polhode::to_text(end) + " s",
                        polhode::to_text(time));
   }
-  double y[64];
-  const ode::DenseOutput& dense = time < t0 || dense_forward.empty() ? dense_backward : dense_forward;
+  if (time == start.t) return start;
+  double y[64], q[4] = {NAN, NAN, NAN, NAN};
   State state;
   state.t = time;
-  double attitude[4] = {NAN, NAN, NAN, NAN};
-  dense(time, y);
-  unpack(y, state.omega.data(), attitude);
-  state.attitude = {attitude[0], attitude[1], attitude[2], attitude[3]};
+  (time < start.t ? dense_backward : dense_forward)(time, y);
+  unpack(y, state.omega.data(), q);
+  state.attitude = {q[0], q[1], q[2], q[3]};
   return state;
 }
 

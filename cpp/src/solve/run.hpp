@@ -36,7 +36,7 @@ Motion run(const Scene& scene, const P& problem, const RunOptions& options) {
   const Wanted want = scene.want();
   if (want.omega) motion.omega.resize(3 * n);
   if (want.attitude) motion.attitude.resize(4 * n);
-  motion.t0 = scene.t0();
+  motion.start = scene.start();
   motion.t_reached = scene.t0();
   motion.unpack = &P::unpack;
   motion.has_dense = options.asked.dense;

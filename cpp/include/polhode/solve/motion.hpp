@@ -43,7 +43,7 @@ struct Motion {
   ode::DenseOutput dense_forward, dense_backward;
   bool has_dense = false;
   void (*unpack)(const double* y, double* omega, double* attitude) = nullptr;   ///< a dense state as omega and attitude
-  double t0 = 0.0;
+  State start;
   double t_reached = 0.0;
 
   /// The state at any time within the span, from the continuous extension. @throws InvalidInput without dense=true.

@@ -1,0 +1,119 @@
+"""Scenes: a body, its start, its torques, and what is wanted."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+
+
+class Scene(_core.Scene):
+    """A body, its start, its torques, and the times at which the answer is wanted.
+
+    Parameters
+    ----------
+    inertia : InertiaTensor, or array_like of shape (3,) or (3, 3)
+        About the centre of mass, or about the pivot of a body held at one; three numbers are principal moments in the
+        body axes, unsorted is fine [kg m^2].
+    omega : array_like, shape (3,)
+        Angular velocity in body axes at `t0` [rad/s].
+    attitude : array_like, shape (4,), or Rotation
+        Unit quaternion (x, y, z, w) that takes body to space components, at `t0`. Default: the identity.
+    torques : iterable of torques, optional
+        See `polhode.torques`; several add up.
+    times : array_like, shape (n,)
+        Where the answer is wanted, in any order, before or after `t0` [s].
+    want : iterable of {"omega", "attitude"}
+        What is to be returned. The attitude is not computed when neither the caller nor a torque needs it.
+    t0 : float
+        Time of the start [s].
+    name : str
+        For tables and charts.
+
+    Raises
+    ------
+    InvalidInput
+        Naming what is wrong.
+    """
+
+    __slots__ = ()
+
+    def __init__(
+        self,
+        *,
+        inertia: Any,
+        omega: npt.ArrayLike,
+        attitude: Any = (0.0, 0.0, 0.0, 1.0),
+        torques: Iterable[Any] = (),
+        times: npt.ArrayLike,
+        want: Iterable[str] = ("omega", "attitude"),
+        t0: float = 0.0,
+        name: str = "",
+    ) -> None:
+        if not isinstance(torques, Iterable):
+            torques = (torques,)
+        super().__init__(inertia, omega, attitude, torques, times, want, t0, name)
+
+    @classmethod
+    def load(cls, source: str | os.PathLike[str]) -> Scene:
+        """Read a scene from a TOML file, or one of polhode's own by its name, such as "S1".
+
+        Raises
+        ------
+        InvalidInput
+            For a file that is not there or not TOML, and for a key that is unknown, missing or wrong, with its name.
+        """
+        from .schema import load_scene
+
+        return load_scene(source)
+
+    def _parts(self) -> dict[str, Any]:
+        return {
+            "inertia": self.inertia,
+            "omega": self.omega,
+            "attitude": self.attitude,
+            "torques": self.torques,
+            "times": np.array(self.times),
+            "want": self.want,
+            "t0": self.t0,
+            "name": self.name,
+        }
+
+    def replace(self, **changes: Any) -> Scene:
+        """Return a scene with some parts changed, by the names of the constructor."""
+        return type(self)(**{**self._parts(), **changes})
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restore, (type(self), self._parts())
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Scene):
+            return NotImplemented
+        mine, theirs = self._parts(), other._parts()
+        return all(np.array_equal(mine[k], theirs[k]) if k in ("omega", "attitude", "times") else mine[k] == theirs[k]
+                   for k in mine)
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.t0, self.want, self.omega.tobytes(), self.attitude.tobytes(), self.times.tobytes()))
+
+    def __repr__(self) -> str:
+        moments = ", ".join(f"{m:.6g}" for m in self.inertia.moments)
+        names = ", ".join(type(torque).__name__ for torque in self.torques) or "none"
+        times = self.times
+        return (f"Scene({self.name or 'unnamed'}: moments ({moments}), torques {names}, "
+                f"{times.size} times from {times.min():g} to {times.max():g} s)")
+
+
+def _restore(cls: type[Scene], parts: dict[str, Any]) -> Scene:
+    return cls(**parts)
+
+
+def scene_folder() -> pathlib.Path:
+    """Return the folder of the scenes that are installed with polhode."""
+    return pathlib.Path(_core.__file__).parent / "scenes"

@@ -1,0 +1,126 @@
+"""Solve a scene: the least model and the cheapest method that answer it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from .motion import Floats, Motion
+from .scene import Scene
+
+
+class Event:
+    """A function of time and state whose zeros are wanted.
+
+    Parameters
+    ----------
+    function : callable
+        ``function(t, omega, attitude) -> float``.
+    direction : {-1, 0, 1}
+        1: only zeros where it rises along the integration, -1: where it falls, 0: both.
+    terminal : bool
+        The run ends at its first zero.
+    """
+
+    __slots__ = ("direction", "function", "terminal")
+
+    def __init__(self, function: Callable[..., float], direction: int = 0, terminal: bool = False) -> None:
+        if not callable(function):
+            raise _core.InvalidInput(f"Event.function: must be callable, got {type(function).__name__}")
+        if direction not in (-1, 0, 1):
+            raise _core.InvalidInput(f"Event.direction: must be -1, 0 or 1, got {direction!r}")
+        self.function, self.direction, self.terminal = function, int(direction), bool(terminal)
+
+
+def _event(item: Any) -> tuple[Any, int, bool]:
+    event = item if isinstance(item, Event) else Event(
+        item, getattr(item, "direction", 0), bool(getattr(item, "terminal", False)))
+    return event.function, event.direction, event.terminal
+
+
+def solve(
+    scene: Scene,
+    accuracy: float | None = None,
+    *,
+    method: str | None = None,
+    rtol: float | None = None,
+    atol: float | None = None,
+    step: float | None = None,
+    max_steps: int = 10_000_000,
+    dense: bool = False,
+    formulation: str = "euler",
+    events: Iterable[Any] = (),
+    progress: Callable[[float, float], object] | None = None,
+) -> Motion:
+    """Turn the body of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    accuracy : float, optional
+        Of every sample: the larger of the error in omega, relative to the largest omega, and the angle of the attitude's
+        error [rad]. 0 < accuracy <= 1; 1e-9 when no tolerance is given either. It is aimed at by steps ten times finer and
+        not yet estimated: `motion.error` is NaN. Excludes rtol and atol.
+    method : str, optional
+        A name of `methods()`; without it the best there is for the scene.
+    rtol, atol : float, optional
+        Tolerances of a step. Rates are measured against their own size, the quaternion against 1; atol is added, in
+        rad/s and in quaternion components.
+    step : float, optional
+        Of fixed-step methods [s].
+    max_steps : int
+        Give up after so many steps; the result says so.
+    dense : bool
+        Keep the continuous extension, for ``motion(t)``.
+    formulation : {"euler", "lagrangian"}
+        Euler's equations with a quaternion, or Lagrange's in the textbook's z-x-z angles, which fail at theta = 0 or pi.
+    events : iterable of Event or callables
+        Zeros to be found; a callable may carry `direction` and `terminal` as attributes.
+    progress : callable, optional
+        ``progress(reached, last)``, about twenty times a second; False ends the run, and what was computed is returned.
+
+    Returns
+    -------
+    Motion
+
+    Raises
+    ------
+    InvalidInput
+        For options that contradict each other or have no effect. What a torque or event raises comes through.
+    """
+    if not isinstance(scene, Scene):
+        raise _core.InvalidInput(f"scene: must be a polhode.Scene, got {type(scene).__name__}")
+    if callable(events) or isinstance(events, Event):
+        events = (events,)
+    if not isinstance(max_steps, (int, np.integer)):
+        raise _core.InvalidInput(f"max_steps: must be a whole number, got {max_steps!r}")
+    result = _core.solve(scene, accuracy, method, rtol, atol, step, int(max_steps), bool(dense), str(formulation),
+                         [_event(item) for item in events], progress)
+    return Motion(scene, result)
+
+
+def methods() -> list[dict[str, Any]]:
+    """Return every method: name, order, order of the continuous extension, what it keeps, doc and source."""
+    return list(_core.method_records())
+
+
+def generalised_forces(torque: npt.ArrayLike, angles: npt.ArrayLike) -> Floats:
+    """Return Q_phi, Q_theta, Q_psi of a torque, for the textbook's z-x-z angles.
+
+    Parameters
+    ----------
+    torque : array_like, shape (3,)
+        In body axes [N m].
+    angles : array_like, shape (3,)
+        phi, theta, psi [rad].
+
+    Returns
+    -------
+    ndarray, shape (3,)
+        Q_psi is the torque's component along body z, Q_phi that along space z, Q_theta that along the line of nodes.
+    """
+    return _core.generalised_forces(torque, angles)

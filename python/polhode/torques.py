@@ -1,0 +1,18 @@
+"""Torques: what turns a body besides itself. Each class comes from one record of the compiled list."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from . import _core
+from ._core.torques import Constant, Custom, Damping, Gravity, GravityGradient
+
+__all__ = ["Constant", "Custom", "Damping", "Gravity", "GravityGradient", "records"]
+
+for _name in __all__[:-1]:
+    globals()[_name].__module__ = "polhode.torques"
+
+
+def records() -> list[dict[str, Any]]:
+    """Return what the list of torques tells: name, scene-file key, doc, source and parameters of each."""
+    return list(_core.torque_records())
