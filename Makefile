@@ -12,7 +12,7 @@ JOBS   ?= $(shell nproc)
 inputs := $(shell find CMakeLists.txt pyproject.toml cpp python tests/cpp benchmarks/cpp scenes \
             -type f -not -name '*.pyc' 2>/dev/null)
 
-.PHONY: help demo test check-long install sanitize stubs clean
+.PHONY: help demo test check-long install module sanitize stubs clean
 help:
 	@sed -n '1,3s/^# //p' Makefile
 
@@ -36,11 +36,17 @@ demo: install
 	@$(PYTHON) -m polhode chart scenes/S*.toml -o demo
 
 test: install
+	@cmake --build $(BUILD) -j $(JOBS) --target polhode_tests polhode_headers_alone | sed -n '/warning\|error/p'
 	@$(BUILD)/tests/cpp/polhode_tests
 	@$(PYTHON) -m pytest
 
 check-long: install
 	@$(PYTHON) -m pytest -m "long or not long"
+
+# After an edit of C++ alone: rebuild the module in place, without pip.
+module:
+	@cmake --build $(BUILD) -j $(JOBS) --target _core > /dev/null && cmake --install $(BUILD) --prefix \
+	  $$($(PYTHON) -c 'import sysconfig; print(sysconfig.get_paths()["platlib"])')/polhode > /dev/null
 
 # The C++ tests under the address and undefined-behaviour sanitizers.
 sanitize: $(VENV)/.ready

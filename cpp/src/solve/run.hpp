@@ -1,137 +1,19 @@
 #pragma once
 
-#include <algorithm>
-#include <string>
+#include <functional>
+#include <memory>
 
-#include "polhode/ode/drive.hpp"
-#include "polhode/ode/methods.hpp"
+#include "polhode/ode/stepper.hpp"
 #include "polhode/solve/solve.hpp"
 
 namespace polhode {
 
-/// What remains of the options once they have been checked.
-struct RunOptions {
-  const SolveOptions& asked;
-  ode::Tolerances tolerances;
-};
+using Unpack = void (*)(const double* y, double* omega, double* attitude);
+/// A stepper from the start state towards t_end.
+using MakeStepper = std::function<std::unique_ptr<ode::Stepper>(const double* y0, double t_end)>;
 
-/// The order in which the times are met: those at or after the start forwards, the others backwards.
-struct Itinerary {
-  std::vector<std::size_t> forward, backward;
-
-  Itinerary(const std::vector<double>& times, double t0) {
-    for (std::size_t i = 0; i < times.size(); ++i) (times[i] >= t0 ? forward : backward).push_back(i);
-    const auto before = [&](std::size_t a, std::size_t b) { return times[a] < times[b]; };
-    if (!std::is_sorted(forward.begin(), forward.end(), before)) std::stable_sort(forward.begin(), forward.end(), before);
-    std::stable_sort(backward.begin(), backward.end(), [&](std::size_t a, std::size_t b) { return times[a] > times[b]; });
-  }
-};
-
-/// One method on one problem: both directions of time, samples, events and dense output into a Motion.
-template <class Method, class P>
-Motion run(const Scene& scene, const P& problem, const RunOptions& options) {
-  Motion motion;
-  const std::vector<double>& times = scene.times();
-  const std::size_t n = times.size();
-  const Wanted want = scene.want();
-  if (want.omega) motion.omega.resize(3 * n);
-  if (want.attitude) motion.attitude.resize(4 * n);
-  motion.start = scene.start();
-  motion.t_reached = scene.t0();
-  motion.unpack = &P::unpack;
-  motion.has_dense = options.asked.dense;
-
-  const auto to_state = [](double t, const double* y) {
-    State state;
-    double attitude[4] = {NAN, NAN, NAN, NAN};
-    state.t = t;
-    P::unpack(y, state.omega.data(), attitude);
-    state.attitude = {attitude[0], attitude[1], attitude[2], attitude[3]};
-    return state;
-  };
-  std::vector<ode::Event> events;
-  for (const SceneEvent& event : options.asked.events) {
-    events.push_back({[&](double t, const double* y) {
-                        const double value = event.function(to_state(t, y));
-                        if (std::isnan(value)) {
-                          throw InvalidInput("the event's function", "a number", "nan at t = " + polhode::to_text(t) + " s");
-                        }
-                        return value;
-                      },
-                      event.direction, event.terminal});
-  }
-
-  double y0[P::dimension];
-  P::pack(scene.start(), y0);
-  std::vector<unsigned char> answered(n, 0);
-  const auto one_way = [&](const std::vector<std::size_t>& order, ode::DenseOutput& dense) {
-    if (order.empty()) return true;
-    std::vector<double> sorted(order.size());
-    for (std::size_t i = 0; i < order.size(); ++i) sorted[i] = times[order[i]];
-    typename Method::template Stepper<P> stepper(problem, scene.t0(), y0, sorted.back(), options.tolerances);
-    const auto sink = [&](std::size_t index, double, const double* y) {
-      double omega[3], attitude[4];
-      const std::size_t row = order[index];
-      P::unpack(y, want.omega ? motion.omega.data() + 3 * row : omega,
-                want.attitude ? motion.attitude.data() + 4 * row : attitude);
-      answered[row] = 1;
-    };
-    ode::DriveResult result = ode::drive(
-        stepper, std::span<const double>(sorted), sink,
-        ode::DriveOptions{options.asked.max_steps, options.asked.dense, std::span<const ode::Event>(events),
-                          options.asked.progress});
-    for (const ode::EventHit& hit : result.hits) motion.events.push_back({hit.event, to_state(hit.t, hit.y.data())});
-    dense = std::move(result.dense);
-    const ode::Counts& counts = stepper.counts();
-    motion.stats.steps += counts.steps;
-    motion.stats.rejected += counts.rejected;
-    motion.stats.derivatives += counts.derivatives;
-    motion.stats.events += counts.events;
-    motion.t_reached = result.t;
-    using ode::Ending;
-    const std::string when = " at t = " + polhode::to_text(result.t) + " s";
-    switch (result.ending) {
-      case Ending::finished: return true;
-      case Ending::event:
-        motion.status = Status::event;
-        motion.message = "ended by a terminal event" + when;
-        return true;
-      case Ending::max_steps:
-        motion.status = Status::max_steps;
-        motion.message = "gave up after max_steps = " + std::to_string(options.asked.max_steps) + " steps" + when;
-        return false;
-      case Ending::stopped:
-        motion.status = Status::stopped;
-        motion.message = "stopped by the progress callback" + when;
-        return false;
-      case Ending::underflow:
-        motion.status = Status::failed;
-        motion.message = "the step became smaller than the spacing of the times" + when;
-        return false;
-      case Ending::not_finite:
-        motion.status = Status::failed;
-        motion.message = "the derivative is not finite" + when;
-        return false;
-    }
-    return false;
-  };
-  const Itinerary itinerary(times, scene.t0());
-  if (one_way(itinerary.backward, motion.dense_backward)) one_way(itinerary.forward, motion.dense_forward);
-
-  // Rows that were not reached are left out.
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    if (!answered[i]) continue;
-    motion.t.push_back(times[i]);
-    if (kept != i) {
-      if (want.omega) std::copy_n(motion.omega.data() + 3 * i, 3, motion.omega.data() + 3 * kept);
-      if (want.attitude) std::copy_n(motion.attitude.data() + 4 * i, 4, motion.attitude.data() + 4 * kept);
-    }
-    ++kept;
-  }
-  if (want.omega) motion.omega.resize(3 * kept);
-  if (want.attitude) motion.attitude.resize(4 * kept);
-  return motion;
-}
+/// Both directions of time, samples, events and dense output into a Motion, whatever the method and the problem.
+Motion run(const Scene& scene, const SolveOptions& options, const double* y0, Unpack unpack,
+           const MakeStepper& make_stepper);
 
 }  // namespace polhode

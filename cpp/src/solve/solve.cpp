@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "polhode/core/error.hpp"
+#include "polhode/ode/methods.hpp"
 #include "polhode/solve/euler_problem.hpp"
 #include "polhode/solve/invariants.hpp"
 #include "polhode/solve/lagrangian_problem.hpp"
@@ -12,6 +13,21 @@ namespace polhode {
 namespace {
 
 constexpr double least_rtol = 4 * std::numeric_limits<double>::epsilon();
+
+/// What remains of the options once they have been checked.
+struct RunOptions {
+  const SolveOptions& asked;
+  ode::Tolerances tolerances;
+};
+
+template <class Method, class P>
+Motion run_problem(const Scene& scene, const P& problem, const RunOptions& options) {
+  double y0[P::dimension];
+  P::pack(scene.start(), y0);
+  return run(scene, options.asked, y0, &P::unpack, [&](const double* y, double t_end) {
+    return std::make_unique<typename Method::template Stepper<P>>(problem, scene.t0(), y, t_end, options.tolerances);
+  });
+}
 
 /// Calls `action` with the scene's torques in the form that costs least to evaluate.
 template <class Action>
@@ -30,7 +46,7 @@ Motion run_euler(const Scene& scene, const RunOptions& options) {
   return with_torque(scene, [&]<class Torque>(const Torque& torque) {
     const auto go = [&]<bool diagonal, bool attitude>() {
       const EulerProblem<Torque, diagonal, attitude> problem(inertia, torque);
-      return run<Method>(scene, problem, options);
+      return run_problem<Method>(scene, problem, options);
     };
     Motion motion = inertia.is_diagonal()
                         ? (with_attitude ? go.template operator()<true, true>() : go.template operator()<true, false>())
@@ -51,7 +67,7 @@ Motion run_lagrangian(const Scene& scene, const RunOptions& options) {
   }
   return with_torque(scene, [&]<class Torque>(const Torque& torque) {
     const LagrangianProblem<Torque> problem(scene.inertia_B(), torque);
-    Motion motion = run<Method>(scene, problem, options);
+    Motion motion = run_problem<Method>(scene, problem, options);
     if (motion.status == Status::failed) motion.message += std::string(": ") + cause;
     motion.plan = {"lagrangian", "", "phi, theta, psi and their rates"};
     return motion;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <span>
@@ -8,7 +7,7 @@
 
 #include "polhode/ode/dense_output.hpp"
 #include "polhode/ode/event.hpp"
-#include "polhode/ode/runge_kutta.hpp"
+#include "polhode/ode/stepper.hpp"
 
 namespace polhode::ode {
 
@@ -22,6 +21,8 @@ struct DriveOptions {
   std::function<bool(double reached, double last)> progress = {};
 };
 
+using Sink = std::function<void(std::size_t index, double t, const double* y)>;
+
 struct DriveResult {
   Ending ending = Ending::finished;
   double t = 0.0;                    ///< time reached
@@ -30,110 +31,8 @@ struct DriveResult {
   DenseOutput dense = {};
 };
 
-/// Calls back at most every twentieth of a second, and looks at the clock only every few steps.
-class Heartbeat {
- public:
-  explicit Heartbeat(const std::function<bool(double, double)>& progress) : progress_(progress) {}
-
-  bool wants_to_stop(double reached, double last) {
-    if (!progress_ || (++calls_ & 15) != 0) return false;
-    const auto now = std::chrono::steady_clock::now();
-    if (now - last_ < std::chrono::milliseconds(50)) return false;
-    last_ = now;
-    return !progress_(reached, last);
-  }
-
- private:
-  const std::function<bool(double, double)>& progress_;
-  unsigned calls_ = 0;
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
-
 /// Runs a stepper over `times`, which are sorted along the integration and lie on one side of the start, and hands each
-/// sample to `sink(index, t, y)`. Knows nothing of how a step is made. At equal times every sample is handed out.
-template <class Stepper, class Sink>
-DriveResult drive(Stepper& stepper, std::span<const double> times, Sink&& sink, const DriveOptions& options) {
-  DriveResult result;
-  result.t = stepper.t();
-  if (times.empty()) return result;
-  const double last = times.back();
-  const bool forward = last >= stepper.t();
-  if (options.dense) result.dense = DenseOutput(Stepper::segment_size, &Stepper::evaluate);
-  std::vector<EventTracker> trackers;
-  for (const Event& event : options.events) trackers.emplace_back(event, stepper.t(), stepper.y());
-
-  std::size_t next = 0;
-  while (next < times.size() && times[next] == stepper.t()) {
-    sink(next, times[next], stepper.y());
-    ++next;
-  }
-  Heartbeat heartbeat(options.progress);
-  double y[64];
-  static_assert(Stepper::N <= 64);
-  const auto at = [&](double t, double* out) { stepper.interpolate(t, out); };
-
-  const long first_step = stepper.counts().steps;
-  while (stepper.t() != last) {
-    if (stepper.counts().steps - first_step >= options.max_steps) {
-      result.ending = Ending::max_steps;
-      break;
-    }
-    const StepResult step = stepper.advance(last);
-    if (step != StepResult::accepted) {
-      result.ending = step == StepResult::underflow ? Ending::underflow : Ending::not_finite;
-      break;
-    }
-    double reached = stepper.t();
-
-    // Events: each step is looked at in a few pieces, so that two zeros within one step are both seen.
-    if (!trackers.empty()) {
-      constexpr int pieces = 8;
-      const double t0 = stepper.t_old(), h = stepper.t() - t0;
-      std::vector<EventHit> hits;
-      bool ended = false;
-      for (int piece = 1; piece <= pieces && !ended; ++piece) {
-        const double t = piece == pieces ? stepper.t() : t0 + h * (static_cast<double>(piece) / pieces);
-        stepper.interpolate(t, y);
-        std::vector<EventHit> found;
-        for (std::size_t i = 0; i < trackers.size(); ++i) {
-          double root = 0.0;
-          if (trackers[i].crosses(t, y, at, stepper.event_count(), root)) {
-            std::vector<double> state(Stepper::N);
-            stepper.interpolate(root, state.data());
-            found.push_back({static_cast<int>(i), root, std::move(state)});
-          }
-        }
-        std::stable_sort(found.begin(), found.end(), [forward](const EventHit& a, const EventHit& b) {
-          return forward ? a.t < b.t : a.t > b.t;
-        });
-        for (EventHit& hit : found) {
-          const bool terminal = options.events[static_cast<std::size_t>(hit.event)].terminal;
-          if (terminal) {
-            reached = hit.t;
-            ended = true;
-          }
-          hits.push_back(std::move(hit));
-          if (ended) break;
-        }
-      }
-      for (EventHit& hit : hits) result.hits.push_back(std::move(hit));
-      if (ended) result.ending = Ending::event;
-    }
-
-    if (options.dense) result.dense.append(stepper.t_old(), stepper.t(), stepper.segment());
-    for (; next < times.size() && (forward ? times[next] <= reached : times[next] >= reached); ++next) {
-      stepper.interpolate(times[next], y);
-      sink(next, times[next], y);
-    }
-    result.t = reached;
-    if (result.ending == Ending::event) break;
-    if (heartbeat.wants_to_stop(reached, last)) {
-      result.ending = Ending::stopped;
-      break;
-    }
-  }
-  result.samples = next;
-  return result;
-}
+/// sample to `sink`. Knows nothing of how a step is made. At equal times every sample is handed out.
+DriveResult drive(Stepper& stepper, std::span<const double> times, const Sink& sink, const DriveOptions& options);
 
 }  // namespace polhode::ode

@@ -22,12 +22,13 @@ struct EventHit {
 /// Follows the sign of one event function along the integration and finds each zero once.
 class EventTracker {
  public:
+  using Evaluate = std::function<void(double t, double* y)>;
+
   EventTracker(const Event& event, double t, const double* y) : event_(&event) { side_ = sign(event.function(t, y)); t_ = t; }
 
   /// Looks at the piece (previous time, t]; `evaluate(t, y)` gives the solution there. True when a zero of the wanted
   /// direction lies in it, at `root`.
-  template <class Evaluate>
-  bool crosses(double t, const double* y, Evaluate&& evaluate, long& count, double& root) {
+  bool crosses(double t, const double* y, const Evaluate& evaluate, long& count, double& root) {
     const double value = call(t, y, count);
     const int side = sign(value);
     const double start = t_;
@@ -54,8 +55,7 @@ class EventTracker {
 
   /// Interpolate-truncate-project root finding (Oliveira & Takahashi 2021, ACM TOMS 47, 5) would save a few calls;
   /// the Illinois rule with bisection behind it needs no parameter and also ends at neighbouring doubles.
-  template <class Evaluate>
-  double bisect(double a, double b, int side_a, Evaluate&& evaluate, long& count) {
+  double bisect(double a, double b, int side_a, const Evaluate& evaluate, long& count) {
     double y[64];
     evaluate(a, y);
     double fa = call(a, y, count);

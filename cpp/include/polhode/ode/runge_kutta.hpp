@@ -7,35 +7,31 @@
 
 #include "polhode/ode/problem.hpp"
 #include "polhode/ode/step_control.hpp"
+#include "polhode/ode/stepper.hpp"
 
 namespace polhode::ode {
-
-enum class StepResult { accepted, underflow, not_finite };
 
 /// Any embedded explicit Runge-Kutta pair whose last stage is the next step's first, with a continuous extension of
 /// order 4 made of the cubic Hermite polynomial and one quartic bump. The tableau is data; nothing here knows it.
 template <class Tableau, Problem P>
-class RungeKuttaStepper {
+class RungeKuttaStepper final : public Stepper {
  public:
   static constexpr int N = P::dimension;
-  static constexpr int segment_size = 5 * N;      ///< numbers that describe one step for evaluate()
+  static constexpr int segment_size = 5 * N;
 
   RungeKuttaStepper(const P& problem, double t0, const double* y0, double t_end, const Tolerances& tolerances)
-      : problem_(problem), control_(Tableau::error_order), tolerances_(tolerances), t_old_(t0), t_(t0) {
+      : Stepper(N, segment_size, &evaluate_segment, t0),
+        problem_(problem),
+        control_(Tableau::error_order),
+        tolerances_(tolerances) {
     std::copy_n(y0, N, y_);
     compute(t0, y_, k_[0]);
     h_ = initial_step(t_end);
   }
 
-  double t() const { return t_; }
-  double t_old() const { return t_old_; }
-  const double* y() const { return y_; }
-  double next_step() const { return h_; }
-  const Counts& counts() const { return counts_; }
-  long& event_count() { return counts_.events; }
+  const double* y() const override { return y_; }
 
-  /// One accepted step towards t_end and not beyond it.
-  StepResult advance(double t_end) {
+  StepResult advance(double t_end) override {
     const double direction = t_end < t_ ? -1.0 : 1.0;
     if (fresh_) {
       fresh_ = false;
@@ -74,19 +70,18 @@ class RungeKuttaStepper {
     }
   }
 
-  /// y at a time within the last step.
-  void interpolate(double t, double* out) {
+  void interpolate(double t, double* out) override {
     prepare_segment();
-    evaluate(segment_, (t - t_old_) / h_taken_, out);
+    evaluate_segment(segment_, (t - t_old_) / h_taken_, out);
   }
 
-  const double* segment() {
+  const double* segment() override {
     prepare_segment();
     return segment_;
   }
 
   /// The continuous extension at the fraction s of a step: the cubic Hermite polynomial in nested form, and the bump.
-  static void evaluate(const double* segment, double s, double* out) {
+  static void evaluate_segment(const double* segment, double s, double* out) {
     const double r = 1.0 - s;
     for (int i = 0; i < N; ++i) {
       const double* c = segment + 5 * i;
@@ -161,8 +156,7 @@ class RungeKuttaStepper {
   const P& problem_;
   StepControl control_;
   Tolerances tolerances_;
-  Counts counts_;
-  double t_old_, t_, h_ = 0.0, h_taken_ = 0.0;
+  double h_ = 0.0, h_taken_ = 0.0;
   bool fresh_ = true, segment_ready_ = false;
   double y_[N], y_old_[N] = {}, y_new_[N] = {}, error_[N] = {};
   double k_[Tableau::stages][N] = {};

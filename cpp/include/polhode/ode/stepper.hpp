@@ -1,0 +1,46 @@
+#pragma once
+
+#include "polhode/ode/problem.hpp"
+
+namespace polhode::ode {
+
+enum class StepResult { accepted, underflow, not_finite };
+
+/// One integration under way: what drive() needs to know of a method. A step is one virtual call; all that is inside a
+/// step is compiled for its problem.
+class Stepper {
+ public:
+  virtual ~Stepper() = default;
+  Stepper(const Stepper&) = delete;
+  Stepper& operator=(const Stepper&) = delete;
+
+  /// One accepted step towards t_end and not beyond it.
+  virtual StepResult advance(double t_end) = 0;
+  /// y at a time within the last step.
+  virtual void interpolate(double t, double* y) = 0;
+  /// The last step's continuous extension, `segment_size` numbers for `evaluate`.
+  virtual const double* segment() = 0;
+  virtual const double* y() const = 0;
+
+  using Evaluate = void (*)(const double* segment, double fraction, double* y);
+  int dimension() const { return dimension_; }
+  int segment_size() const { return segment_size_; }
+  Evaluate evaluate() const { return evaluate_; }
+  double t() const { return t_; }
+  double t_old() const { return t_old_; }
+  const Counts& counts() const { return counts_; }
+  long& event_count() { return counts_.events; }
+
+ protected:
+  Stepper(int size, int numbers_per_segment, Evaluate evaluate_segment, double t0)
+      : t_(t0), t_old_(t0), dimension_(size), segment_size_(numbers_per_segment), evaluate_(evaluate_segment) {}
+
+  double t_, t_old_;
+  Counts counts_;
+
+ private:
+  int dimension_, segment_size_;
+  Evaluate evaluate_;
+};
+
+}  // namespace polhode::ode
