@@ -114,7 +114,8 @@ def taylor(programs: Path, numbers: dict, times: Sequence, order: int = ORDER) -
 
 
 def gauss(programs: Path, steps: tuple, numbers: dict, times: Sequence) -> list[list[mpf]]:
-    nodes = sorted((1 + x) / 2 for x in mpmath.polyroots(mpmath.taylor(lambda x: mpmath.legendre(STAGES, x), 0, STAGES)[::-1], maxsteps=200, extraprec=200))  # noqa: E501
+    legendre = mpmath.taylor(lambda x: mpmath.legendre(STAGES, x), 0, STAGES)[::-1]
+    nodes = sorted((1 + x) / 2 for x in mpmath.polyroots(legendre, maxsteps=200, extraprec=200))
     with mp.workdps(80):  # A = V' V^-1 with powers of the nodes
         powers = mpmath.matrix(STAGES, STAGES)
         integrals = mpmath.matrix(STAGES, STAGES)
