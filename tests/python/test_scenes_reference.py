@@ -115,7 +115,7 @@ def test_samples_are_where_the_scene_asks(name):
     assert omega.dtype == attitude.dtype == np.float64 and np.isfinite(omega).all() and np.isfinite(attitude).all()
     start = scene["start"].get("omega") or np.radians(scene["start"]["omega_deg"])
     np.testing.assert_allclose(omega[0], start, rtol=2.3e-16)
-    euler = scene["start"].get("attitude", {"euler": {"angles": [0.0, 0.0, 0.0]}})["euler"]["angles"]
+    euler = scene["start"].get("euler", {"angles": [0.0, 0.0, 0.0]})["angles"]
     assert euler[0] == euler[2] == 0
     np.testing.assert_allclose(attitude[0], [np.sin(euler[1] / 2), 0, 0, np.cos(euler[1] / 2)], atol=1.2e-16)
 

@@ -51,11 +51,10 @@ def multiply(p, q):
 
 
 def start_attitude(start: dict) -> list:
-    attitude = start.get("attitude", [0.0, 0.0, 0.0, 1.0])
-    if not isinstance(attitude, dict):
-        return list(attitude)
+    if "euler" not in start:
+        return list(start.get("attitude", [0.0, 0.0, 0.0, 1.0]))
     q = (mpf(0), mpf(0), mpf(0), mpf(1))
-    for letter, angle in zip(attitude["euler"]["sequence"], attitude["euler"]["angles"], strict=True):
+    for letter, angle in zip(start["euler"]["sequence"], start["euler"]["angles"], strict=True):
         turn = [mpf(0)] * 3 + [mpmath.cos(mpf(angle) / 2)]
         turn["XYZ".index(letter)] = mpmath.sin(mpf(angle) / 2)
         q = multiply(q, turn)  # upper case: intrinsic
