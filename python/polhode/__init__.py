@@ -1,6 +1,5 @@
 """Rigid bodies that turn: where does the body point, and how fast does it spin, at time t?"""
 
-from . import elliptic as elliptic
 from . import inertia as inertia
 from . import shapes as shapes
 from . import torques as torques
@@ -9,6 +8,9 @@ from ._core import IntegrationFailure as IntegrationFailure
 from ._core import InvalidInput as InvalidInput
 from ._core import __version__ as __version__
 from ._core import build_info as build_info
+from .attitude import Rotation as Rotation
+from .attitude import body_rates as body_rates
+from .attitude import euler_rates as euler_rates
 from .inertia import InertiaTensor as InertiaTensor
 from .inertia import MassProperties as MassProperties
 from .inertia import PrincipalAxes as PrincipalAxes

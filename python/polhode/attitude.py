@@ -1,0 +1,420 @@
+"""Attitudes: rotations of three-space, vectorised, under SciPy's names; and the rates of their Euler angles."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._core import InvalidInput
+from ._core import attitude as _kernels
+
+__all__ = ["Rotation", "body_rates", "euler_rates"]
+
+FloatArray = NDArray[np.float64]
+
+
+class Rotation:
+    """One rotation, or an array of them; as an attitude it maps body components to space components.
+
+    Names and meanings are those of `scipy.spatial.transform.Rotation`, whose objects are accepted wherever a rotation
+    is. What differs is said where it does: bad input is refused where SciPy repairs it (`from_quat`, `from_matrix`),
+    `as_euler` never warns (`gimbal_lock` tells), and equal attitudes compare equal. Objects are immutable.
+
+    Parameters
+    ----------
+    quat : array_like, shape (..., 4), or a rotation
+        As in `from_quat`.
+    scalar_first : bool
+        Whether the components come as (w, x, y, z).
+
+    Examples
+    --------
+    >>> import polhode as ph
+    >>> turn = ph.Rotation.from_euler("ZXZ", [90, 0, 0], degrees=True)
+    >>> turn.apply([1.0, 0.0, 0.0]).round(12) + 0.0
+    array([0., 1., 0.])
+    """
+
+    __slots__ = ("_quat",)
+    __array_ufunc__ = None  # an array times a rotation is for the rotation to refuse
+    _quat: FloatArray
+
+    def __init__(self, quat: Any, *, scalar_first: bool = False) -> None:
+        _set(self, _quat_of(quat, scalar_first=scalar_first))
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"a Rotation is immutable: cannot set {name!r}")
+
+    def __delattr__(self, name: str) -> None:
+        raise AttributeError(f"a Rotation is immutable: cannot delete {name!r}")
+
+    # ---- made from
+
+    @staticmethod
+    def from_quat(quat: Any, *, scalar_first: bool = False) -> Rotation:
+        """From Hamilton quaternions.
+
+        Parameters
+        ----------
+        quat : array_like, shape (..., 4)
+            (x, y, z, w); of unit norm within 1e-6, then normalised. SciPy normalises any.
+        scalar_first : bool
+            Whether the components come as (w, x, y, z).
+
+        Raises
+        ------
+        InvalidInput
+            Norm 0 or further than 1e-6 from 1, NaN, inf, or another shape.
+        """
+        return Rotation(quat, scalar_first=scalar_first)
+
+    @staticmethod
+    def from_matrix(matrix: ArrayLike) -> Rotation:
+        """From rotation matrices R_WB, v_W = R_WB v_B.
+
+        Parameters
+        ----------
+        matrix : array_like, shape (..., 3, 3)
+            Orthogonal within 1e-6 (largest entry of R^T R - 1), then replaced by the nearest rotation, its polar
+            factor. SciPy takes the polar factor of any matrix of positive determinant.
+
+        Raises
+        ------
+        InvalidInput
+            Determinant <= 0, further from orthogonal, NaN, inf, or another shape.
+
+        Notes
+        -----
+        Formula after Shepperd 1978, J. Guidance and Control 1, 223.
+        """
+        return _wrap(_kernels.from_matrix(matrix))
+
+    @staticmethod
+    def from_rotvec(rotvec: ArrayLike, degrees: bool = False) -> Rotation:
+        """From rotation vectors: the turn by |v| about v.
+
+        Parameters
+        ----------
+        rotvec : array_like, shape (..., 3)
+            [rad], or degrees when asked for; of any length.
+        degrees : bool
+
+        Raises
+        ------
+        InvalidInput
+            NaN, inf, or another shape.
+        """
+        return _wrap(_kernels.from_rotvec(rotvec, degrees))
+
+    @staticmethod
+    def from_euler(seq: str, angles: ArrayLike, degrees: bool = False) -> Rotation:
+        """From Euler angles.
+
+        Parameters
+        ----------
+        seq : str
+            One to three axes, neighbours different: upper case turns about the axes as turned so far (intrinsic),
+            lower case about the fixed axes (extrinsic). The textbook's (phi, theta, psi) are "ZXZ".
+        angles : array_like, shape (..., len(seq)); also a number for one axis
+            [rad], or degrees when asked for, in the order of the letters.
+        degrees : bool
+
+        Raises
+        ------
+        InvalidInput
+            Unknown sequence, NaN, inf, or another shape.
+        """
+        return _wrap(_kernels.from_euler(seq, angles, degrees))
+
+    @staticmethod
+    def identity(num: int | None = None, *, shape: int | tuple[int, ...] | None = None) -> Rotation:
+        """The rotation that does nothing: one, `num` of them, or an array of the shape."""
+        quat = np.zeros((*_shape_of(num, shape), 4))
+        quat[..., 3] = 1.0
+        return _wrap(quat)
+
+    @staticmethod
+    def random(
+        num: int | None = None,
+        rng: np.random.Generator | int | None = None,
+        *,
+        shape: int | tuple[int, ...] | None = None,
+    ) -> Rotation:
+        """Uniform over all rotations: one, `num` of them, or an array of the shape.
+
+        Parameters
+        ----------
+        num : int, optional
+        rng : numpy.random.Generator or a seed for one, optional
+            The same generator gives the same rotations as SciPy's.
+        shape : tuple of int, optional
+            Instead of `num`.
+        """
+        quat = np.random.default_rng(rng).normal(size=(*_shape_of(num, shape), 4))
+        return Rotation(quat / np.linalg.norm(quat, axis=-1, keepdims=True))
+
+    @staticmethod
+    def concatenate(rotations: Rotation | Iterable[Rotation]) -> Rotation:
+        """Several rotations, each one or an array of them, in one array along the first dimension."""
+        parts: list[Any] = [rotations] if hasattr(rotations, "as_quat") else list(rotations)
+        if not parts:
+            raise InvalidInput("rotations: must be at least one rotation, got an empty list")
+        if len(parts) == 1:
+            return Rotation(parts[0])
+        quats = [quat[np.newaxis] if quat.ndim == 1 else quat for quat in map(_quat_of, parts)]
+        if len({quat.shape[1:] for quat in quats}) > 1:
+            shapes = ", ".join(str(quat.shape[:-1]) for quat in quats)
+            raise InvalidInput(f"rotations: must be equal in all dimensions but the first, got {shapes}")
+        return _wrap(np.concatenate(quats))
+
+    # ---- given as
+
+    def as_quat(self, canonical: bool = False, *, scalar_first: bool = False) -> FloatArray:
+        """Quaternions, shape (..., 4): (x, y, z, w), or (w, x, y, z) when asked for.
+
+        Parameters
+        ----------
+        canonical : bool
+            Of q and -q take the one with w > 0; for w = 0 the one whose first non-zero component is positive.
+        scalar_first : bool
+        """
+        quat = _kernels.canonical(self._quat) if canonical else self._quat.copy()
+        return np.roll(quat, 1, axis=-1) if scalar_first else quat
+
+    def as_matrix(self) -> FloatArray:
+        """Rotation matrices R_WB, shape (..., 3, 3), v_W = R_WB v_B."""
+        return _kernels.as_matrix(self._quat)
+
+    def as_rotvec(self, degrees: bool = False) -> FloatArray:
+        """The shortest rotation vectors, shape (..., 3) [rad], of length pi at most.
+
+        At pi exactly (w = 0), where v and -v are the same rotation, the first non-zero component is positive.
+        """
+        return _kernels.as_rotvec(self._quat, degrees)
+
+    def as_euler(self, seq: str, degrees: bool = False) -> FloatArray:
+        """Euler angles, shape (..., 3) [rad], in the order of the letters.
+
+        Parameters
+        ----------
+        seq : str
+            Three axes, as in `from_euler`.
+        degrees : bool
+
+        Returns
+        -------
+        angles : ndarray, shape (..., 3)
+            The outer ones in [-pi, pi], the middle one in [0, pi] ("ZXZ") or [-pi/2, pi/2] ("ZYX"). Their matrix is
+            this rotation's within 2e-15 at every distance from the pole. At gimbal lock the third angle is 0 and the
+            middle one is the pole's; `gimbal_lock` tells where. No warning is given.
+
+        Raises
+        ------
+        InvalidInput
+            Unknown sequence.
+
+        Notes
+        -----
+        Bernardes & Viollet 2022, PLoS ONE 17(11) e0276302, with the middle angle of sequences of three axes from its
+        sine and cosine. SciPy sets the third angle to 0 within 1e-7 rad of the pole, here it is within 9e-16.
+        """
+        return _kernels.as_euler(seq, self._quat, degrees)
+
+    def gimbal_lock(self, seq: str) -> NDArray[np.bool_] | bool:
+        """Where only the sum or the difference of the outer Euler angles is determined; a bool for one rotation.
+
+        That is where the middle angle is within 9e-16 rad (4 units of rounding) of its pole: 0 or pi for "ZXZ",
+        +-pi/2 for "ZYX".
+        """
+        locked = _kernels.gimbal_lock(seq, self._quat)
+        return bool(locked) if self.single else locked
+
+    def magnitude(self) -> FloatArray | float:
+        """The angle of the rotation, in [0, pi] [rad]; a float for one rotation."""
+        angle = _kernels.magnitude(self._quat)
+        return float(angle) if self.single else angle
+
+    # ---- used
+
+    def apply(self, vectors: ArrayLike, inverse: bool = False) -> FloatArray:
+        """Turn vectors: v_W = R_WB v_B, or v_B = R_WB^T v_W when `inverse`.
+
+        Parameters
+        ----------
+        vectors : array_like, shape (..., 3)
+            Its leading dimensions broadcast with those of the rotations.
+        inverse : bool
+
+        Raises
+        ------
+        InvalidInput
+            NaN, inf, or a shape that does not fit.
+        """
+        return _kernels.apply(self._quat, vectors, inverse)
+
+    def inv(self) -> Rotation:
+        """The inverse rotation; as an attitude, from space to body."""
+        return _wrap(self._quat * _CONJUGATE)
+
+    def __mul__(self, other: Any) -> Rotation:
+        """R_AB * R_BC = R_AC: first `other`, then this one. Shapes broadcast."""
+        if isinstance(other, Rotation):
+            return _wrap(_kernels.multiply(self._quat, other._quat))
+        if hasattr(other, "as_quat"):
+            return _wrap(_kernels.multiply(self._quat, _quat_of(other)))
+        return NotImplemented
+
+    def __rmul__(self, other: Any) -> Rotation:
+        if hasattr(other, "as_quat"):
+            return _wrap(_kernels.multiply(_quat_of(other), self._quat))
+        return NotImplemented
+
+    def __pow__(self, n: float) -> Rotation:
+        """The rotation about the same axis by n times the angle in [0, pi]; n may be any real number."""
+        if np.ndim(n) > 0 or not np.isfinite(n):
+            raise InvalidInput(f"exponent: must be one finite number, got {n}")
+        if n == 1.0:
+            return self
+        return self.inv() if n == -1.0 else Rotation.from_rotvec(n * self.as_rotvec())
+
+    def approx_equal(
+        self, other: Any, atol: float | None = None, degrees: bool = False
+    ) -> NDArray[np.bool_] | bool:
+        """Whether the angle between the two rotations is below `atol` [rad], 1e-8 unless given."""
+        if atol is None:
+            limit = 1e-8
+        else:
+            limit = float(np.deg2rad(atol)) if degrees else atol
+        return (Rotation(other) * self.inv()).magnitude() < limit
+
+    # ---- as a container
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Of the array of rotations, () for one."""
+        return self._quat.shape[:-1]
+
+    @property
+    def single(self) -> bool:
+        """Whether this is one rotation and no array."""
+        return self._quat.ndim == 1
+
+    def __len__(self) -> int:
+        self._refuse_single("has no len()")
+        return len(self._quat)
+
+    def __bool__(self) -> bool:
+        return True
+
+    def __getitem__(self, index: Any) -> Rotation:
+        self._refuse_single("cannot be indexed")
+        leading = index if isinstance(index, tuple) else (index,)
+        return _wrap(np.ascontiguousarray(self._quat[(*leading, slice(None))]))
+
+    def __iter__(self) -> Iterator[Rotation]:
+        self._refuse_single("cannot be iterated over")
+        return (_wrap(quat) for quat in self._quat)
+
+    def _refuse_single(self, what: str) -> None:
+        if self.single:
+            raise TypeError(f"a single Rotation {what}")
+
+    def __eq__(self, other: object) -> bool:
+        """Whether both are the same rotations, bit by bit up to the sign of each quaternion (see `approx_equal`)."""
+        if not isinstance(other, Rotation):
+            return NotImplemented
+        return np.array_equal(self.as_quat(canonical=True), other.as_quat(canonical=True))
+
+    def __hash__(self) -> int:
+        return hash((self.shape, self.as_quat(canonical=True).tobytes()))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _wrap, (self._quat,)
+
+    def __repr__(self) -> str:
+        quat = np.array2string(self._quat, separator=", ", threshold=40, floatmode="unique", prefix="Rotation.from_quat(")
+        return f"Rotation.from_quat({quat})"
+
+
+_CONJUGATE = np.array([-1.0, -1.0, -1.0, 1.0])
+
+
+def _set(rotation: Rotation, quat: FloatArray) -> None:
+    quat.flags.writeable = False
+    object.__setattr__(rotation, "_quat", quat)
+
+
+def _wrap(quat: FloatArray) -> Rotation:
+    """The rotation of unit quaternions that nobody else holds."""
+    rotation = object.__new__(Rotation)
+    _set(rotation, quat)
+    return rotation
+
+
+def _quat_of(value: Any, *, scalar_first: bool = False) -> FloatArray:
+    """Unit quaternions (..., 4) of a rotation, polhode's or SciPy's, or of an array."""
+    if isinstance(value, Rotation):
+        return value._quat
+    if hasattr(value, "as_quat"):
+        return _kernels.normalize(value.as_quat(), False)
+    return _kernels.normalize(value, scalar_first)
+
+
+def _shape_of(num: int | None, shape: int | tuple[int, ...] | None) -> tuple[int, ...]:
+    if num is not None and shape is not None:
+        raise InvalidInput("num: must be left out where shape is given, got both")
+    sizes = num if num is not None else shape if shape is not None else ()
+    sizes = sizes if isinstance(sizes, tuple) else (sizes,)
+    if not all(isinstance(size, (int, np.integer)) and size >= 0 for size in sizes):
+        raise InvalidInput(f"{'shape' if num is None else 'num'}: must be whole numbers >= 0, got {sizes}")
+    return sizes
+
+
+def body_rates(sequence: str, angles: ArrayLike, angle_rates: ArrayLike) -> FloatArray:
+    """Angular velocity in body axes of Euler angles and their rates.
+
+    Parameters
+    ----------
+    sequence : str
+        Three axes, as in `Rotation.from_euler`; any of the 24.
+    angles, angle_rates : array_like, shape (..., 3)
+        [rad] and [rad/s], both in the order of the letters; their leading dimensions broadcast.
+
+    Returns
+    -------
+    omega : ndarray, shape (..., 3)
+        w_B [rad/s].
+
+    Raises
+    ------
+    InvalidInput
+        Unknown sequence, NaN, inf, or shapes that do not fit.
+    """
+    return _kernels.body_rates(sequence, angles, angle_rates)
+
+
+def euler_rates(sequence: str, angles: ArrayLike, omega: ArrayLike) -> FloatArray:
+    """Rates of Euler angles of an angular velocity in body axes; the inverse of `body_rates`.
+
+    Parameters
+    ----------
+    sequence : str
+        Three axes, as in `Rotation.from_euler`; any of the 24.
+    angles, omega : array_like, shape (..., 3)
+        [rad] in the order of the letters, and w_B [rad/s]; their leading dimensions broadcast.
+
+    Returns
+    -------
+    angle_rates : ndarray, shape (..., 3)
+        [rad/s], in the order of the letters. They grow as one over the distance to the pole.
+
+    Raises
+    ------
+    InvalidInput
+        At gimbal lock, that is where the middle angle is the double nearest to a pole: no rates of the angles give a
+        general omega there. Also unknown sequence, NaN, inf, or shapes that do not fit.
+    """
+    return _kernels.euler_rates(sequence, angles, omega)
