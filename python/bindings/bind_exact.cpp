@@ -3,7 +3,11 @@
 namespace polhode::python {
 
 void bind_free_motion(py::module_& m);
+void bind_heavy_top(py::module_& m);
 
-void bind_exact(py::module_& m) { bind_free_motion(m); }
+void bind_exact(py::module_& m) {
+  bind_free_motion(m);
+  bind_heavy_top(m);
+}
 
 }  // namespace polhode::python

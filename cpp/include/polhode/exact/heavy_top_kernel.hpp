@@ -1,0 +1,162 @@
+#pragma once
+
+#include "polhode/core/quat.hpp"
+#include "polhode/math/exp.hpp"
+#include "polhode/math/phase.hpp"
+#include "polhode/math/sincos.hpp"
+
+// Lagrange's top at one time, from constants made once: Cayley-Klein parameters as quotients of theta functions with
+// two phase rates (Klein & Sommerfeld, Ueber die Theorie des Kreisels, 1897-1910, chapter 6). Derivation, and which
+// sum is which: docs/heavy_top.md. Templates over a lane type V as in polhode/math/number.hpp.
+namespace polhode::exact {
+
+/// A rate or an angle in cycles, as a double-double.
+struct Cycles {
+  double hi = 0.0, lo = 0.0;
+};
+
+/// The constants of one top. Time is in units of 1 / rate_scale, the phases in cycles.
+/// The pair (alpha, beta) = (w + i z, x + i y) of the attitude q_WS = common factor times (c_a e^{i a} N1, c_b e^{i b} N2).
+struct HeavyTopConstants {
+  bool hyper = false;        ///< which of the two forms below is filled
+  double rate_scale = 1.0;   ///< a power of two [1/s]
+  Cycles rate_z;             ///< of the nutation: cycles of the theta argument (trig), passages (hyper)
+  Cycles rate_a, rate_b;     ///< of the phases of alpha and beta
+  double start_z = 0.0;      ///< cycles (trig), passages (hyper)
+  double speed = 0.0;        ///< d/dt of the theta argument [rad]
+  double turn = 0.0;         ///< k_A + k_B [rad]
+  double ca_re = 0.0, ca_im = 0.0, cb_re = 0.0, cb_im = 0.0;
+  double w12_re = 0.0, w12_im = 0.0;  ///< 2 conj(c_a) c_b, times rate_scale
+  double w3 = 0.0;                    ///< constant spin about the axis, scaled back
+  Quat q_SB;                          ///< from body axes to the working axes (symmetry axis third, centre of mass up it)
+  double R_BS[9] = {};                ///< the same as a row-major matrix, for omega
+
+  // Trig: with X = cos 2z, N1 = sin z p1(X) + i cos z p2(X) and its derivative cos z p3(X) + i sin z p4(X),
+  // N2 = cos z p5(X) + i sin z p6(X) and sin z p7(X) + i cos z p8(X); monomials.
+  double p[8][5] = {};
+
+  // Hyper: N1 and N2 in powers of e^{-|v|}; eta as cosines and sines of (2n+1) eta_A and 2n eta_B.
+  double v_rate_hi = 0.0, v_rate_lo = 0.0, v_start_hi = 0.0, v_start_lo = 0.0, v_passage_hi = 0.0, v_passage_lo = 0.0;
+  double nome = 0.0;                ///< q' of the complementary modulus
+  Cycles passage_a, passage_b;      ///< phase of alpha and beta added by each passage
+  double cos_a[4] = {}, sin_a[4] = {}, cos_b[4] = {}, sin_b[4] = {};
+};
+
+/// What a kernel returns: w_B [rad/s] and q_WB, unit.
+template <class V>
+struct HeavyTopState {
+  V w1, w2, w3, x, y, z, w;
+};
+
+/// N1, N2 and their derivatives by the theta argument, up to one common real factor.
+template <class V>
+struct HeavyTopSums {
+  V n1_re, n1_im, n2_re, n2_im, d1_re, d1_im, d2_re, d2_im;
+};
+
+/// The trigonometric series, for k^2 <= 0.97.
+template <class V>
+POLHODE_INLINE HeavyTopSums<V> heavy_top_trig(const HeavyTopConstants& c, V s) {
+  V sz, cz;
+  math::sincos_cycles(math::cycle_fraction(s, V(c.rate_z.hi), V(c.rate_z.lo), V(c.start_z)), sz, cz);
+  const V X = (cz + sz) * (cz - sz);
+  return {sz * math::polynomial(c.p[0], X), cz * math::polynomial(c.p[1], X), cz * math::polynomial(c.p[4], X),
+          sz * math::polynomial(c.p[5], X), cz * math::polynomial(c.p[2], X), sz * math::polynomial(c.p[3], X),
+          sz * math::polynomial(c.p[6], X), cz * math::polynomial(c.p[7], X)};
+}
+
+/// The same functions in the exponentials of the complementary modulus: E = e^{-|v|}, g = q' / E^2 <= 1, everything
+/// times E. `sign` is that of v. N is double-double in the set-up.
+template <class N>
+POLHODE_INLINE HeavyTopSums<N> heavy_top_hyper_sums(const N (&cos_a)[4], const N (&sin_a)[4], const N (&cos_b)[4],
+                                                    const N (&sin_b)[4], N nome, N sign, N E, N g) {
+  // u, d: growing and decaying exponentials of N1 (and theta); a, b: of N2.
+  N u = N(1.0), d = E * E, a = E, b = E, q_n = N(1.0);
+  HeavyTopSums<N> s{N(0.0), N(0.0), E, N(0.0), N(0.0), N(0.0), N(0.0), N(0.0)};
+  const N E2 = E * E;
+  for (int n = 0; n < 4; ++n) {
+    const N alternate = N(n % 2 == 0 ? 1.0 : -1.0);
+    if (n > 0) {
+      a = a * g * q_n;        // E g^n q'^(n^2 - n), with q_n = q'^(2n-2)
+      b = b * (q_n * nome) * E2;
+      u = u * g * (q_n * nome);
+      q_n = q_n * nome * nome;
+      d = d * q_n * E2;
+      const N even = N(2.0 * n), sum = alternate * (a + b), difference = alternate * sign * (a - b);
+      s.n2_re = s.n2_re + sum * cos_b[n];
+      s.n2_im = s.n2_im - difference * sin_b[n];
+      s.d2_re = s.d2_re + even * (difference * cos_b[n]);
+      s.d2_im = s.d2_im - even * (sum * sin_b[n]);
+    }
+    const N odd = N(2.0 * n + 1.0), sum = alternate * (u + d), difference = alternate * sign * (u - d);
+    s.n1_re = s.n1_re + difference * cos_a[n];
+    s.n1_im = s.n1_im - sum * sin_a[n];
+    s.d1_re = s.d1_re + odd * (sum * cos_a[n]);
+    s.d1_im = s.d1_im - odd * (difference * sin_a[n]);
+  }
+  return s;
+}
+
+/// The hyperbolic form, for k^2 > 0.97 up to the homoclinic motion; passages counts the nutations done.
+template <class V>
+POLHODE_INLINE HeavyTopSums<V> heavy_top_hyper(const HeavyTopConstants& c, V s, V& passages) {
+  passages = math::rint(math::madd(s, V(c.rate_z.hi), V(c.start_z)));
+  const auto moved = math::two_prod(s, V(c.v_rate_hi)), done = math::two_prod(passages, V(c.v_passage_hi));
+  const auto left = math::two_diff(moved.hi, done.hi), sum = math::two_sum(left.hi, V(c.v_start_hi));
+  const V rest = math::madd(s, V(c.v_rate_lo), moved.lo) - math::madd(passages, V(c.v_passage_lo), done.lo);
+  const V v = sum.hi + (sum.lo + (left.lo + (rest + V(c.v_start_lo))));
+  const V E = math::exp_minus(math::abs(v)), nome = V(c.nome);
+  // Where q' is 0 or nearly, e^{-|v|} may be far smaller: nothing grows then.
+  const V g = math::select(nome > V(1e-290), nome / (E * E), V(0.0));
+  V ca[4], sa[4], cb[4], sb[4];
+  for (int n = 0; n < 4; ++n) ca[n] = V(c.cos_a[n]), sa[n] = V(c.sin_a[n]), cb[n] = V(c.cos_b[n]), sb[n] = V(c.sin_b[n]);
+  return heavy_top_hyper_sums<V>(ca, sa, cb, sb, nome, math::copysign(V(1.0), v), E, g);
+}
+
+/// The state at time t. `hyper` must be c.hyper: a template argument, so that lanes share one form.
+template <bool hyper, class V>
+POLHODE_INLINE HeavyTopState<V> evaluate_heavy_top(const HeavyTopConstants& c, V t) {
+  const V s = t * V(c.rate_scale);
+  V passages = V(0.0), phase_a = V(0.0), phase_b = V(0.0);
+  HeavyTopSums<V> f;
+  if constexpr (hyper) {
+    f = heavy_top_hyper(c, s, passages);
+    phase_a = math::cycle_fraction(passages, V(c.passage_a.hi), V(c.passage_a.lo), V(0.0));
+    phase_b = math::cycle_fraction(passages, V(c.passage_b.hi), V(c.passage_b.lo), V(0.0));
+  } else {
+    f = heavy_top_trig(c, s);
+  }
+  V ea_re, ea_im, eb_re, eb_im;
+  math::sincos_cycles(math::cycle_fraction(s, V(c.rate_a.hi), V(c.rate_a.lo), phase_a), ea_im, ea_re);
+  math::sincos_cycles(math::cycle_fraction(s, V(c.rate_b.hi), V(c.rate_b.lo), phase_b), eb_im, eb_re);
+
+  // alpha and beta in the working axes, not yet normalised
+  const V fa_re = V(c.ca_re) * f.n1_re - V(c.ca_im) * f.n1_im, fa_im = V(c.ca_re) * f.n1_im + V(c.ca_im) * f.n1_re;
+  const V fb_re = V(c.cb_re) * f.n2_re - V(c.cb_im) * f.n2_im, fb_im = V(c.cb_re) * f.n2_im + V(c.cb_im) * f.n2_re;
+  const V inverse2 = V(1.0) / (fa_re * fa_re + fa_im * fa_im + (fb_re * fb_re + fb_im * fb_im));
+  const V inverse = math::sqrt(inverse2);
+  const V qw = inverse * (fa_re * ea_re - fa_im * ea_im), qz = inverse * (fa_re * ea_im + fa_im * ea_re);
+  const V qx = inverse * (fb_re * eb_re - fb_im * eb_im), qy = inverse * (fb_re * eb_im + fb_im * eb_re);
+
+  // w1 + i w2 = 2 (conj(alpha) beta' - beta conj(alpha')): the derivative of the common factor drops out
+  const V t_re = f.n1_re * f.d2_re + f.n1_im * f.d2_im - (f.n2_re * f.d1_re + f.n2_im * f.d1_im);
+  const V t_im = f.n1_re * f.d2_im - f.n1_im * f.d2_re + (f.n2_re * f.d1_im - f.n2_im * f.d1_re);
+  const V q_re = f.n1_re * f.n2_re + f.n1_im * f.n2_im, q_im = f.n1_re * f.n2_im - f.n1_im * f.n2_re;
+  const V s_re = inverse2 * (V(c.speed) * t_re - V(c.turn) * q_im);
+  const V s_im = inverse2 * (V(c.speed) * t_im + V(c.turn) * q_re);
+  const V r_re = ea_re * eb_re + ea_im * eb_im, r_im = ea_re * eb_im - ea_im * eb_re;
+  const V h_re = V(c.w12_re) * r_re - V(c.w12_im) * r_im, h_im = V(c.w12_re) * r_im + V(c.w12_im) * r_re;
+  const V w1 = h_re * s_re - h_im * s_im, w2 = h_re * s_im + h_im * s_re, w3 = V(c.w3);
+
+  const double* R = c.R_BS;
+  const Quat& b = c.q_SB;
+  return {V(R[0]) * w1 + V(R[1]) * w2 + V(R[2]) * w3,
+          V(R[3]) * w1 + V(R[4]) * w2 + V(R[5]) * w3,
+          V(R[6]) * w1 + V(R[7]) * w2 + V(R[8]) * w3,
+          qw * V(b.x) + qx * V(b.w) + (qy * V(b.z) - qz * V(b.y)),
+          qw * V(b.y) + qy * V(b.w) + (qz * V(b.x) - qx * V(b.z)),
+          qw * V(b.z) + qz * V(b.w) + (qx * V(b.y) - qy * V(b.x)),
+          qw * V(b.w) - qx * V(b.x) - (qy * V(b.y) + qz * V(b.z))};
+}
+
+}  // namespace polhode::exact

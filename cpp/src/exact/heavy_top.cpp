@@ -1,0 +1,212 @@
+#include "polhode/exact/heavy_top.hpp"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "heavy_top_setup.hpp"
+#include "polhode/core/error.hpp"
+
+namespace polhode {
+namespace {
+
+using math::DD;
+
+std::string text(const Vector3d& v) {
+  std::string all = "(";
+  all.append(to_text(v[0])).append(", ").append(to_text(v[1])).append(", ").append(to_text(v[2])).append(")");
+  return all;
+}
+
+void require(bool fine, const char* where, const char* requirement, const std::string& found, const char* cause = "") {
+  if (!fine) throw InvalidInput(where, requirement, found, cause);
+}
+
+/// The symmetry axis and the two moments, A of the equal pair and C about the axis.
+struct TopSymmetry {
+  Vector3d axis;
+  double A, C;
+};
+
+constexpr double equal_within = 32 * std::numeric_limits<double>::epsilon();
+
+TopSymmetry symmetry_of(const Vector3d& moments) {
+  const double tolerance = equal_within * moments.maxCoeff();
+  for (const int axis : {2, 0, 1}) {
+    const double a = moments[(axis + 1) % 3], b = moments[(axis + 2) % 3];
+    if (std::abs(a - b) <= tolerance) return {Vector3d::Unit(axis), a == b ? a : a / 2 + b / 2, moments[axis]};
+  }
+  const Vector3d m = moments;
+  const double gap = std::min({std::abs(m[0] - m[1]), std::abs(m[1] - m[2]), std::abs(m[2] - m[0])});
+  throw InvalidInput("inertia", "that of a symmetric top, two moments equal", text(moments),
+                     "the nearest two differ by " + to_text(gap / moments.maxCoeff()) +
+                         " of the largest: set them equal if they are meant to be, else solve the scene step by step");
+}
+
+/// The same for a full tensor. With two equal moments A, I = A + (C - A) n n^T: the column of the largest diagonal
+/// entry of +-(I - A) is along n. A is found as the pair's mean from the invariants of the deviator.
+TopSymmetry symmetry_of(const Matrix3d& I) {
+  const double largest = I.cwiseAbs().maxCoeff();
+  if (I(0, 1) == 0.0 && I(0, 2) == 0.0 && I(1, 2) == 0.0) return symmetry_of(Vector3d(I.diagonal()));
+  const Matrix3d S = I / largest;
+  const double mean = S.trace() / 3.0;
+  Matrix3d T = S - mean * Matrix3d::Identity();  // deviator: (C - A) (n n^T - 1/3)
+  const double size = std::sqrt(1.5 * T.squaredNorm());
+  const double split = T.determinant() >= 0.0 ? size : -size;  // C - A
+  TopSymmetry found{Vector3d::UnitZ(), (mean - split / 3.0) * largest, (mean + split * (2.0 / 3.0)) * largest};
+  if (size > equal_within) {
+    T = T / split + Matrix3d::Identity() / 3.0;  // n n^T
+    Eigen::Index column = 0;
+    T.diagonal().maxCoeff(&column);
+    found.axis = T.col(column).normalized();
+  }
+  const Vector3d n = found.axis;
+  const double rest =
+      (I - found.A * Matrix3d::Identity() - (found.C - found.A) * (n * n.transpose())).cwiseAbs().maxCoeff() / largest;
+  require(rest <= equal_within, "inertia", "that of a symmetric top, two moments equal",
+          "a tensor that differs from one by " + to_text(rest) + " of its largest entry",
+          "use the symmetric tensor that is meant, or solve the scene step by step");
+  Eigen::Index lead = 0;
+  n.cwiseAbs().maxCoeff(&lead);
+  if (n[lead] < 0.0) found.axis = -n;
+  return found;
+}
+
+/// q_SB: turns the symmetry axis into z. Exact for a coordinate axis.
+Quat to_working_axes(const Vector3d& n) {
+  if (n == Vector3d::UnitZ()) return {};
+  if (n == Vector3d::UnitX()) return {-0.5, -0.5, -0.5, 0.5};
+  if (n == Vector3d::UnitY()) return {0.5, 0.5, 0.5, 0.5};
+  return normalized({n[1], -n[0], 0.0, 1.0 + n[2]});
+}
+
+struct DDQuat {
+  DD x, y, z, w;
+};
+DDQuat multiply(const DDQuat& a, const DDQuat& b) {
+  return {a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+          a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
+}
+DDQuat widen(const Quat& q) { return {q.x, q.y, q.z, q.w}; }
+
+/// 2^e x as float64, refused when it has no such value.
+double from_scaled(double x, int e, const char* what) {
+  const double result = std::ldexp(x, e);
+  const bool fine = std::isfinite(result) && (x == 0.0 || std::abs(result) >= std::numeric_limits<double>::min());
+  require(fine, what, "representable in float64", to_text(x) + " * 2^" + std::to_string(e), "choose other units");
+  return result;
+}
+
+}  // namespace
+
+const char* to_text(TopKind kind) {
+  constexpr const char* names[] = {"free",       "sleeping", "hanging",  "steady_precession", "planar_pendulum", "spherical_pendulum",
+                                   "homoclinic", "looping",  "cuspidal", "monotone"};
+  return names[static_cast<int>(kind)];
+}
+
+HeavyTop::HeavyTop(const Vector3d& moments, double weight_arm, const Vector3d& omega, const Quat& attitude)
+    : HeavyTop(InertiaTensor::from_moments(moments), weight_arm, omega, attitude) {}
+
+HeavyTop::HeavyTop(const InertiaTensor& inertia, double weight_arm, const Vector3d& omega, const Quat& attitude)
+    : inertia_(inertia), weight_arm_(weight_arm), omega_(omega), attitude_(attitude) {
+  set_up();
+}
+
+void HeavyTop::set_up() {
+  make_attitude(attitude_);  // refuses; the start itself is normalised in double-double
+  require(std::isfinite(weight_arm_), "weight_arm", "finite", to_text(weight_arm_));
+  require(omega_.allFinite(), "omega", "finite", text(omega_));
+  const TopSymmetry body = symmetry_of(inertia_.matrix());
+  axis_ = body.axis;
+
+  // Scales: powers of two, so that A, and the larger of |omega| and sqrt(M / A), are near 1.
+  require(body.A > 0.0, "inertia", "above 0 across the symmetry axis", to_text(body.A));
+  const double spin = omega_.dot(axis_);
+  require(body.C > 0.0 || (body.C == 0.0 && spin == 0.0), "inertia", "above 0 about the symmetry axis", to_text(body.C),
+          "a rod or a point may swing, but not spin about its own axis");
+  const int e_A = std::ilogb(body.A);
+  require(std::abs(e_A) <= 1021 && (body.C == 0.0 || std::abs(std::ilogb(body.C) - e_A) <= 500), "inertia",
+          "moments within the range of float64", text({body.A, body.A, body.C}), "choose other units");
+  const double fastest = omega_.cwiseAbs().maxCoeff();
+  const int none = -100000;
+  const int e_w = fastest > 0.0 ? std::ilogb(fastest) : none;
+  const int e_M = weight_arm_ != 0.0 ? (std::ilogb(weight_arm_) - e_A) / 2 : none;
+  const int e = std::max(e_w, e_M) == none ? 0 : std::max(e_w, e_M);
+  require(e <= 1020 && e >= -1000, "omega", "such that rates are representable in float64",
+          "rates near 2^" + std::to_string(e) + " rad/s", "choose other units of time");
+  constants_.rate_scale = std::ldexp(1.0, e);
+  largest_time_ = std::min(std::ldexp(1e25, -e), std::numeric_limits<double>::max());
+
+  // A mass centre below the middle of the axis: turn the body (not the space) by pi about its x axis.
+  const Quat q_TB = to_working_axes(axis_);
+  const bool below = weight_arm_ < 0.0;
+  DDQuat q = widen(q_TB);
+  const DD norm = math::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  q = {q.x / norm, q.y / norm, q.z / norm, q.w / norm};
+  if (below) q = {-q.w, q.z, -q.y, q.x};  // (-1, 0, 0; 0) q
+  const DDQuat q_SB = q, q_BS{-q.x, -q.y, -q.z, q.w};
+  const DDQuat start = multiply(widen(attitude_), q_BS);
+  const Vector3d w = omega_.unaryExpr([&](double c) { return std::ldexp(c, -e); });
+  const DDQuat omega_S = multiply(multiply(q_SB, {w[0], w[1], w[2], 0.0}), q_BS);
+
+  exact::HeavyTopStart s{.A = std::ldexp(body.A, -e_A), .C = std::ldexp(body.C, -e_A),
+                         .M = std::ldexp(std::ldexp(std::abs(weight_arm_), -e_A), -2 * e),
+                         .w1 = omega_S.x, .w2 = omega_S.y, .w3 = omega_S.z,
+                         .x = start.x, .y = start.y, .z = start.z, .w = start.w};
+  const exact::HeavyTopMotion motion = exact::set_up_heavy_top(s, constants_);
+
+  constants_.q_SB = {q_SB.x.hi, q_SB.y.hi, q_SB.z.hi, q_SB.w.hi};
+  const Matrix3d R_SB = to_matrix(constants_.q_SB);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) constants_.R_BS[3 * i + j] = R_SB(j, i);
+  constants_.w3 *= constants_.rate_scale;
+  constants_.w12_re *= constants_.rate_scale;
+  constants_.w12_im *= constants_.rate_scale;
+
+  kind_ = motion.kind;
+  period_ = std::ldexp(motion.period, -e);
+  precession_ = std::ldexp(motion.precession, e);
+  tilt_min_ = 2.0 * std::atan2(motion.sin_high, motion.cos_high);
+  tilt_max_ = 2.0 * std::atan2(motion.sin_low, motion.cos_low);
+  if (below) {
+    tilt_min_ = 2.0 * std::atan2(motion.cos_low, motion.sin_low);
+    tilt_max_ = 2.0 * std::atan2(motion.cos_high, motion.sin_high);
+  }
+  scaled_[0] = motion.energy.hi, scaled_[1] = motion.p_phi.hi;
+  scaled_[2] = below ? -motion.p_psi.hi : motion.p_psi.hi;
+  scale_of_A_ = e_A, scale_of_rate_ = e;
+}
+
+double HeavyTop::energy() const { return from_scaled(scaled_[0], scale_of_A_ + 2 * scale_of_rate_, "energy"); }
+double HeavyTop::p_phi() const { return from_scaled(scaled_[1], scale_of_A_ + scale_of_rate_, "p_phi"); }
+double HeavyTop::p_psi() const { return from_scaled(scaled_[2], scale_of_A_ + scale_of_rate_, "p_psi"); }
+
+void HeavyTop::at(const double* t, std::size_t n, double* omega, double* attitude) const {
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!(std::abs(t[i]) <= largest_time_)) {
+      throw InvalidInput("t", "finite and at most " + to_text(largest_time_) + " s in size", to_text(t[i]),
+                         "beyond it the phase has fewer than 7 digits");
+    }
+  }
+  const auto store = [=](std::size_t i, const exact::HeavyTopState<double>& s) {
+    if (omega) omega[3 * i] = s.w1, omega[3 * i + 1] = s.w2, omega[3 * i + 2] = s.w3;
+    if (attitude) attitude[4 * i] = s.x, attitude[4 * i + 1] = s.y, attitude[4 * i + 2] = s.z, attitude[4 * i + 3] = s.w;
+  };
+  if (constants_.hyper) {
+    for (std::size_t i = 0; i < n; ++i) store(i, exact::evaluate_heavy_top<true>(constants_, t[i]));
+  } else {
+    for (std::size_t i = 0; i < n; ++i) store(i, exact::evaluate_heavy_top<false>(constants_, t[i]));
+  }
+}
+
+State HeavyTop::at(double t) const {
+  double omega[3], attitude[4];
+  at(&t, 1, omega, attitude);
+  return {t, {omega[0], omega[1], omega[2]}, {attitude[0], attitude[1], attitude[2], attitude[3]}};
+}
+
+}  // namespace polhode

@@ -1,0 +1,332 @@
+#include "heavy_top_setup.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "heavy_top_complex.hpp"
+#include "heavy_top_cubic.hpp"
+#include "heavy_top_enlargement.hpp"
+#include "polhode/math/landen.hpp"
+
+// Names follow docs/heavy_top.md: a = C w3 / A, b = p_phi / A, bt = 2 M / A, u = cos(tilt), u1 <= u <= u2 <= u3.
+namespace polhode::exact {
+namespace {
+
+using math::sqrt;
+using Chain = math::LandenChain<DD>;
+
+constexpr int terms = 7;  // of the theta sums in the set-up: q^42 for q <= 0.21
+DD root_of(DD a) { return a.hi > 0.0 ? sqrt(a) : DD(0.0); }
+double sign(DD a) { return a.hi < 0.0 ? -1.0 : 1.0; }
+const double infinity = std::numeric_limits<double>::infinity();
+
+/// Coefficients q^(n(n+1)) rho^(2n+1) (cosh, sinh)((2n+1) zeta) / rho^(2n) of one theta quotient, from the descent.
+struct Series {
+  DD cosh[terms], sinh[terms];
+  Series(const Chain& chain, DD nome, DD P, DD Q, DD R) {
+    const auto end = math::descend_imaginary(chain, P, Q, R);
+    const DD sum = end.P + end.H, rho = end.Q / sum;
+    const DD c = end.H / sum, s = end.P / sum, c2 = c * c + s * s, s2 = (c + c) * s;
+    const DD ratio = nome.hi == 0.0 ? DD(0.0) : nome / (rho * rho);
+    cosh[0] = c, sinh[0] = s;
+    DD ce = c, se = s, weight = DD(1.0), q_n = DD(1.0);  // weight = (q / rho^2)^n q^(n^2)
+    for (int n = 1; n < terms; ++n) {
+      const DD next = ce * c2 + se * s2;
+      se = se * c2 + ce * s2, ce = next;
+      weight = weight * ratio * q_n * nome;  // q^(2n-1)
+      q_n = q_n * nome * nome;
+      cosh[n] = weight * ce, sinh[n] = weight * se;
+    }
+  }
+  DD sum_cosh() const {
+    DD sum = cosh[terms - 1];
+    for (int n = terms - 2; n >= 0; --n) sum = sum + cosh[n];
+    return sum;
+  }
+  /// The logarithmic derivative of the quotient at its quarter period, over i.
+  DD rate() const {
+    DD sum = DD(0.0);
+    for (int n = terms - 1; n >= 0; --n) sum = sum + DD(2.0 * n + 1.0) * sinh[n];
+    return sum / sum_cosh();
+  }
+};
+
+/// sum of coefficient[n] (+-1)^n F_n, F_0 = 1, F_1 = 2X + first, F_{n+1} = 2X F_n - F_{n-1}, as monomials in X.
+void to_monomials(const DD (&coefficient)[terms], double alternate, double weight_of_n, double first, double sign_all,
+                  double (&p)[5]) {
+  double F[2][5] = {{1, 0, 0, 0, 0}, {first, 2, 0, 0, 0}};
+  std::fill(p, p + 5, 0.0);
+  double factor = sign_all;
+  for (int n = 0; n < 5; ++n) {
+    for (int i = 0; i < 5; ++i) p[i] += factor * (weight_of_n == 0.0 ? 1.0 : 2.0 * n + 1.0) * coefficient[n].hi * F[0][i];
+    double next[5] = {};
+    for (int i = 0; i < 5; ++i) next[i] = (i > 0 ? 2.0 * F[1][i - 1] : 0.0) - F[0][i];
+    std::copy(F[1], F[1] + 5, F[0]);
+    std::copy(next, next + 5, F[1]);
+    factor *= alternate;
+  }
+}
+
+/// What both forms need: the roots, the moduli and the phases' rates where the tilt turns.
+struct Common {
+  const HeavyTopStart& start;
+  const TiltCubic& cubic;
+  DD k, kc, p;              // modulus, complement, u = u1 + D sn^2(p t + ..)
+  DD sn, cn, dn;            // at the start
+  DD A_sn, A_cn, A_dn;      // times sqrt(mu2): of the imaginary argument of alpha, modulus k'
+  DD B_sn, B_cn, B_dn;      // times k' sqrt(e1): of beta
+  DD rate_a, rate_b;        // at the highest and the lowest point
+  double sA, sB;
+};
+
+/// N1, N2, theta at the start and their derivatives by the theta argument, up to one common real factor.
+struct AtStart {
+  Complex N1, D1, N2, D2;
+  DD theta, d_theta;
+};
+
+/// The direction of the constant c in value = c N, slope = c (i k N + speed (D - N theta' / theta)), from whichever
+/// is not small: next to the vertical, where a value passes 0, from the slope.
+Complex direction(Complex value, Complex slope, Complex N, Complex D, DD k, DD speed, const AtStart& f) {
+  if (norm(N).hi > 0.1 * norm(D).hi) return unit(unit(value) * conj(unit(N)));
+  const Complex slope_N = k * times_i(N) + speed * (D - (f.d_theta / f.theta) * N);
+  return unit(unit(slope) * conj(unit(slope_N)));
+}
+
+/// The two factors in front, of given size, so that the attitude at t = 0 is the start's.
+void set_factors(HeavyTopConstants& c, const HeavyTopStart& s, DD ca, DD cb, DD kA, DD kB, DD speed, const AtStart& f) {
+  const Complex alpha{s.w, s.z}, beta{s.x, s.y}, wp{s.w1, s.w2};
+  const DD half = DD(0.5);
+  const Complex alpha_slope = half * (s.w3 * times_i(alpha) - conj(wp) * beta);
+  const Complex beta_slope = half * (wp * alpha - s.w3 * times_i(beta));
+  const Complex a = ca * direction(alpha, alpha_slope, f.N1, f.D1, kA, speed, f);
+  const Complex b = cb * direction(beta, beta_slope, f.N2, f.D2, kB, speed, f), ab = conj(a) * b;
+  c.ca_re = a.re.hi, c.ca_im = a.im.hi, c.cb_re = b.re.hi, c.cb_im = b.im.hi;
+  c.w12_re = 2.0 * ab.re.hi, c.w12_im = 2.0 * ab.im.hi;
+  c.speed = speed.hi, c.turn = (kA + kB).hi;
+}
+
+/// Half circles by which N1 and N2 turn over a nutation; none when they pass 0 on the way.
+double turns_of_a(const Common& m) { return m.cubic.mu1.hi == 0.0 ? 0.0 : m.sA; }
+double turns_of_b(const Common& m) { return m.cubic.x2.hi == 0.0 ? 0.0 : m.sB; }
+
+void set_up_trig(HeavyTopConstants& c, HeavyTopMotion& motion, const Common& m) {
+  const Chain chain(m.k, m.kc);
+  const DD nome = chain.nome(), nu = m.p / chain.two_K_over_pi();
+  const auto z = math::descend_real(chain, m.sn, m.cn, DD(1.0), m.dn);
+  const Complex z0 = unit({z.X, z.Y});
+  const Series a(chain, nome, m.A_sn, m.A_cn, m.A_dn), b(chain, nome, m.B_sn, m.B_cn, m.B_dn);
+  const DD kA = m.rate_a - DD(m.sA) * nu * a.rate(), kB = m.rate_b - DD(m.sB) * nu * b.rate();
+
+  // theta4 at a quarter period and at 0, for the sizes of the factors
+  DD high = DD(1.0), low = DD(1.0), q_n2 = nome, q_odd = nome * nome * nome;
+  for (int n = 1; n < terms; ++n) {
+    high = high + q_n2 + q_n2;
+    low = low + (n % 2 ? -(q_n2 + q_n2) : q_n2 + q_n2);
+    q_n2 = q_n2 * q_odd;
+    q_odd = q_odd * nome * nome;
+  }
+  const DD ca = sqrt(math::scaled(m.cubic.mu2, 0.5)) * high / a.sum_cosh();
+  const DD cb = sqrt(math::scaled(m.cubic.e1, 0.5)) * low / b.sum_cosh();
+
+  // the start, by addition of angles: never from a rounded z0
+  AtStart f{};
+  Complex odd = z0, even{DD(1.0), DD(0.0)};  // angles (2n+1) z0 and 2n z0
+  const Complex twice = z0 * z0;
+  DD weight = DD(1.0), q_step = nome;        // (-1)^n q^(n^2), twice that from n = 1 on
+  for (int n = 0; n < terms; ++n) {
+    const DD alternate = DD(n % 2 ? -1.0 : 1.0), m1 = DD(2.0 * n + 1.0);
+    const DD ac = alternate * a.cosh[n], as = DD(m.sA) * alternate * a.sinh[n], bs = DD(m.sB) * b.sinh[n];
+    f.N1 = f.N1 + Complex{ac * odd.im, -as * odd.re};
+    f.D1 = f.D1 + m1 * Complex{ac * odd.re, as * odd.im};
+    f.N2 = f.N2 + Complex{b.cosh[n] * odd.re, bs * odd.im};
+    f.D2 = f.D2 + m1 * Complex{-b.cosh[n] * odd.im, bs * odd.re};
+    f.theta = f.theta + weight * even.re;
+    f.d_theta = f.d_theta - DD(2.0 * n) * weight * even.im;
+    weight = -(n == 0 ? weight + weight : weight) * q_step;
+    q_step = q_step * nome * nome;
+    odd = odd * twice, even = even * twice;
+  }
+  set_factors(c, m.start, ca, cb, kA, kB, nu, f);
+
+  c.hyper = false;
+  c.rate_z = in_cycles(nu), c.rate_a = in_cycles(kA), c.rate_b = in_cycles(kB);
+  c.start_z = in_cycles(math::atan2(z0.im, z0.re)).hi;
+  const double V = -1.0, W = 1.0;  // cos(2n+1)z = cos z V_n(cos 2z), sin(2n+1)z = sin z W_n(cos 2z)
+  to_monomials(a.cosh, -1, 0, W, 1, c.p[0]);
+  to_monomials(a.sinh, -1, 0, V, -m.sA, c.p[1]);
+  to_monomials(a.cosh, -1, 1, V, 1, c.p[2]);
+  to_monomials(a.sinh, -1, 1, W, m.sA, c.p[3]);
+  to_monomials(b.cosh, 1, 0, V, 1, c.p[4]);
+  to_monomials(b.sinh, 1, 0, W, m.sB, c.p[5]);
+  to_monomials(b.cosh, 1, 1, W, -1, c.p[6]);
+  to_monomials(b.sinh, 1, 1, V, m.sB, c.p[7]);
+
+  motion.period = (math::pi<DD>() / nu).hi;
+  motion.precession = (kA + kB + nu * DD(turns_of_a(m) + turns_of_b(m))).hi;
+}
+
+/// cos and sin of the multiples of an angle, `first` and then steps of 2.
+void multiples(Complex e, int first, DD (&cosine)[4], DD (&sine)[4]) {
+  const Complex twice = e * e;
+  Complex turn = first == 0 ? Complex{DD(1.0), DD(0.0)} : e;
+  for (int n = 0; n < 4; ++n, turn = turn * twice) cosine[n] = turn.re, sine[n] = turn.im;
+}
+
+void set_up_hyper(HeavyTopConstants& c, HeavyTopMotion& motion, const Common& m) {
+  const Chain chain(m.kc, m.k);
+  const bool closed = m.kc.hi > 0.0;  // else homoclinic exactly
+  const DD nome = chain.nome(), speed = m.p / chain.two_K_over_pi();
+  const DD scale_a = sqrt(m.cubic.mu2), scale_b = m.kc * sqrt(m.cubic.e1);
+  const auto ea = math::descend_real(chain, m.A_sn / scale_a, m.A_cn / scale_a, DD(1.0), m.A_dn / scale_a);
+  const auto eb = closed ? math::descend_real(chain, m.B_sn / scale_b, m.B_cn / scale_b, DD(1.0), m.B_dn / scale_b)
+                         : math::RealDescent<DD>{DD(1.0), DD(0.0)};
+  const Complex eta_a = unit({ea.X, DD(m.sA) * ea.Y}), eta_b = unit({eb.X, DD(m.sB) * eb.Y});
+  DD cos_a[4], sin_a[4], cos_b[4], sin_b[4];
+  multiples(eta_a, 1, cos_a, sin_a);
+  multiples(eta_b, 0, cos_b, sin_b);
+  const auto sums = [&](double sg, DD E, DD g) {
+    return heavy_top_hyper_sums<DD>(cos_a, sin_a, cos_b, sin_b, nome, DD(sg), E, g);
+  };
+  const auto theta = [&](DD E, DD g, double sg, DD* slope) {  // of the same argument, times E
+    DD u = DD(1.0), d = E * E, sum = u + d, q_n = nome;
+    *slope = DD(sg) * (u - d);
+    for (int n = 1; n < 5; ++n) {
+      u = u * g * q_n;
+      d = d * q_n * nome * E * E;
+      q_n = q_n * nome * nome;
+      sum = sum + (u + d);
+      *slope = *slope + DD((2.0 * n + 1.0) * sg) * (u - d);
+    }
+    return sum;
+  };
+  DD unused;
+
+  // the highest point (v = vK, e^-vK = sqrt q') and the lowest (v = 0)
+  const DD E_high = root_of(nome);
+  const auto high = sums(1.0, E_high, DD(closed ? 1.0 : 0.0)), low = sums(1.0, DD(1.0), nome);
+  const Complex high1{high.n1_re, high.n1_im};
+  const Complex slope1 = Complex{high.d1_re, high.d1_im} * conj(high1);
+  const DD kA = m.rate_a - speed * slope1.im / (squared(high1.re) + squared(high1.im));
+  const DD kB = m.rate_b - speed * low.d2_im / low.n2_re;
+  const DD ca = sqrt(math::scaled(m.cubic.mu2, 0.5)) * theta(E_high, DD(closed ? 1.0 : 0.0), 1.0, &unused) / norm(high1);
+  const DD cb = sqrt(math::scaled(m.cubic.e1, 0.5)) * theta(DD(1.0), nome, 1.0, &unused) / abs(low.n2_re);
+
+  const auto end = math::descend_imaginary(chain, m.sn.hi < 0.0 ? -m.sn : m.sn, m.cn, m.dn);
+  const DD E0 = end.exp_minus();
+  const double side = m.sn.hi < 0.0 ? -1.0 : 1.0;
+  const DD g0 = nome.hi > 1e-290 ? nome / (E0 * E0) : DD(0.0);
+  const auto first = sums(side, E0, g0);
+  AtStart f{{first.n1_re, first.n1_im}, {first.d1_re, first.d1_im}, {first.n2_re, first.n2_im},
+            {first.d2_re, first.d2_im}, DD(0.0), DD(0.0)};
+  f.theta = theta(E0, g0, side, &f.d_theta);
+  set_factors(c, m.start, ca, cb, kA, kB, speed, f);
+
+  const DD v0 = DD(-side) * math::log(E0);
+  c.hyper = true;
+  c.rate_a = in_cycles(kA), c.rate_b = in_cycles(kB);
+  c.v_rate_hi = speed.hi, c.v_rate_lo = speed.lo;
+  c.v_start_hi = v0.hi, c.v_start_lo = v0.lo;
+  c.nome = nome.hi;
+  for (int n = 0; n < 4; ++n) {
+    c.cos_a[n] = cos_a[n].hi, c.sin_a[n] = sin_a[n].hi, c.cos_b[n] = cos_b[n].hi, c.sin_b[n] = sin_b[n].hi;
+  }
+  motion.period = infinity;
+  motion.precession = std::numeric_limits<double>::quiet_NaN();
+  if (!closed) return;
+
+  const DD passage = -math::log(nome);  // 2 vK
+  const DD rate = speed / passage, half = math::scaled(math::pi<DD>(), 0.5);
+  c.v_passage_hi = passage.hi, c.v_passage_lo = passage.lo;
+  c.rate_z = {rate.hi, rate.lo};
+  c.start_z = (v0 / passage).hi;
+  // each passage turns alpha and beta by -2 eta; the half circle makes the quaternion go on without a change of sign
+  const DD angle_a = math::atan2(eta_a.im, eta_a.re), angle_b = math::atan2(eta_b.im, eta_b.re);
+  const DD pass_a = DD(m.sA) * half - angle_a, pass_b = DD(m.sB) * half - angle_b;
+  c.passage_a = in_cycles(pass_a + pass_a), c.passage_b = in_cycles(pass_b + pass_b);
+  motion.period = (DD(1.0) / rate).hi;
+  const DD turn = DD(turns_of_a(m) + turns_of_b(m)) * half - angle_a - angle_b;
+  motion.precession = (kA + kB + rate * (turn + turn)).hi;
+}
+
+/// The tilt never changes: alpha and beta only turn. Written as the trig form with z at a quarter cycle for ever.
+void set_up_steady(HeavyTopConstants& c, HeavyTopMotion& motion, const HeavyTopStart& s, const TiltStart& t) {
+  const DD kA = math::scaled(s.w3 - t.a + (t.op.hi > 0.0 ? t.ab / t.op : DD(0.0)), 0.5);
+  const DD kB = math::scaled(t.a - s.w3 + (t.om.hi > 0.0 ? t.ba / t.om : DD(0.0)), 0.5);
+  c.hyper = false;
+  c.rate_a = in_cycles(kA), c.rate_b = in_cycles(kB);
+  c.start_z = 0.25;
+  c.p[0][0] = 1.0, c.p[5][0] = 1.0;  // N1 = 1, N2 = i
+  const Complex a{s.w, s.z}, b{s.y, -s.x}, ab = conj(a) * b;
+  c.ca_re = a.re.hi, c.ca_im = a.im.hi, c.cb_re = b.re.hi, c.cb_im = b.im.hi;
+  c.w12_re = 2.0 * ab.re.hi, c.w12_im = 2.0 * ab.im.hi;
+  c.turn = (kA + kB).hi;
+  motion.sin_low = motion.sin_high = root_of(t.om).hi;
+  motion.cos_low = motion.cos_high = root_of(t.op).hi;
+  motion.period = 0.0;
+  const bool vertical = t.om.hi == 0.0 || t.op.hi == 0.0;
+  motion.precession = vertical ? std::numeric_limits<double>::quiet_NaN() : (kA + kB).hi;
+  motion.kind = t.om.hi == 0.0   ? TopKind::sleeping
+                : t.op.hi == 0.0 ? TopKind::hanging
+                                 : TopKind::steady_precession;
+}
+
+TopKind kind_of(const HeavyTopStart& s, const TiltStart& t, const TiltCubic& cubic, DD kc) {
+  if (kc.hi == 0.0) return TopKind::homoclinic;
+  if (s.w3.hi == 0.0) {
+    const bool planar = t.sv.hi * t.sv.hi <= 1e-31 * t.wp2.hi;
+    return planar ? TopKind::planar_pendulum : TopKind::spherical_pendulum;
+  }
+  if (t.ab.hi == 0.0 || t.ba.hi == 0.0) return TopKind::monotone;  // through the vertical: phi' = a / (1 +- u)
+  // phi' has the sign of b - a u, at the turning points
+  const DD high = t.sv - t.a * cubic.d2, low = t.sv - t.a * cubic.d1;
+  const double size = std::abs(t.sv.hi) + std::abs(t.a.hi) * (std::abs(cubic.d1.hi) + std::abs(cubic.d2.hi));
+  if (std::abs(high.hi) <= 4e-16 * size) return TopKind::cuspidal;
+  return (high.hi < 0.0) == (low.hi < 0.0) ? TopKind::monotone : TopKind::looping;
+}
+
+}  // namespace
+
+HeavyTopMotion set_up_heavy_top(const HeavyTopStart& given, HeavyTopConstants& c) {
+  HeavyTopStart s = given;
+  const DD n = sqrt(squared(s.x) + squared(s.y) + squared(s.z) + squared(s.w));
+  s.x = s.x / n, s.y = s.y / n, s.z = s.z / n, s.w = s.w / n;
+
+  HeavyTopMotion motion;
+  const TiltStart given_tilt(s);
+  const Enlargement enlargement(s, given_tilt);
+  const TiltStart t(s);
+  motion.energy = math::scaled(s.A * given_tilt.wp2 + s.C * s.w3 * s.w3, 0.5) + s.M * given_tilt.u0;
+  motion.p_phi = s.A * (given_tilt.sv + given_tilt.a * given_tilt.u0);
+  motion.p_psi = s.C * s.w3;
+  c.w3 = s.w3.hi;
+  if (t.c0.hi == 0.0 && t.c1.hi == 0.0) {
+    set_up_steady(c, motion, s, t);
+  } else {
+    const TiltCubic cubic(t);
+    const DD E = cubic.E, D = cubic.D;
+    const DD k = root_of(t.bt * D / E), kc = root_of(cubic.kc2_E / E);
+    const Common m{
+        .start = s, .cubic = cubic, .k = k, .kc = kc, .p = math::scaled(sqrt(E), 0.5),
+        .sn = DD(sign(t.du0)) * root_of(-cubic.d1 / D), .cn = root_of(cubic.d2 / D), .dn = root_of(cubic.e3 / E),
+        .A_sn = root_of(cubic.mu1), .A_cn = sqrt(D), .A_dn = root_of(D * cubic.m3 / E),
+        .B_sn = root_of(cubic.x2), .B_cn = root_of(D * cubic.X3 / E), .B_dn = kc * sqrt(D),
+        .rate_a = math::scaled(s.w3 - t.a + cubic.ab / cubic.mu2, 0.5),
+        .rate_b = math::scaled(t.a - s.w3 + cubic.ba / cubic.e1, 0.5),
+        .sA = sign(cubic.ab), .sB = sign(cubic.ba)};
+    if (k.hi * k.hi <= 0.97) {
+      set_up_trig(c, motion, m);
+    } else {
+      set_up_hyper(c, motion, m);
+    }
+    motion.sin_low = root_of(cubic.e1).hi, motion.cos_low = root_of(cubic.mu1).hi;
+    motion.sin_high = root_of(cubic.x2).hi, motion.cos_high = root_of(cubic.mu2).hi;
+    motion.kind = kind_of(s, t, cubic, kc);
+  }
+  enlargement.undo(c, motion);
+  if (s.M.hi == 0.0) motion.kind = TopKind::free;
+  return motion;
+}
+
+}  // namespace polhode::exact

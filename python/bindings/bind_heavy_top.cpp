@@ -1,0 +1,141 @@
+#include <pybind11/operators.h>
+
+#include <vector>
+
+#include "convert.hpp"
+#include "polhode/core/error.hpp"
+#include "polhode/exact/heavy_top.hpp"
+
+namespace polhode::python {
+namespace {
+
+HeavyTop make(py::handle inertia, py::handle weight_arm, py::handle omega, py::handle attitude) {
+  const double arm = to_real(weight_arm, "weight_arm");
+  const Vector3d w = to_vector3(omega, "omega");
+  const Quat q = to_attitude(attitude, "attitude");
+  if (py::isinstance<InertiaTensor>(inertia)) return {inertia.cast<const InertiaTensor&>(), arm, w, q};
+  const Array array = to_array(inertia, "inertia");
+  if (array.ndim() == 2) return {InertiaTensor(to_matrix3(array, "inertia")), arm, w, q};
+  return {to_vector3(array, "inertia"), arm, w, q};
+}
+
+/// A new array of shape t.shape + (width,).
+Array result_for(const Array& t, py::ssize_t width) {
+  std::vector<py::ssize_t> shape(t.shape(), t.shape() + t.ndim());
+  shape.push_back(width);
+  return Array(shape);
+}
+
+py::tuple at(const HeavyTop& top, py::handle t) {
+  if (PyFloat_CheckExact(t.ptr())) {
+    const State state = top.at(PyFloat_AS_DOUBLE(t.ptr()));
+    return py::make_tuple(from_vector3(state.omega), from_quat(state.attitude));
+  }
+  const Array times = to_array(t, "t");
+  Array omega = result_for(times, 3), attitude = result_for(times, 4);
+  const double* in = times.data();
+  double *w = omega.mutable_data(), *q = attitude.mutable_data();
+  const auto n = static_cast<std::size_t>(times.size());
+  {
+    py::gil_scoped_release nogil;
+    top.at(in, n, w, q);
+  }
+  return py::make_tuple(omega, attitude);
+}
+
+}  // namespace
+
+void bind_heavy_top(py::module_& m) {
+  py::class_<HeavyTop> cls(m, "HeavyTop", R"(Lagrange's top: a symmetric body held at a point of its axis, under gravity.
+
+In closed form at any time: looping, cuspidal and monotone precession, both steady precessions, sleeping and hanging tops
+on both sides of stability, planar and spherical pendulums, next to and on the homoclinic motion. The error against the
+exact motion of the same float64 input is a few units of rounding at every time.
+
+Parameters
+----------
+inertia : array_like of shape (3,), InertiaTensor, or array_like of shape (3, 3)
+    About the pivot, in body axes, two moments equal [kg m^2]; three numbers are moments along the body axes. The
+    symmetry axis is body z for (A, A, C); else the axis of the third moment, its largest component positive.
+weight_arm : float
+    Mass times gravity times the distance of the centre of mass from the pivot, signed along the symmetry axis [N m].
+    Gravity points along -z of space.
+omega : array_like, shape (3,)
+    Angular velocity at t = 0, in body axes [rad/s].
+attitude : array_like of shape (4,), or a Rotation
+    Body to space at t = 0, (x, y, z, w).
+
+Raises
+------
+InvalidInput
+    Not finite, a body no mass makes, no two moments equal, an attitude that is not unit, or rates beyond float64.
+
+Notes
+-----
+F. Klein and A. Sommerfeld, "Ueber die Theorie des Kreisels" (1897-1910); see docs/heavy_top.md.)");
+  cls.attr("__module__") = "polhode";
+  cls.def(py::init(&make), py::arg("inertia"), py::arg("weight_arm"), py::arg("omega"),
+          py::arg("attitude") = py::make_tuple(0, 0, 0, 1))
+      .def("at", &at, py::arg("t"), R"(Angular velocity and attitude at the given times.
+
+Parameters
+----------
+t : array_like, any shape
+    Times [s], negative ones too, up to abs(omega t) = 1e25 rad.
+
+Returns
+-------
+omega : ndarray, shape (..., 3)
+    In body axes [rad/s].
+attitude : ndarray, shape (..., 4)
+    Body to space, unit, (x, y, z, w).
+
+Raises
+------
+InvalidInput
+    A time that is not finite, or too long for its phase to have digits.)")
+      .def_property_readonly("kind", [](const HeavyTop& top) { return to_text(top.kind()); },
+                             "'free' (no weight), 'sleeping', 'hanging', 'steady_precession', 'planar_pendulum',\n"
+                             "'spherical_pendulum', 'homoclinic', 'looping', 'cuspidal' or 'monotone'.")
+      .def_property_readonly("nutation_period", &HeavyTop::nutation_period,
+                             "Period of the tilt [s]: infinite for 'homoclinic', 0 where the tilt is constant.")
+      .def_property_readonly("tilt_bounds",
+                             [](const HeavyTop& top) { return py::make_tuple(top.tilt_min(), top.tilt_max()); },
+                             "(least, greatest) angle between the symmetry axis and space z [rad].")
+      .def_property_readonly("precession_rate", &HeavyTop::precession_rate,
+                             "Mean rate at which the axis turns round space z, over a nutation [rad/s]; NaN where there\n"
+                             "is none to speak of (the axis stays vertical, or 'homoclinic').")
+      .def_property_readonly("energy", &HeavyTop::energy, "Kinetic energy and weight_arm cos(tilt) [J].")
+      .def_property_readonly("p_phi", &HeavyTop::p_phi, "Angular momentum about space z [kg m^2/s].")
+      .def_property_readonly("p_psi", &HeavyTop::p_psi, "Angular momentum about the symmetry axis [kg m^2/s].")
+      .def_property_readonly("axis", [](const HeavyTop& top) { return from_vector3(top.axis()); },
+                             "(3,) the symmetry axis in body axes, unit.")
+      .def_property_readonly("inertia", &HeavyTop::inertia, "The InertiaTensor about the pivot.")
+      .def_property_readonly("weight_arm", &HeavyTop::weight_arm, "Signed along the symmetry axis [N m].")
+      .def_property_readonly("omega", [](const HeavyTop& top) { return from_vector3(top.omega()); },
+                             "(3,) omega at t = 0, in body axes [rad/s].")
+      .def_property_readonly("attitude", [](const HeavyTop& top) { return from_quat(top.attitude()); },
+                             "(4,) attitude at t = 0.")
+      .def(py::self == py::self)
+      .def("__hash__",
+           [](const HeavyTop& top) {
+             return py::hash(py::make_tuple(top.weight_arm(), top.omega()[0], top.omega()[1], top.omega()[2]));
+           })
+      .def("__repr__", [](const HeavyTop& top) {
+        const auto text = [](const Array& a) { return py::cast<std::string>(py::str(a.attr("tolist")())); };
+        return "HeavyTop(" + py::cast<std::string>(py::repr(py::cast(top.inertia()))) +
+               ", weight_arm=" + to_text(top.weight_arm()) + ", omega=" + text(from_vector3(top.omega())) +
+               ", attitude=" + text(from_quat(top.attitude())) + ")";
+      });
+  cls.def(py::pickle(
+      [](const HeavyTop& top) {
+        return py::make_tuple(top.inertia(), top.weight_arm(), from_vector3(top.omega()), from_quat(top.attitude()));
+      },
+      [](const py::tuple& s) {
+        const Array q = to_array_with_tail(s[3], "attitude", {4});  // as it was: normalising again could move an ulp
+        return HeavyTop(s[0].cast<const InertiaTensor&>(), to_real(s[1], "weight_arm"), to_vector3(s[2], "omega"),
+                        {q.data()[0], q.data()[1], q.data()[2], q.data()[3]});
+      }));
+}
+
+}  // namespace polhode::python

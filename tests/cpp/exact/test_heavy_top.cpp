@@ -1,0 +1,252 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "polhode/core/error.hpp"
+#include "polhode/exact/free_motion.hpp"
+#include "polhode/exact/heavy_top.hpp"
+
+using namespace polhode;
+
+namespace {
+
+constexpr double e = 2.2e-16;
+constexpr double pi = std::numbers::pi;
+const Quat level{std::sqrt(0.5), 0, 0, std::sqrt(0.5)}, up{}, down{1, 0, 0, 0};
+const Quat tilted = normalized({0.3, 0.1, 0.2, 0.9});
+
+double angle_between(const Quat& a, const Quat& b) {
+  const Quat d = conjugate(a) * b;
+  return 2 * std::asin(std::min(1.0, std::hypot(d.x, d.y, d.z)));
+}
+
+/// Largest difference in angle and in omega (relative to `speed`) between two tops over some times.
+double largest_difference(const HeavyTop& a, const HeavyTop& b, const std::vector<double>& times, double speed) {
+  double worst = 0;
+  for (const double t : times) {
+    const State s = a.at(t), r = b.at(t);
+    worst = std::max({worst, angle_between(s.attitude, r.attitude), (s.omega - r.omega).norm() / speed});
+  }
+  return worst;
+}
+
+/// Energy and both momenta stay the start's, the attitude stays unit, and t = 0 gives the start back.
+void check_invariants(const Vector3d& moments, double arm, const Vector3d& omega, const Quat& q, double span) {
+  const HeavyTop top(moments, arm, omega, q);
+  const double size = 0.5 * moments.dot(omega.cwiseAbs2()) + std::abs(arm);
+  if (std::isfinite(top.nutation_period())) span = std::max(span, 2 * top.nutation_period());  // sees the fastest, too
+  double L = moments.cwiseProduct(omega).norm();
+  for (int i = -20; i <= 20; ++i) L = std::max(L, moments.cwiseProduct(top.at(span * (i / 20.0)).omega).norm());
+  for (int i = -20; i <= 20; ++i) {
+    const State s = top.at(span * (i / 20.0));
+    const Vector3d L_B = moments.cwiseProduct(s.omega);
+    const Vector3d up_B = rotate(conjugate(s.attitude), Vector3d::UnitZ());
+    CHECK(std::abs(norm(s.attitude) - 1) <= 4 * e);
+    CHECK(std::abs(0.5 * L_B.dot(s.omega) + arm * up_B[2] - top.energy()) <= 20 * e * size);
+    CHECK(std::abs(L_B.dot(up_B) - top.p_phi()) <= 20 * e * L);
+    CHECK(s.omega[2] == omega[2]);
+  }
+  const State first = top.at(0.0);
+  CHECK((first.omega - omega).norm() <= 20 * e * std::max(omega.norm(), std::sqrt(std::abs(arm) / moments[0])));
+  CHECK(angle_between(first.attitude, q) <= 20 * e);
+}
+
+}  // namespace
+
+TEST_CASE("energy and the two momenta stay the start's, in every regime of the top") {
+  const Vector3d bodies[] = {{1, 1, 0.5}, {1, 1, 1}, {1, 1, 1.9}, {1, 1, 1e-9}};
+  const Vector3d starts[] = {{0, 0, 5}, {0.1, 0.2, 5}, {1, -2, 3}, {2, 0, 0}, {1e-8, 0, 1}, {0, 1e-4, 3.9}, {0, 0, 0}, {1e-60, 0, 8}};
+  for (const Vector3d& moments : bodies)
+    for (const Vector3d& omega : starts)
+      for (const double arm : {1.0, -1.0, 0.0, 1e-12, 30.0})
+        for (const Quat& q : {up, down, level, tilted, normalized({1e-8, 0, 0.3, 1}), normalized({1, 0, 1e-12, 0})})
+          check_invariants(moments, arm, omega, q, 40.0);
+}
+
+TEST_CASE("powers of two scale out exactly, and 1e-150 to 1e150 are ordinary") {
+  const Vector3d moments{1, 1, 0.5}, omega{0.1, 0.2, 5};
+  const HeavyTop top(moments, 1.3, omega, tilted);
+  for (const int k : {-480, -50, 50, 480}) {
+    const double s = std::ldexp(1.0, k);
+    const HeavyTop faster(moments, 1.3 * s * s, omega * s, tilted), heavier(moments * s, 1.3 * s, omega, tilted);
+    const State a = top.at(7.7), b = faster.at(7.7 / s), c = heavier.at(7.7);
+    CHECK(a.omega * s == b.omega);
+    CHECK(a.attitude == b.attitude);
+    CHECK(a.omega == c.omega);
+    CHECK(a.attitude == c.attitude);
+    CHECK(faster.nutation_period() == top.nutation_period() / s);
+  }
+  check_invariants(moments, 1e300, Vector3d(0.1e150, 0.2e150, 5e150), tilted, 1e-148);
+  check_invariants(moments * 1e40, 1e-260, omega * 1e-150, tilted, 1e152);
+}
+
+TEST_CASE("without weight the top is the free symmetric body") {
+  for (const double C : {0.3, 1.0, 1.7}) {
+    const Vector3d moments{1, 1, C}, omega{0.3, -0.7, 2.0};
+    const FreeMotion free(moments, omega, tilted);
+    for (const double arm : {0.0, 1e-300, -1e-300, 1e-40}) {
+      const HeavyTop top(moments, arm, omega, tilted);
+      for (const double t : {0.0, 0.7, -3.0, 1e3, 1e6, 1e9}) {
+        const State a = top.at(t), b = free.at(t);
+        CHECK((a.omega - b.omega).norm() <= 20 * e * omega.norm());
+        CHECK(angle_between(a.attitude, b.attitude) <= 20 * e);
+      }
+    }
+  }
+}
+
+TEST_CASE("the two forms of the series agree where one takes over from the other") {
+  // Level starts about the homoclinic motion, w1^2 + w3^2 = 2 bt; w1 is closed in on the double where the form changes.
+  for (const double spin : {0.0, 0.4, 1.5, 3.0}) {
+    for (const double side : {1.0, -1.0}) {
+      const auto make = [&](double w1) {
+        return HeavyTop(Vector3d(1, 1, 1), 12.5 * side, {w1, spin * side, spin * side}, {side * level.x, 0, 0, level.w});
+      };
+      double low = 1.0, high = std::sqrt(25 - spin * spin);
+      CHECK(make(high).constants().hyper);
+      while (std::nextafter(low, high) < high) {
+        const double middle = low + (high - low) / 2;
+        (make(middle).constants().hyper == make(low).constants().hyper ? low : high) = middle;
+      }
+      const std::vector<double> times{0.0, 0.1, 1.0, 3.0, 10.0, 100.0};
+      const HeavyTop a = make(low), b = make(high), before = make(std::nextafter(low, 0.0));
+      CHECK(a.constants().hyper != b.constants().hyper);
+      const double jump = largest_difference(a, b, times, 5.0), step = largest_difference(before, a, times, 5.0);
+      CHECK(jump <= 20 * (step + 4 * e));
+      CHECK(std::abs(a.nutation_period() - b.nutation_period()) <= 1e-13 * a.nutation_period());
+      CHECK(std::abs(a.precession_rate() - b.precession_rate()) <= 1e-13 * (1 + std::abs(a.precession_rate())));
+    }
+  }
+}
+
+TEST_CASE("the kind is decided at construction") {
+  const auto kind = [](double arm, Vector3d omega, Quat q) { return HeavyTop(Vector3d(1, 1, 0.5), arm, omega, q).kind(); };
+  CHECK(kind(0, {1, 2, 3}, tilted) == TopKind::free);
+  CHECK(kind(1, {0, 0, 9}, up) == TopKind::sleeping);
+  CHECK(kind(1, {0, 0, 1}, up) == TopKind::sleeping);
+  CHECK(kind(1, {0, 0, 1}, down) == TopKind::hanging);
+  CHECK(kind(-1, {0, 0, 1}, down) == TopKind::sleeping);
+  CHECK(kind(-1, {0, 0, 1}, up) == TopKind::hanging);
+  CHECK(kind(1, {0, 1, 2}, level) == TopKind::steady_precession);
+  CHECK(kind(1, {0.3, 0, 0}, level) == TopKind::planar_pendulum);
+  CHECK(kind(1, {0.3, 0.1, 0}, level) == TopKind::spherical_pendulum);
+  CHECK(kind(1, {2, 0, 0}, down) == TopKind::homoclinic);
+  CHECK(kind(1, {0, 0, 6}, tilted) == TopKind::cuspidal);
+  CHECK(kind(1, {0, 3, 5}, level) == TopKind::monotone);
+  CHECK(kind(1, {0, -0.2, 5}, level) == TopKind::looping);
+  CHECK(kind(1, {0.1, 0, 5}, up) == TopKind::monotone);
+  CHECK(std::string(to_text(TopKind::steady_precession)) == "steady_precession");
+  CHECK(std::string(to_text(TopKind::monotone)) == "monotone");
+}
+
+TEST_CASE("period, bounds of the tilt and mean precession are those of the motion itself") {
+  const double K_half = 1.8540746773013719;  // K(m = 1/2): a pendulum let go level, its tilt twice a swing
+  const HeavyTop pendulum(Vector3d(1, 1, 0.5), 1.0, {0, 0, 0}, level);
+  CHECK(pendulum.nutation_period() == doctest::Approx(2 * K_half).epsilon(1e-15));
+  CHECK(pendulum.tilt_min() == doctest::Approx(pi / 2).epsilon(1e-15));
+  CHECK(pendulum.tilt_max() == doctest::Approx(pi).epsilon(1e-15));
+  CHECK(std::abs(pendulum.precession_rate()) <= 1e-30);
+
+  for (const double arm : {1.0, -1.0, 0.2}) {
+    for (const Vector3d& omega : {Vector3d(0.4, -0.3, 5), Vector3d(0.1, 0.02, 0.3), Vector3d(1, 2, 0), Vector3d(0.2, 0.1, 4.0)}) {
+      const HeavyTop top(Vector3d(1, 1, 0.5), arm, omega, tilted);
+      const int steps = 40000;
+      double least = 10, most = -10, turned = 0, last = 0;
+      for (int i = 0; i <= steps; ++i) {
+        const Vector3d axis = rotate(top.at(top.nutation_period() * i / steps).attitude, Vector3d::UnitZ());
+        const double tilt = std::atan2(std::hypot(axis[0], axis[1]), axis[2]), azimuth = std::atan2(axis[1], axis[0]);
+        least = std::min(least, tilt), most = std::max(most, tilt);
+        if (i > 0) turned += std::remainder(azimuth - last, 2 * pi);
+        last = azimuth;
+      }
+      CHECK(least == doctest::Approx(top.tilt_min()).epsilon(1e-6));
+      CHECK(most == doctest::Approx(top.tilt_max()).epsilon(1e-6));
+      CHECK(turned / top.nutation_period() == doctest::Approx(top.precession_rate()).epsilon(1e-9));
+    }
+  }
+  CHECK(HeavyTop(Vector3d(1, 1, 0.5), 1.0, {0, 1, 2}, level).precession_rate() == doctest::Approx(1.0).epsilon(1e-15));
+  CHECK(std::isinf(HeavyTop(Vector3d(1, 1, 0.5), 1.0, {2, 0, 0}, down).nutation_period()));
+}
+
+TEST_CASE("a pendulum with just the energy of the top follows its tanh, and stays up") {
+  const HeavyTop top(Vector3d(1, 1, 0.5), 1.0, {2, 0, 0}, down);
+  for (const double t : {0.0, 1e-9, 0.5, 2.0, 10.0, 100.0, 1e9}) {
+    const State s = top.at(t);
+    const Quat expected{1 / std::cosh(t), 0, 0, -std::tanh(t)};
+    CHECK(angle_between(s.attitude, expected) <= 4 * e);
+    CHECK((s.omega - Vector3d(2 / std::cosh(t), 0, 0)).norm() <= 4 * e);
+  }
+}
+
+TEST_CASE("a kick of 1e-150 to a hanging or a sleeping top stays in proportion") {
+  const auto kicked = [](double kick, double spin, const Quat& q) {
+    return HeavyTop(Vector3d(1, 1, 0.5), 1.0, {kick, -kick / 3, spin}, q);
+  };
+  for (const Quat& q : {up, down}) {
+    const HeavyTop small = kicked(std::ldexp(1.0, -500), 9.0, q), larger = kicked(std::ldexp(1.0, -60), 9.0, q);
+    for (const double t : {0.0, 0.4, 3.0, 50.0}) {
+      const State a = small.at(t), b = larger.at(t);
+      CHECK(std::abs(std::ldexp(a.omega[0], 440) - b.omega[0]) <= 20 * e * std::ldexp(1.0, -60));
+      CHECK(std::abs(std::ldexp(a.omega[1], 440) - b.omega[1]) <= 20 * e * std::ldexp(1.0, -60));
+    }
+  }
+  CHECK_THROWS_AS(kicked(1e-100, 1.0, up), InvalidInput);
+  CHECK_NOTHROW(kicked(1e-60, 1.0, up));
+}
+
+TEST_CASE("the axis is the third moment's: permuted moments and turned tensors are the same top") {
+  const Vector3d omega{0.4, -0.3, 5};
+  const HeavyTop top(Vector3d(1, 1, 0.5), 1.3, omega, tilted);
+  const Quat x_first{-0.5, -0.5, -0.5, 0.5};  // body axes (x, y, z) of the permuted top are (y, z, x) of the first
+  const HeavyTop about_x(Vector3d(0.5, 1, 1), 1.3, {omega[2], omega[0], omega[1]}, tilted * x_first);
+  CHECK(about_x.axis() == Vector3d::UnitX());
+  const HeavyTop about_y(Vector3d(1, 0.5, 1), 1.3, {omega[1], omega[2], omega[0]}, tilted * conjugate(x_first));
+  CHECK(about_y.axis() == Vector3d::UnitY());
+  const Quat q_NB = normalized({0.2, -0.1, 0.3, 0.9});
+  const Matrix3d I = to_matrix(q_NB) * Vector3d(1, 1, 0.5).asDiagonal() * to_matrix(q_NB).transpose();
+  const HeavyTop turned(InertiaTensor((I + I.transpose()) / 2), 1.3, rotate(q_NB, omega), tilted * conjugate(q_NB));
+  CHECK((turned.axis() - rotate(q_NB, Vector3d::UnitZ())).norm() <= 4 * e);
+  for (const double t : {0.0, 0.5, -2.0, 30.0}) {
+    const State s = top.at(t), x = about_x.at(t), y = about_y.at(t), n = turned.at(t);
+    CHECK(angle_between(x.attitude, s.attitude * x_first) <= 4 * e);
+    CHECK((x.omega - Vector3d(s.omega[2], s.omega[0], s.omega[1])).norm() <= 4 * e * 5);
+    CHECK(angle_between(y.attitude, s.attitude * conjugate(x_first)) <= 4 * e);
+    CHECK((y.omega - Vector3d(s.omega[1], s.omega[2], s.omega[0])).norm() <= 4 * e * 5);
+    CHECK(angle_between(n.attitude, s.attitude * conjugate(q_NB)) <= 200 * e);
+    CHECK((n.omega - rotate(q_NB, s.omega)).norm() <= 200 * e * 5);
+  }
+}
+
+TEST_CASE("what is no symmetric top, or beyond float64, is refused with its name") {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  const Vector3d fine{1, 1, 0.5}, omega{0.1, 0.2, 3};
+  const auto refusal = [](auto&& make) {
+    try {
+      make();
+    } catch (const InvalidInput& refused) {
+      return std::string(refused.what());
+    }
+    return std::string();
+  };
+  const auto starts = [](const std::string& text, const char* with) { return text.rfind(with, 0) == 0; };
+  CHECK(starts(refusal([&] { HeavyTop(Vector3d(1, 2, 2.5), 1, omega); }), "inertia:"));
+  CHECK(starts(refusal([&] { HeavyTop(Vector3d(1, 1 + 1e-9, 0.5), 1, omega); }), "inertia:"));
+  CHECK(starts(refusal([&] { HeavyTop(Vector3d(1, 1, 0), 1, omega); }), "inertia:"));
+  CHECK(starts(refusal([&] { HeavyTop(Vector3d(0, 0, 0), 1, omega); }), "inertia:"));
+  CHECK(starts(refusal([&] { HeavyTop(fine, nan, omega); }), "weight_arm:"));
+  CHECK(starts(refusal([&] { HeavyTop(fine, inf, omega); }), "weight_arm:"));
+  CHECK(starts(refusal([&] { HeavyTop(fine, 1, Vector3d(0, nan, 0)); }), "omega:"));
+  CHECK(starts(refusal([&] { HeavyTop(fine, 1, omega, {0, 0, 0, 2}); }), "attitude:"));
+  CHECK(starts(refusal([&] { HeavyTop(fine, 1, omega).at(nan); }), "t:"));
+  CHECK(starts(refusal([&] { HeavyTop(fine, 1, omega).at(1e26); }), "t:"));
+  const HeavyTop large(fine * 1e100, 1e100, omega * 1e150);
+  CHECK(starts(refusal([&] { large.energy(); }), "energy:"));
+  CHECK(std::isfinite(large.p_phi()));
+  CHECK(refusal([&] { HeavyTop(Vector3d(1, 1, 0), 1, {0.3, 0, 0}); }).empty());  // a point on a rod may swing
+  CHECK(refusal([&] { HeavyTop(fine, 0, {0, 0, 0}).at(1e20); }).empty());        // at rest
+}
