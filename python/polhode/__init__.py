@@ -4,6 +4,7 @@ from . import inertia as inertia
 from . import shapes as shapes
 from . import torques as torques
 from ._core import FreeMotion as FreeMotion
+from ._core import HeavyTop as HeavyTop
 from ._core import IntegrationFailure as IntegrationFailure
 from ._core import InvalidInput as InvalidInput
 from ._core import __version__ as __version__
