@@ -418,6 +418,16 @@ def test_lagranges_angles_fail_at_the_pole_and_say_so():
     assert not lagrange.success and "moved" in lagrange.message
 
 
+def test_the_librarys_rates_are_the_textbooks():
+    """1.2 and its inverse, and the textbook's A = R_WB^T."""
+    angles, speeds = [0.4, 1.1, -2.3], [0.9, -0.5, 1.7]
+    exact = [float(w) for w in rates(angles, speeds)]
+    np.testing.assert_allclose(ph.body_rates("ZXZ", angles, speeds), exact, atol=5e-16)
+    np.testing.assert_allclose(ph.euler_rates("ZXZ", angles, exact), speeds, atol=2e-15)
+    textbook = np.array(space_to_body(angles).tolist(), dtype=float)
+    np.testing.assert_allclose(ph.Rotation.from_euler("ZXZ", angles).as_matrix().T, textbook, atol=4e-16)
+
+
 def test_generalised_forces_of_the_library():
     """Q_psi is the torque's z' component; Q_phi and Q_theta are those about space's z and the line of nodes."""
     torque, angles = [0.7, -1.2, 0.4], [0.3, 1.1, -0.6]
