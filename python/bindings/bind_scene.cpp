@@ -24,6 +24,9 @@ Wanted to_wanted(py::handle value) {
   if (py::isinstance<py::str>(value)) {
     take(value.cast<std::string>());
   } else {
+    if (!py::isinstance<py::iterable>(value)) {
+      throw InvalidInput("scene.want", "'omega', 'attitude' or both", std::string(py::repr(value)));
+    }
     for (const py::handle one : py::iter(value)) take(std::string(py::str(one)));
   }
   return want;
@@ -47,12 +50,13 @@ InertiaTensor to_inertia(py::handle value, const char* name) {
 void bind_scene(py::module_& m) {
   py::class_<Scene>(m, "Scene")
       .def(py::init([](py::handle inertia, py::handle omega, py::handle attitude, const py::iterable& torques,
-                       py::handle times, py::handle want, py::handle t0, const std::string& name) {
+                       py::handle times, py::handle want, py::handle t0, const py::object& name) {
+             if (!py::isinstance<py::str>(name)) throw InvalidInput("scene.name", "text", std::string(py::repr(name)));
              std::vector<AnyTorque> list;
              for (const py::handle one : torques) list.push_back(to_torque(one, "scene.torques[" + std::to_string(list.size()) + "]"));
              return Scene(SceneParts{to_inertia(inertia, "scene.inertia"), to_vector3(omega, "scene.omega"),
                                      to_attitude(attitude, "scene.attitude"), std::move(list), to_times(times),
-                                     to_wanted(want), to_real(t0, "scene.t0"), name});
+                                     to_wanted(want), to_real(t0, "scene.t0"), name.cast<std::string>()});
            }),
            py::arg("inertia"), py::arg("omega"), py::arg("attitude"), py::arg("torques"), py::arg("times"),
            py::arg("want"), py::arg("t0"), py::arg("name"))

@@ -75,7 +75,8 @@ Custom make_custom(const py::object& function, bool uses_time, bool uses_attitud
   owner->function = function;
   owner->potential = potential;
   owner->data = data;
-  owner->claims = {uses_time, uses_attitude, uses_rates};
+  const Custom::Claims claims{uses_time, uses_attitude, uses_rates};
+  owner->claims = claims;
   if (is_compiled(function)) {
     const std::uintptr_t address = find_address(function);
     const std::uintptr_t user = data.is_none() ? 0 : data.cast<std::uintptr_t>();
@@ -86,7 +87,7 @@ Custom make_custom(const py::object& function, bool uses_time, bool uses_attitud
       }
       compiled_potential = reinterpret_cast<Custom::Potential>(find_address(potential));
     }
-    return Custom(reinterpret_cast<Custom::Function>(address), reinterpret_cast<void*>(user), owner->claims,
+    return Custom(reinterpret_cast<Custom::Function>(address), reinterpret_cast<void*>(user), claims,
                   compiled_potential, owner);
   }
   if (!PyCallable_Check(function.ptr())) {
@@ -101,7 +102,7 @@ Custom make_custom(const py::object& function, bool uses_time, bool uses_attitud
                        "only a compiled function is handed a pointer");
   }
   void* pointer = owner.get();
-  return Custom(&call_python, pointer, owner->claims, potential.is_none() ? nullptr : &call_python_potential,
+  return Custom(&call_python, pointer, claims, potential.is_none() ? nullptr : &call_python_potential,
                 std::move(owner));
 }
 

@@ -134,23 +134,24 @@ class RungeKuttaStepper final : public Stepper {
     }
   }
 
-  /// Hairer, Norsett, Wanner 1993, Solving ODEs I, sec. II.4, algorithm 4.14.
+  /// The first step, from the size of y' and y''. After Hairer, Norsett, Wanner 1993, Solving ODEs I, sec. II.4, made
+  /// free of the unit of time: all is measured against tau, the time in which y changes by its own size.
   double initial_step(double t_end) {
-    const double span = t_end - t_, direction = span < 0 ? -1.0 : 1.0;
+    const double span = std::abs(t_end - t_), direction = t_end < t_ ? -1.0 : 1.0;
     if (span == 0.0) return 0.0;
     const double d0 = problem_.error_norm(y_, y_, y_, tolerances_.rtol, tolerances_.atol);
     const double d1 = problem_.error_norm(k_[0], y_, y_, tolerances_.rtol, tolerances_.atol);
-    double h0 = d0 > 0 && d1 > 0 && std::isfinite(d1) ? 0.01 * d0 / d1 : 1e-3 * std::abs(span);
-    h0 = std::min(h0, std::abs(span));
+    if (d1 == 0.0) return direction * span;
+    const double tau = d0 > 0 && std::isfinite(d1) ? std::min(d0 / d1, span) : 0.1 * span;
+    const double h0 = 0.01 * tau;
     double y1[N], f1[N], change[N];
     for (int i = 0; i < N; ++i) y1[i] = y_[i] + direction * h0 * k_[0][i];
     compute(t_ + direction * h0, y1, f1);
     for (int i = 0; i < N; ++i) change[i] = (f1[i] - k_[0][i]) / h0;
     const double d2 = problem_.error_norm(change, y_, y1, tolerances_.rtol, tolerances_.atol);
-    const double largest = std::max(d2, std::isfinite(d1) ? d1 / std::max(std::abs(span), h0) : 0.0);
-    const double h1 = largest > 0 ? std::pow(0.01 / largest, 1.0 / Tableau::order) : 100 * h0;
-    const double h = std::isfinite(h1) ? std::min(100 * h0, h1) : h0;
-    return direction * std::min(h, std::abs(span));
+    const double size = std::max(d0, d2 * tau * tau);
+    const double h1 = std::isfinite(size) && size > 0 ? tau * std::pow(0.01 / size, 1.0 / Tableau::order) : h0;
+    return direction * std::min({100 * h0, h1, span});
   }
 
   const P& problem_;

@@ -76,6 +76,8 @@ class LagrangianProblem {
   }
 
   double error_norm(const double* error, const double* y0, const double* y1, double rtol, double atol) const {
+    // A step that leaps over theta = 0 or pi has lost what phi and psi mean: refused, whatever its error.
+    if ((std::sin(y0[1]) > 0) != (std::sin(y1[1]) > 0)) return std::numeric_limits<double>::quiet_NaN();
     const auto sum = [](const double* v) { return std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]); };
     const double e = sum(error + 3), allowed = rtol * std::max(sum(y0 + 3), sum(y1 + 3)) + atol;
     const double rates = e == 0.0 ? 0.0 : e / allowed, angles = sum(error) / (rtol + atol);

@@ -1,0 +1,30 @@
+"""The error measure of the scenes, and their stored truth."""
+
+import pathlib
+
+import numpy as np
+
+ROOT = pathlib.Path(__file__).parents[2]
+
+
+def attitude_error(attitude, reference):
+    """The largest rotation angle between two series of unit quaternions [rad], exact for small angles."""
+    near = np.linalg.norm(attitude - reference, axis=-1)
+    far = np.linalg.norm(attitude + reference, axis=-1)
+    return float(np.max(4 * np.arcsin(np.minimum(1.0, np.minimum(near, far) / 2))))
+
+
+def rates_error(omega, reference):
+    """The largest error of omega, relative to the largest omega."""
+    return float(np.linalg.norm(omega - reference, axis=-1).max() / np.linalg.norm(reference, axis=-1).max())
+
+
+def error(omega, attitude, reference):
+    """The error of a trajectory as docs/scenes.md defines it: the larger of the two."""
+    return max(rates_error(omega, reference["omega"]), attitude_error(attitude, reference["attitude"]))
+
+
+def truth(name):
+    """The stored truth of a scene: t, omega, attitude."""
+    with np.load(ROOT / f"scenes/reference/{name}.npz") as data:
+        return {key: data[key] for key in ("t", "omega", "attitude")}
