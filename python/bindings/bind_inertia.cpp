@@ -11,12 +11,6 @@
 namespace polhode::python {
 namespace {
 
-/// Properties hand out copies; read-only, so that writing into one is an error and not a silent nothing.
-Array constant(Array array) {
-  array.attr("setflags")(py::arg("write") = false);
-  return array;
-}
-
 const InertiaTensor& to_tensor(py::handle value, const char* name) {
   if (!py::isinstance<InertiaTensor>(value)) {
     throw InvalidInput(name, "an InertiaTensor", std::string(py::str(py::type::of(value))),
@@ -42,9 +36,9 @@ void bind_principal_axes(py::module_& m) {
 
 Made by :meth:`InertiaTensor.principal`.)");
   cls.attr("__module__") = "polhode";
-  cls.def_property_readonly("moments", [](const PrincipalAxes& p) { return constant(from_vector3(p.moments)); },
+  cls.def_property_readonly("moments", [](const PrincipalAxes& p) { return from_vector3(p.moments); },
                             "(3,) principal moments, ascending [kg m^2].")
-      .def_property_readonly("axes", [](const PrincipalAxes& p) { return constant(from_matrix3(p.axes)); },
+      .def_property_readonly("axes", [](const PrincipalAxes& p) { return from_matrix3(p.axes); },
                              "(3, 3) R_BP: the columns are the principal axes in the given axes, right-handed.")
       .def_property_readonly("symmetry", [](const PrincipalAxes& p) { return to_text(p.symmetry); },
                              "'spherical', 'oblate' (the largest moment apart), 'prolate' (the smallest) or 'triaxial'.")
@@ -54,7 +48,7 @@ Made by :meth:`InertiaTensor.principal`.)");
           "normal",
           [](const PrincipalAxes& p) -> std::optional<Array> {
             if (p.arbitrary() != Arbitrary::plane) return std::nullopt;
-            return constant(from_vector3(p.normal()));
+            return from_vector3(p.normal());
           },
           "(3,) the axis across the arbitrary plane, in the given axes; None when there is no such plane.")
       .def(py::self == py::self)
@@ -81,7 +75,7 @@ void bind_tensor(py::module_& m) {
 
 The angular momentum is L = matrix @ omega, so the products of inertia stand in the matrix with their minus sign,
 I_xy = -sum of m x y. A tensor that no body can have is refused, by relative thresholds. A rod's zero axial moment and a
-point's zero tensor are valid.
+point's zero tensor are valid. Tensors never change, compare and hash by value; arrays read from one are copies.
 
 Parameters
 ----------
@@ -115,12 +109,12 @@ moments : array_like, shape (3,)
     About x, y, z [kg m^2].
 physical : bool
     As for the class.)")
-      .def_property_readonly("matrix", [](const InertiaTensor& t) { return constant(from_matrix3(t.matrix())); },
+      .def_property_readonly("matrix", [](const InertiaTensor& t) { return from_matrix3(t.matrix()); },
                              "(3, 3) the tensor in the given axes, exactly symmetric [kg m^2].")
-      .def_property_readonly("moments", [](const InertiaTensor& t) { return constant(from_vector3(t.moments())); },
+      .def_property_readonly("moments", [](const InertiaTensor& t) { return from_vector3(t.moments()); },
                              "(3,) principal moments, ascending [kg m^2].")
       .def_property_readonly(
-          "axes", [](const InertiaTensor& t) { return constant(from_matrix3(t.axes())); },
+          "axes", [](const InertiaTensor& t) { return from_matrix3(t.axes()); },
           "(3, 3) R_BP: the columns are the principal axes in the given axes, right-handed, in the moments' order; the\n"
           "signs as :func:`polhode.inertia.principal_axes` tells.")
       .def_property_readonly("symmetry", [](const InertiaTensor& t) { return to_text(t.symmetry()); },
@@ -221,7 +215,7 @@ masses : array_like, shape (n,)
 positions : array_like, shape (n, 3)
     In the body's axes [m].)")
       .def_property_readonly("mass", &MassProperties::mass, "Mass [kg].")
-      .def_property_readonly("com", [](const MassProperties& p) { return constant(from_vector3(p.com())); },
+      .def_property_readonly("com", [](const MassProperties& p) { return from_vector3(p.com()); },
                              "(3,) centre of mass, from the origin, in the body's axes [m].")
       .def_property_readonly("inertia", [](const MassProperties& p) { return p.inertia(); },
                              "InertiaTensor about the centre of mass, in the body's axes.")

@@ -1,5 +1,6 @@
 """Rigid bodies that turn: where does the body point, and how fast does it spin, at time t?"""
 
+from . import elliptic as elliptic
 from . import inertia as inertia
 from . import shapes as shapes
 from . import torques as torques

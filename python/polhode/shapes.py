@@ -10,7 +10,7 @@ import inspect
 import textwrap
 from typing import Any, Callable
 
-import numpy.typing as npt
+import numpy.typing as npt  # noqa: F401  the annotations name it
 
 from . import _core
 from ._core import MassProperties
@@ -29,7 +29,7 @@ def _docstring(doc: str, parameters: _Parameters) -> str:
 def _make(name: str, doc: str, parameters: _Parameters) -> Callable[..., MassProperties]:
     kind = inspect.Parameter.POSITIONAL_OR_KEYWORD
     signature = inspect.Signature(
-        [inspect.Parameter(p, kind, annotation=npt.ArrayLike if size else float) for p, size, _ in parameters],
+        [inspect.Parameter(p, kind, annotation="npt.ArrayLike" if size else float) for p, size, _ in parameters],
         return_annotation=MassProperties,
     )
 
@@ -43,7 +43,7 @@ def _make(name: str, doc: str, parameters: _Parameters) -> Callable[..., MassPro
     signature_text = "(" + ", ".join(p for p, _, _ in parameters) + ")"
     shape.__name__ = shape.__qualname__ = name
     shape.__doc__ = _docstring(doc, parameters)
-    shape.__annotations__ = {p: npt.ArrayLike if size else float for p, size, _ in parameters}
+    shape.__annotations__ = {p: parameter.annotation for p, parameter in signature.parameters.items()}
     shape.__annotations__["return"] = MassProperties
     shape.__signature__ = signature  # type: ignore[attr-defined]
     return shape

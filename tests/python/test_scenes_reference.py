@@ -115,7 +115,7 @@ def test_samples_are_where_the_scene_asks(name):
     assert omega.dtype == attitude.dtype == np.float64 and np.isfinite(omega).all() and np.isfinite(attitude).all()
     start = scene["start"].get("omega") or np.radians(scene["start"]["omega_deg"])
     np.testing.assert_allclose(omega[0], start, rtol=2.3e-16)
-    euler = scene["start"].get("attitude", {"euler": {"angles": [0.0, 0.0, 0.0]}})["euler"]["angles"]
+    euler = scene["start"].get("euler", {"angles": [0.0, 0.0, 0.0]})["angles"]
     assert euler[0] == euler[2] == 0
     np.testing.assert_allclose(attitude[0], [np.sin(euler[1] / 2), 0, 0, np.cos(euler[1] / 2)], atol=1.2e-16)
 
@@ -192,6 +192,42 @@ def test_truth_obeys_the_equations_of_motion(name):
         end = solve_ivp(right_hand_side, (t[i], t[i + 1]), y, method=method, rtol=tolerance, atol=1e-14).y[:, -1]
         assert np.abs(end[:3] - omega[i + 1]).max() < bound * np.abs(omega[: i + 2]).max()
         assert np.abs(end[3:] - attitude[i + 1]).max() < 2 * bound
+
+
+@pytest.mark.parametrize("name", [name for name in NAMES if name != "S7b"])
+def test_every_sample_follows_from_the_one_before(name):
+    """Classical Runge-Kutta from all samples at once: no single sample may be out of line."""
+    scene = load(name)
+    moments = np.array(scene["body"]["moments"])
+    t, omega, attitude = truth(name)
+    substeps = 128
+    h = ((t[1:] - t[:-1]) / substeps)[:, None]
+
+    def right_hand_side(time, y):
+        w, q = y[:, :3], y[:, 3:]
+        tau = torque_of(scene, time[:, 0], w, matrix_of(q))
+        vector = q[:, 3:] * w + np.cross(q[:, :3], w)
+        scalar = -np.sum(q[:, :3] * w, axis=1, keepdims=True)
+        return np.hstack([(tau - np.cross(w, moments * w)) / moments, 0.5 * vector, 0.5 * scalar])
+
+    y = np.hstack([omega, attitude])
+    now, following = y[:-1], y[1:]
+    for k in range(substeps):
+        time = t[:-1, None] + k * h
+        k1 = right_hand_side(time, now)
+        k2 = right_hand_side(time + h / 2, now + h / 2 * k1)
+        k3 = right_hand_side(time + h / 2, now + h / 2 * k2)
+        k4 = right_hand_side(time + h, now + h * k3)
+        now = now + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+    scale = np.abs(omega).max()
+    assert np.abs(now - following)[:, :3].max() < 1e-6 * scale
+    assert np.abs(now - following)[:, 3:].max() < 1e-6
+
+
+def test_the_stiff_scene_is_smooth_after_its_layer():
+    _, omega, attitude = truth("S7b")
+    for values in (omega[1:], attitude[1:]):
+        assert np.abs(np.diff(values, n=6, axis=0)).max() < 1e-5
 
 
 def test_the_stiff_scene_ends_where_radau_ends():

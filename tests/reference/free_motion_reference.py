@@ -64,11 +64,12 @@ def closed_form(I, omega, q0, times):
     """[(omega, attitude)] at each of the times, mpf throughout."""
     I, omega, q0 = [mpf(v) for v in I], [mpf(v) for v in omega], unit([mpf(v) for v in q0])
     moments = [I[a] * omega[a] for a in range(3)]
-    L, T2 = sqrt(sum(c * c for c in moments)), sum(moments[a] * omega[a] for a in range(3))
+    LL, T2 = sum(c * c for c in moments), sum(moments[a] * omega[a] for a in range(3))   # exact: 64 digits do
+    L = sqrt(LL)
     order = sorted(range(3), key=lambda a: I[a])
     low, middle, high = (I[a] for a in order)
     moving = [a for a in range(3) if omega[a] != 0]
-    distance = L**2 - T2 * middle
+    distance = LL - T2 * middle
     constant = (not moving or low == high or len(moving) == 1
                 or (low == middle and omega[order[2]] == 0) or (middle == high and omega[order[0]] == 0))
     if constant:
@@ -88,10 +89,10 @@ def closed_form(I, omega, q0, times):
     m = [t * c for t, c in zip(turn, m)]
     inverse = [1 / v for v in J]
     # m_i^2 as in MacCullagh's ellipsoid: with 2T and L^2 given, two components follow from the second
-    A = (T2 - L**2 * inverse[2]) / (inverse[0] - inverse[2])           # amplitude of m1, squared
-    B = (T2 - L**2 * inverse[2]) / (inverse[1] - inverse[2])           # of m2
-    C = (L**2 * inverse[0] - T2) / (inverse[0] - inverse[2])           # of m3
-    modulus = (inverse[0] - inverse[1]) / (inverse[1] - inverse[2]) * (T2 - L**2 * inverse[2]) / (L**2 * inverse[0] - T2)
+    A = (T2 - LL * inverse[2]) / (inverse[0] - inverse[2])           # amplitude of m1, squared
+    B = (T2 - LL * inverse[2]) / (inverse[1] - inverse[2])           # of m2
+    C = (LL * inverse[0] - T2) / (inverse[0] - inverse[2])           # of m3
+    modulus = (inverse[0] - inverse[1]) / (inverse[1] - inverse[2]) * (T2 - LL * inverse[2]) / (LL * inverse[0] - T2)
     if distance == 0:
         modulus = mpf(1)
     rate = sqrt((inverse[1] - inverse[2]) * (inverse[0] - inverse[2]) * C)
@@ -108,7 +109,7 @@ def closed_form(I, omega, q0, times):
     n = -C * modulus / A
     complete = ellippi(n, modulus) if modulus not in (0, 1) and n != 0 else None
     rate *= -1 if mirrored else 1             # cn < 0 for ever on that half of the separatrix: u runs backwards
-    factor = (T2 - L**2 * inverse[2]) * L / A / rate
+    factor = (T2 - LL * inverse[2]) * L / A / rate
 
     def pair(u, t):
         s, c, d = jacobi(u, modulus, K)

@@ -51,11 +51,10 @@ def multiply(p, q):
 
 
 def start_attitude(start: dict) -> list:
-    attitude = start.get("attitude", [0.0, 0.0, 0.0, 1.0])
-    if not isinstance(attitude, dict):
-        return list(attitude)
+    if "euler" not in start:
+        return list(start.get("attitude", [0.0, 0.0, 0.0, 1.0]))
     q = (mpf(0), mpf(0), mpf(0), mpf(1))
-    for letter, angle in zip(attitude["euler"]["sequence"], attitude["euler"]["angles"], strict=True):
+    for letter, angle in zip(start["euler"]["sequence"], start["euler"]["angles"], strict=True):
         turn = [mpf(0)] * 3 + [mpmath.cos(mpf(angle) / 2)]
         turn["XYZ".index(letter)] = mpmath.sin(mpf(angle) / 2)
         q = multiply(q, turn)  # upper case: intrinsic
@@ -114,7 +113,8 @@ def taylor(programs: Path, numbers: dict, times: Sequence, order: int = ORDER) -
 
 
 def gauss(programs: Path, steps: tuple, numbers: dict, times: Sequence) -> list[list[mpf]]:
-    nodes = sorted((1 + x) / 2 for x in mpmath.polyroots(mpmath.taylor(lambda x: mpmath.legendre(STAGES, x), 0, STAGES)[::-1], maxsteps=200, extraprec=200))  # noqa: E501
+    legendre = mpmath.taylor(lambda x: mpmath.legendre(STAGES, x), 0, STAGES)[::-1]
+    nodes = sorted((1 + x) / 2 for x in mpmath.polyroots(legendre, maxsteps=200, extraprec=200))
     with mp.workdps(80):  # A = V' V^-1 with powers of the nodes
         powers = mpmath.matrix(STAGES, STAGES)
         integrals = mpmath.matrix(STAGES, STAGES)

@@ -1,24 +1,25 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 #include "polhode/core/quat.hpp"
 
 namespace polhode::inertia {
 
 /// Jacobi's rotations for N symmetric 3x3 matrices side by side (Jacobi 1846; Golub & Van Loan, Matrix Computations,
-/// 8.5): the plain loops over lanes become vector instructions. A lane that has converged turns by zero, exactly, so
-/// the result of a lane does not depend on its neighbours, nor on N.
+/// 8.5). The plain loops over lanes have no branches and become vector instructions. A lane that has converged turns by
+/// exactly zero, so its result depends neither on its neighbours nor on N.
 template <std::size_t N>
 class Jacobi {
  public:
   Jacobi() {
     std::fill_n(&a_[0][0], 6 * N, 0.0);
     std::fill_n(&v_[0][0], 9 * N, 0.0);
-    for (std::size_t i = 0; i < N; ++i) v_[0][i] = v_[4][i] = v_[8][i] = 1.0;
-    std::fill_n(exponent_, N, 0);
+    for (std::size_t i = 0; i < N; ++i) v_[0][i] = v_[4][i] = v_[8][i] = scale_[i].once = scale_[i].again = 1.0;
   }
 
   /// Sets one lane, scaled by a power of two so that the largest entry lies in [0.5, 1).
@@ -26,12 +27,15 @@ class Jacobi {
     const double m[6] = {xx, yy, zz, xy, xz, yz};
     double largest = 0;
     for (const double x : m) largest = std::max(largest, std::abs(x));
-    if (largest > 0) std::frexp(largest, &exponent_[lane]);
-    for (int i = 0; i < 6; ++i) a_[i][lane] = std::ldexp(m[i], -exponent_[lane]);
+    int exponent = 0;
+    if (largest > 0) std::frexp(largest, &exponent);
+    scale_[lane] = power_of_two(exponent);
+    const Scale down = power_of_two(-exponent);
+    for (int i = 0; i < 6; ++i) a_[i][lane] = m[i] * down.once * down.again;
   }
 
   void run() {
-    // Convergence is quadratic: 5 sweeps do for nearly all, the rest is for the pathological.
+    // Convergence is quadratic: 4 or 5 sweeps do, the bound is for matrices that are not finite.
     for (int sweep = 0; sweep < 20 && !converged(); ++sweep) {
       rotate<0, 1, 3, 4, 5>();
       rotate<0, 2, 4, 3, 5>();
@@ -40,8 +44,8 @@ class Jacobi {
   }
 
   Vector3d moments(std::size_t lane) const {
-    return {std::ldexp(a_[0][lane], exponent_[lane]), std::ldexp(a_[1][lane], exponent_[lane]),
-            std::ldexp(a_[2][lane], exponent_[lane])};
+    const Scale up = scale_[lane];
+    return {a_[0][lane] * up.once * up.again, a_[1][lane] * up.once * up.again, a_[2][lane] * up.once * up.again};
   }
 
   /// Columns are the eigenvectors, in the order of moments().
@@ -53,30 +57,38 @@ class Jacobi {
   }
 
  private:
-  /// An entry counts as zero when turning it away would change neither diagonal entry by a rounding, nor, for positive
-  /// matrices, their relative accuracy (Demmel & Veselic 1992), or when it is nothing beside the largest entry.
-  static bool negligible(double app, double aqq, double apq) {
-    return apq * apq <= std::abs(app * aqq) * 0x1p-110 || std::abs(apq) < 0x1p-100;
+  /// 2^n in two factors, each a normal number for any exponent a double can have.
+  struct Scale {
+    double once, again;
+  };
+  static Scale power_of_two(int n) {
+    const auto factor = [](int e) { return std::bit_cast<double>(static_cast<std::uint64_t>(1023 + e) << 52); };
+    return {factor(n / 2), factor(n - n / 2)};
   }
 
+  /// The square below which an entry counts as zero: turning it away would change neither diagonal entry by a rounding
+  /// nor, for positive matrices, by a part of itself (Demmel & Veselic 1992); or it is nothing beside the largest one.
+  static double negligible(double app, double aqq) { return std::max(std::abs(app * aqq) * 0x1p-110, 0x1p-200); }
+
   bool converged() const {
-    bool all = true;
+    std::uint64_t left = 0;
     for (std::size_t i = 0; i < N; ++i) {
-      all &= negligible(a_[0][i], a_[1][i], a_[3][i]) & negligible(a_[0][i], a_[2][i], a_[4][i]) &
-             negligible(a_[1][i], a_[2][i], a_[5][i]);
+      left |= a_[3][i] * a_[3][i] > negligible(a_[0][i], a_[1][i]) ? 1u : 0u;
+      left |= a_[4][i] * a_[4][i] > negligible(a_[0][i], a_[2][i]) ? 1u : 0u;
+      left |= a_[5][i] * a_[5][i] > negligible(a_[1][i], a_[2][i]) ? 1u : 0u;
     }
-    return all;
+    return left == 0;
   }
 
   /// Zeroes a_PQ, stored at PQ; R is the third index, and a_RP, a_RQ are stored at RP, RQ.
   template <int P, int Q, int PQ, int RP, int RQ>
   void rotate() {
     for (std::size_t i = 0; i < N; ++i) {
-      const double app = a_[P][i], aqq = a_[Q][i], arp = a_[RP][i], arq = a_[RQ][i];
-      const double apq = negligible(app, aqq, a_[PQ][i]) ? 0.0 : a_[PQ][i];
+      const double app = a_[P][i], aqq = a_[Q][i], arp = a_[RP][i], arq = a_[RQ][i], off = a_[PQ][i];
+      const double apq = off * off > negligible(app, aqq) ? off : 0.0;
       const double d = 0.5 * (aqq - app);
-      const double r = std::abs(d) + std::sqrt(d * d + apq * apq);
-      const double t = apq == 0.0 ? 0.0 : std::copysign(1.0, d) * apq / r;  // tan of the smaller angle
+      const double r = std::abs(d) + std::sqrt(d * d + apq * apq) + 0x1p-300;  // for 0/0
+      const double t = std::copysign(1.0, d) * apq / r;                        // tan of the smaller angle
       const double c = 1 / std::sqrt(1 + t * t), s = t * c;
       a_[P][i] = app - t * apq;
       a_[Q][i] = aqq + t * apq;
@@ -93,7 +105,7 @@ class Jacobi {
 
   double a_[6][N];  ///< xx, yy, zz, xy, xz, yz
   double v_[9][N];  ///< row by row
-  int exponent_[N];
+  Scale scale_[N];
 };
 
 }  // namespace polhode::inertia

@@ -25,6 +25,9 @@ Vector3d towards_nearest_axis(const Vector3d& v) {
   return (sign * v).array() + 0.0;  // no negative zeros
 }
 
+/// A vector within rounding of unit length, brought there.
+Vector3d unit(const Vector3d& v) { return (1.5 - 0.5 * v.dot(v)) * v; }
+
 Vector3d cross(const Vector3d& a, const Vector3d& b) {
   return {a[1] * b[2] - a[2] * b[1] + 0.0, a[2] * b[0] - a[0] * b[2] + 0.0, a[0] * b[1] - a[1] * b[0] + 0.0};
 }
@@ -62,7 +65,7 @@ PrincipalAxes arrange(const Vector3d& found, const Matrix3d& V, double gap) {
     case Symmetry::spherical:
       break;
     case Symmetry::oblate: {
-      const Vector3d n = towards_nearest_axis(V.col(order[2]));
+      const Vector3d n = towards_nearest_axis(unit(V.col(order[2])));
       const int k = nearest_axis(n);
       R_BP.col(2) = n;
       R_BP.col(0) = carried((k + 1) % 3, k, n);
@@ -70,18 +73,20 @@ PrincipalAxes arrange(const Vector3d& found, const Matrix3d& V, double gap) {
       break;
     }
     case Symmetry::prolate: {
-      const Vector3d n = towards_nearest_axis(V.col(order[0]));
+      const Vector3d n = towards_nearest_axis(unit(V.col(order[0])));
       const int k = nearest_axis(n);
       R_BP.col(0) = n;
       R_BP.col(1) = carried((k + 1) % 3, k, n);
       R_BP.col(2) = carried((k + 2) % 3, k, n);
       break;
     }
-    case Symmetry::triaxial:
-      R_BP.col(0) = towards_nearest_axis(V.col(order[0]));
-      R_BP.col(2) = towards_nearest_axis(V.col(order[2]));
+    case Symmetry::triaxial: {
+      const Vector3d low = unit(V.col(order[0])), high = V.col(order[2]);
+      R_BP.col(0) = towards_nearest_axis(low);
+      R_BP.col(2) = towards_nearest_axis(unit(high - low.dot(high) * low));
       R_BP.col(1) = cross(R_BP.col(2), R_BP.col(0));
       break;
+    }
   }
   return result;
 }
