@@ -19,13 +19,9 @@ const InertiaTensor& to_tensor(py::handle value, const char* name) {
   return value.cast<const InertiaTensor&>();
 }
 
-std::string array_text(const Array& array) {
-  return py::cast<std::string>(py::str(array.attr("tolist")()));
-}
+std::string array_text(const Array& array) { return py::cast<std::string>(py::str(array.attr("tolist")())); }
 
-py::ssize_t hash_numbers(const Array& array) {
-  return py::hash(py::tuple(array.attr("ravel")().attr("tolist")()));
-}
+py::ssize_t hash_numbers(const Array& array) { return py::hash(py::tuple(array.attr("ravel")().attr("tolist")())); }
 
 std::string to_repr(const InertiaTensor& tensor) {
   return "InertiaTensor(" + array_text(from_matrix3(tensor.matrix())) + (tensor.physical() ? ")" : ", physical=False)");
@@ -36,14 +32,18 @@ void bind_principal_axes(py::module_& m) {
 
 Made by :meth:`InertiaTensor.principal`.)");
   cls.attr("__module__") = "polhode";
-  cls.def_property_readonly("moments", [](const PrincipalAxes& p) { return from_vector3(p.moments); },
-                            "(3,) principal moments, ascending [kg m^2].")
-      .def_property_readonly("axes", [](const PrincipalAxes& p) { return from_matrix3(p.axes); },
-                             "(3, 3) R_BP: the columns are the principal axes in the given axes, right-handed.")
-      .def_property_readonly("symmetry", [](const PrincipalAxes& p) { return to_text(p.symmetry); },
-                             "'spherical', 'oblate' (the largest moment apart), 'prolate' (the smallest) or 'triaxial'.")
-      .def_property_readonly("arbitrary", [](const PrincipalAxes& p) { return to_text(p.arbitrary()); },
-                             "'none', 'plane' (every direction across `normal`) or 'sphere' (every direction).")
+  cls.def_property_readonly(
+         "moments", [](const PrincipalAxes& p) { return from_vector3(p.moments); },
+         "(3,) principal moments, ascending [kg m^2].")
+      .def_property_readonly(
+          "axes", [](const PrincipalAxes& p) { return from_matrix3(p.axes); },
+          "(3, 3) R_BP: the columns are the principal axes in the given axes, right-handed.")
+      .def_property_readonly(
+          "symmetry", [](const PrincipalAxes& p) { return to_text(p.symmetry); },
+          "'spherical', 'oblate' (the largest moment apart), 'prolate' (the smallest) or 'triaxial'.")
+      .def_property_readonly(
+          "arbitrary", [](const PrincipalAxes& p) { return to_text(p.arbitrary()); },
+          "'none', 'plane' (every direction across `normal`) or 'sphere' (every direction).")
       .def_property_readonly(
           "normal",
           [](const PrincipalAxes& p) -> std::optional<Array> {
@@ -91,9 +91,8 @@ InvalidInput
     Wrong shape, not finite, not symmetric, a negative moment, or a moment above the sum of the two others; with the
     axis, the deficit in per cent and the likely cause.)");
   cls.attr("__module__") = "polhode";
-  cls.def(py::init([](py::handle matrix, bool physical) {
-            return InertiaTensor(to_matrix3(matrix, "inertia"), physical);
-          }),
+  cls.def(py::init(
+              [](py::handle matrix, bool physical) { return InertiaTensor(to_matrix3(matrix, "inertia"), physical); }),
           py::arg("matrix"), py::kw_only(), py::arg("physical") = true)
       .def_static(
           "from_moments",
@@ -109,16 +108,20 @@ moments : array_like, shape (3,)
     About x, y, z [kg m^2].
 physical : bool
     As for the class.)")
-      .def_property_readonly("matrix", [](const InertiaTensor& t) { return from_matrix3(t.matrix()); },
-                             "(3, 3) the tensor in the given axes, exactly symmetric [kg m^2].")
-      .def_property_readonly("moments", [](const InertiaTensor& t) { return from_vector3(t.moments()); },
-                             "(3,) principal moments, ascending [kg m^2].")
+      .def_property_readonly(
+          "matrix", [](const InertiaTensor& t) { return from_matrix3(t.matrix()); },
+          "(3, 3) the tensor in the given axes, exactly symmetric [kg m^2].")
+      .def_property_readonly(
+          "moments", [](const InertiaTensor& t) { return from_vector3(t.moments()); },
+          "(3,) principal moments, ascending [kg m^2].")
       .def_property_readonly(
           "axes", [](const InertiaTensor& t) { return from_matrix3(t.axes()); },
-          "(3, 3) R_BP: the columns are the principal axes in the given axes, right-handed, in the moments' order; the\n"
+          "(3, 3) R_BP: the columns are the principal axes in the given axes, right-handed, in the moments' order; "
+          "the\n"
           "signs as :func:`polhode.inertia.principal_axes` tells.")
-      .def_property_readonly("symmetry", [](const InertiaTensor& t) { return to_text(t.symmetry()); },
-                             "'spherical', 'oblate' (the largest moment apart), 'prolate' (the smallest) or 'triaxial'.")
+      .def_property_readonly(
+          "symmetry", [](const InertiaTensor& t) { return to_text(t.symmetry()); },
+          "'spherical', 'oblate' (the largest moment apart), 'prolate' (the smallest) or 'triaxial'.")
       .def_property_readonly("physical", &InertiaTensor::physical, "The triangle inequality was asked for.")
       .def(
           "principal",
@@ -160,11 +163,10 @@ rotation : Rotation or array_like, shape (4,)
       .def(py::self == py::self)
       .def("__hash__", [](const InertiaTensor& t) { return hash_numbers(from_matrix3(t.matrix())); })
       .def("__repr__", &to_repr)
-      .def(py::pickle(
-          [](const InertiaTensor& t) { return py::make_tuple(from_matrix3(t.matrix()), t.physical()); },
-          [](const py::tuple& state) {
-            return InertiaTensor::from_trusted(to_matrix3(state[0], "inertia"), state[1].cast<bool>());
-          }));
+      .def(py::pickle([](const InertiaTensor& t) { return py::make_tuple(from_matrix3(t.matrix()), t.physical()); },
+                      [](const py::tuple& state) {
+                        return InertiaTensor::from_trusted(to_matrix3(state[0], "inertia"), state[1].cast<bool>());
+                      }));
 }
 
 void bind_mass_properties(py::module_& m) {
@@ -198,9 +200,9 @@ InvalidInput
           [](py::handle masses, py::handle positions) {
             const Array weights = to_array(masses, "masses"), points = to_array_with_tail(positions, "positions", {3});
             if (weights.ndim() != 1 || points.ndim() != 2 || points.shape(0) != weights.shape(0)) {
-              throw InvalidInput("positions", "of shape (n, 3) for masses of shape (n,)",
-                                 std::to_string(points.size() / 3) + " positions for " +
-                                     std::to_string(weights.size()) + " masses");
+              throw InvalidInput(
+                  "positions", "of shape (n, 3) for masses of shape (n,)",
+                  std::to_string(points.size() / 3) + " positions for " + std::to_string(weights.size()) + " masses");
             }
             require_finite(points, "positions");
             return MassProperties::from_points(weights.data(), points.data(), static_cast<std::size_t>(weights.size()));
@@ -215,10 +217,12 @@ masses : array_like, shape (n,)
 positions : array_like, shape (n, 3)
     In the body's axes [m].)")
       .def_property_readonly("mass", &MassProperties::mass, "Mass [kg].")
-      .def_property_readonly("com", [](const MassProperties& p) { return from_vector3(p.com()); },
-                             "(3,) centre of mass, from the origin, in the body's axes [m].")
-      .def_property_readonly("inertia", [](const MassProperties& p) { return p.inertia(); },
-                             "InertiaTensor about the centre of mass, in the body's axes.")
+      .def_property_readonly(
+          "com", [](const MassProperties& p) { return from_vector3(p.com()); },
+          "(3,) centre of mass, from the origin, in the body's axes [m].")
+      .def_property_readonly(
+          "inertia", [](const MassProperties& p) { return p.inertia(); },
+          "InertiaTensor about the centre of mass, in the body's axes.")
       .def(
           "about", [](const MassProperties& p, py::handle point) { return p.about(to_vector3(point, "point")); },
           py::arg("point"),
@@ -258,8 +262,7 @@ translation : array_like, shape (3,)
       .def(py::pickle(
           [](const MassProperties& p) { return py::make_tuple(p.mass(), from_vector3(p.com()), p.inertia()); },
           [](const py::tuple& state) {
-            return MassProperties(state[0].cast<double>(), to_vector3(state[1], "com"),
-                                  to_tensor(state[2], "inertia"));
+            return MassProperties(state[0].cast<double>(), to_vector3(state[1], "com"), to_tensor(state[2], "inertia"));
           }));
 }
 
@@ -288,19 +291,26 @@ std::vector<double> shape_numbers(const shapes::Record& record, const py::sequen
 }
 
 void bind_shapes(py::module_& m) {
-  m.def("shape_records", [] {
-    py::list records;
-    for (const shapes::Record& record : shapes::all()) {
-      py::list parameters;
-      for (const auto& p : record.parameters) parameters.append(py::make_tuple(p.name, py::tuple(py::cast(p.size)), p.doc));
-      records.append(py::make_tuple(record.name, record.doc, py::tuple(parameters)));
-    }
-    return records;
-  }, "(name, doc, ((parameter, size, doc), ...)) of every shape.");
-  m.def("make_shape", [](const std::string& name, const py::sequence& values) {
-    const shapes::Record& record = shapes::find(name);
-    return record.make(shape_numbers(record, values).data());
-  }, py::arg("name"), py::arg("values"), "The body from all its parameters, in the record's order.");
+  m.def(
+      "shape_records",
+      [] {
+        py::list records;
+        for (const shapes::Record& record : shapes::all()) {
+          py::list parameters;
+          for (const auto& p : record.parameters)
+            parameters.append(py::make_tuple(p.name, py::tuple(py::cast(p.size)), p.doc));
+          records.append(py::make_tuple(record.name, record.doc, py::tuple(parameters)));
+        }
+        return records;
+      },
+      "(name, doc, ((parameter, size, doc), ...)) of every shape.");
+  m.def(
+      "make_shape",
+      [](const std::string& name, const py::sequence& values) {
+        const shapes::Record& record = shapes::find(name);
+        return record.make(shape_numbers(record, values).data());
+      },
+      py::arg("name"), py::arg("values"), "The body from all its parameters, in the record's order.");
 }
 
 py::tuple principal_axes(py::handle value) {

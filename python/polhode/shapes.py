@@ -63,5 +63,5 @@ globals().update(_functions)
 __all__ = [*_functions, "table"]
 
 
-def __getattr__(name: str) -> Callable[..., MassProperties]:  # for type checkers; at run time only a wrong name comes here
+def __getattr__(name: str) -> Callable[..., MassProperties]:  # for type checkers; only wrong names come here
     raise AttributeError(f"no shape '{name}'; there are {', '.join(_functions)}")

@@ -15,8 +15,8 @@ fixed = settings(derandomize=True, deadline=None, max_examples=30)
 quaternions = st.tuples(*[st.floats(-1, 1)] * 4).filter(lambda q: np.linalg.norm(q) > 0.1)
 rotations = quaternions.map(Rotation.from_quat)
 # Right-handed frames along the given axes: all 24.
-ALONG = [np.eye(3)[:, list(p)] * s for p in itertools.permutations(range(3)) for s in itertools.product((1, -1), repeat=3)
-         if np.linalg.det(np.eye(3)[:, list(p)] * s) > 0]
+SIGNED = itertools.product(itertools.permutations(range(3)), itertools.product((1, -1), repeat=3))
+ALONG = [frame for frame in (np.eye(3)[:, list(p)] * s for p, s in SIGNED) if np.linalg.det(frame) > 0]
 
 
 def symmetric(a):
@@ -164,7 +164,8 @@ def test_of_two_equal_moments_the_axes_are_the_given_ones_turned_least(rotation,
     along = np.roll(np.eye(3), apart - k, axis=1)  # the given axes in cyclic order, the nearest one in its place
     assert normal[k] > 0 and np.linalg.det(along) > 0
     turn = principal.axes @ along.T
-    assert (np.trace(turn) - 1) / 2 == pytest.approx(normal[k], abs=2e-15)  # no angle beyond what takes e_k to the normal
+    # no angle beyond what takes the given axis to the normal
+    assert (np.trace(turn) - 1) / 2 == pytest.approx(normal[k], abs=2e-15)
     np.testing.assert_allclose(turn[:, k], normal, atol=1e-15)
 
 

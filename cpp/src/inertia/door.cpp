@@ -70,8 +70,8 @@ Matrix3d symmetric_at_the_door(const Matrix3d& I_B, const char* where) {
   return symmetric;
 }
 
-void check_moments(const Matrix3d& I_B, const PrincipalAxes& principal, bool physical, const char* where,
-                   double slack, const char* cause) {
+void check_moments(const Matrix3d& I_B, const PrincipalAxes& principal, bool physical, const char* where, double slack,
+                   const char* cause) {
   const Vector3d& m = principal.moments;
   const double largest = std::max(std::abs(m[0]), std::abs(m[2]));
   const double forgiven = InertiaTensor::tolerance * largest + slack;
@@ -89,8 +89,8 @@ void check_moments(const Matrix3d& I_B, const PrincipalAxes& principal, bool phy
   if (physical && excess > 0.5 * forgiven) {
     const double deficit = excess / (0.5 * m[2]);
     throw InvalidInput(where, "within the triangle inequality: no moment above the sum of the two others",
-                       to_text(m[2]) + " about the axis " + vector_text(principal.axes.col(2)) +
-                           " against the sum " + to_text(m[0] + m[1]) + ", a deficit of " + per_cent(deficit),
+                       to_text(m[2]) + " about the axis " + vector_text(principal.axes.col(2)) + " against the sum " +
+                           to_text(m[0] + m[1]) + ", a deficit of " + per_cent(deficit),
                        cause ? cause : likely_cause(I_B, deficit));
   }
 }

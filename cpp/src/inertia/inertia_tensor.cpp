@@ -37,7 +37,7 @@ InertiaTensor InertiaTensor::from_trusted(const Matrix3d& I_B, bool physical) {
 }
 
 PrincipalAxes InertiaTensor::principal(double gap) const {
-  if (!(gap >= 0 && gap < 1)) throw InvalidInput("gap", "a part of the largest moment, from 0 to below 1", to_text(gap));
+  if (!(gap >= 0 && gap < 1)) throw InvalidInput("gap", "a part of the largest moment, 0 to below 1", to_text(gap));
   PrincipalAxes result = compute_principal_axes(I_B_, gap);
   result.moments = result.moments.cwiseMax(0.0);
   return result;

@@ -12,8 +12,8 @@ namespace {
 /// The moment of a point mass at d about the origin: m (d.d 1 - d d^T), without cancellation on the diagonal.
 Matrix3d point_inertia(double m, const Vector3d& d) {
   Matrix3d I;
-  I << m * (d[1] * d[1] + d[2] * d[2]), -m * d[0] * d[1], -m * d[0] * d[2],   //
-      -m * d[0] * d[1], m * (d[0] * d[0] + d[2] * d[2]), -m * d[1] * d[2],    //
+  I << m * (d[1] * d[1] + d[2] * d[2]), -m * d[0] * d[1], -m * d[0] * d[2],  //
+      -m * d[0] * d[1], m * (d[0] * d[0] + d[2] * d[2]), -m * d[1] * d[2],   //
       -m * d[0] * d[2], -m * d[1] * d[2], m * (d[0] * d[0] + d[1] * d[1]);
   return I;
 }
@@ -30,7 +30,8 @@ MassProperties::MassProperties(double mass, const Vector3d& com_B, const Inertia
 MassProperties MassProperties::from_points(const double* masses, const double* positions_B, std::size_t count) {
   if (count == 0) throw InvalidInput("masses", "one or more masses", "none");
   double mass = 0;
-  Vector3d first_moment = Vector3d::Zero();  // about the first point, so that the distance from the origin costs nothing
+  // About the first point, so that the distance from the origin costs nothing.
+  Vector3d first_moment = Vector3d::Zero();
   const auto position = [&](std::size_t i) { return Vector3d(Eigen::Map<const Vector3d>(positions_B + 3 * i)); };
   for (std::size_t i = 0; i < count; ++i) {
     const std::string where = "masses[" + std::to_string(i) + "]";

@@ -95,19 +95,26 @@ PrincipalAxes arrange(const Vector3d& found, const Matrix3d& V, double gap) {
 
 const char* to_text(Symmetry symmetry) {
   switch (symmetry) {
-    case Symmetry::spherical: return "spherical";
-    case Symmetry::oblate: return "oblate";
-    case Symmetry::prolate: return "prolate";
-    case Symmetry::triaxial: break;
+    case Symmetry::spherical:
+      return "spherical";
+    case Symmetry::oblate:
+      return "oblate";
+    case Symmetry::prolate:
+      return "prolate";
+    case Symmetry::triaxial:
+      break;
   }
   return "triaxial";
 }
 
 const char* to_text(Arbitrary arbitrary) {
   switch (arbitrary) {
-    case Arbitrary::none: return "none";
-    case Arbitrary::plane: return "plane";
-    case Arbitrary::sphere: break;
+    case Arbitrary::none:
+      return "none";
+    case Arbitrary::plane:
+      return "plane";
+    case Arbitrary::sphere:
+      break;
   }
   return "sphere";
 }

@@ -51,6 +51,8 @@ TEST_CASE("classes and arbitrary directions") {
   CHECK(rod.symmetry() == Symmetry::prolate);
   CHECK(rod.axes() == Matrix3d::Identity());
   CHECK_FALSE(rod.is_positive_definite());
+  CHECK_FALSE(rod.rotated(normalized({0.1, 0.2, 0.3, 0.4})).is_positive_definite());  // whatever rounding made of its 0
+  CHECK(InertiaTensor::from_moments({1e-20, 3, 3}).is_positive_definite());           // exactly what was given
   CHECK(InertiaTensor(Matrix3d::Zero()).symmetry() == Symmetry::spherical);
   CHECK(InertiaTensor(make(1, 1 + 1e-9, 1.5)).principal(1e-6).arbitrary() == Arbitrary::plane);
 }

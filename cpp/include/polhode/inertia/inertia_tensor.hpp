@@ -4,11 +4,12 @@
 
 namespace polhode {
 
-/// The inertia tensor of a body about a stated point, in given axes B [kg m^2]: L_B = I_B w_B, so the products of inertia
-/// stand in it with their minus sign, I_xy = -sum of m x y.
+/// The inertia tensor of a body about a stated point, in given axes B [kg m^2]: L_B = I_B w_B, so the products of
+/// inertia stand in it with their minus sign, I_xy = -sum of m x y.
 ///
-/// Checked at the door, by relative thresholds: finite, symmetric, no negative moment, and no moment above the sum of the
-/// two others, which no distribution of mass can have. A rod (one zero moment) and a point (the zero tensor) are valid.
+/// Checked at the door, by relative thresholds: finite, symmetric, no negative moment, and no moment above the sum of
+/// the two others, which no distribution of mass can have. A rod (one zero moment) and a point (the zero tensor) are
+/// valid.
 class InertiaTensor {
  public:
   /// What the door forgives, as a part of the largest entry or moment: rounding, no more.
@@ -24,11 +25,11 @@ class InertiaTensor {
   /// A value that passed the door before (turned, read back): not checked again.
   static InertiaTensor from_trusted(const Matrix3d& I_B, bool physical = true);
 
-  const Matrix3d& matrix() const { return I_B_; }                   ///< I_B, exactly symmetric
-  const Vector3d& moments() const { return principal_.moments; }    ///< principal moments, ascending
-  const Matrix3d& axes() const { return principal_.axes; }          ///< R_BP: columns are the principal axes
-  Symmetry symmetry() const { return principal_.symmetry; }         ///< by `symmetry_gap`
-  bool physical() const { return physical_; }                       ///< the triangle inequality was asked for
+  const Matrix3d& matrix() const { return I_B_; }                 ///< I_B, exactly symmetric
+  const Vector3d& moments() const { return principal_.moments; }  ///< principal moments, ascending
+  const Matrix3d& axes() const { return principal_.axes; }        ///< R_BP: columns are the principal axes
+  Symmetry symmetry() const { return principal_.symmetry; }       ///< by `symmetry_gap`
+  bool physical() const { return physical_; }                     ///< the triangle inequality was asked for
 
   const PrincipalAxes& principal() const { return principal_; }
   PrincipalAxes principal(double gap) const;  ///< with the caller's gap, for data with fewer digits

@@ -22,8 +22,8 @@ inline constexpr double symmetry_gap = 16 * std::numeric_limits<double>::epsilon
 
 /// Moments, ascending, and the principal axes that belong to them.
 ///
-/// The columns of `axes` (R_BP) are the principal axes P in the given axes B, right-handed, in the order of the moments.
-/// That order leaves only signs, and these rules choose them:
+/// The columns of `axes` (R_BP) are the principal axes P in the given axes B, right-handed, in the order of the
+/// moments. That order leaves only signs, and these rules choose them:
 /// - the axes of the smallest and of the largest moment point towards the given axis they lie nearest to (their largest
 ///   component is positive; of components equal to 1e-6 the first counts), the middle one completes the frame.
 ///   So a tensor whose principal frame is the given one turned by less than 45 degrees has just that frame, a diagonal
@@ -50,8 +50,8 @@ struct PrincipalAxes {
 /// Jacobi's rotations; moments and residuals accurate to a few units of rounding of the largest moment, at any scale.
 PrincipalAxes compute_principal_axes(const Matrix3d& I_B, double gap = symmetry_gap);
 
-/// The same as InertiaTensor finds, bit for bit, for `count` matrices of 9 numbers each: moments (3 each), axes (9 each,
-/// row by row). Only symmetry is asked for, as at InertiaTensor's door: negative moments, too, have their axes.
+/// The same as InertiaTensor finds, bit for bit, for `count` matrices of 9 numbers each: moments (3 each), axes (9
+/// each, row by row). Only symmetry is asked for, as at InertiaTensor's door: negative moments, too, have their axes.
 /// A matrix that is not finite gives NaN; returns how many did. Throws InvalidInput for one that is not symmetric.
 std::size_t compute_principal_axes(const double* I_B, std::size_t count, double* moments, double* axes);
 

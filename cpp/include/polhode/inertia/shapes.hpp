@@ -10,8 +10,8 @@
 /// unless the record says otherwise. Each throws InvalidInput for a length that is not positive and finite.
 namespace polhode::shapes {
 
-using Tetrahedron = std::array<Vector3d, 4>;              ///< four corners, in any order
-using Triangle = std::array<std::array<double, 2>, 3>;    ///< three corners (x, y), in any order
+using Tetrahedron = std::array<Vector3d, 4>;            ///< four corners, in any order
+using Triangle = std::array<std::array<double, 2>, 3>;  ///< three corners (x, y), in any order
 
 #define POLHODE_SHAPE(name, parameters) MassProperties name parameters;
 #include "polhode/inertia/shapes.def"
@@ -26,8 +26,8 @@ struct Parameter {
 /// A shape as data: what the Python functions, the command line and the docs are made from.
 struct Record {
   std::string name;
-  std::string doc;                             ///< what it is, where it stands, and its formula
-  std::vector<Parameter> parameters;           ///< the mass first
+  std::string doc;                               ///< what it is, where it stands, and its formula
+  std::vector<Parameter> parameters;             ///< the mass first
   MassProperties (*make)(const double* values);  ///< from all parameters' numbers, one after the other
 };
 

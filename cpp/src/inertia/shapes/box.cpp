@@ -11,12 +11,10 @@ MassProperties box(double mass, const Vector3d& half_sides) {
 }
 
 Record describe_box() {
-  return make_record<&box>(
-      "box",
-      "A solid block with sides 2a, 2b, 2c along x, y, z. "
-      "Ix = m (b^2 + c^2) / 3, and cyclically.",
-      {{"mass", "mass [kg]"},
-       {"half_sides", "a, b, c: half of each side [m]"}});
+  return make_record<&box>("box",
+                           "A solid block with sides 2a, 2b, 2c along x, y, z. "
+                           "Ix = m (b^2 + c^2) / 3, and cyclically.",
+                           {{"mass", "mass [kg]"}, {"half_sides", "a, b, c: half of each side [m]"}});
 }
 
 }  // namespace polhode::shapes

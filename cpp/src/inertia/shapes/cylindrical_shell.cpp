@@ -13,9 +13,7 @@ Record describe_cylindrical_shell() {
       "cylindrical_shell",
       "A thin tube round z, open at both ends. "
       "Ix = Iy = m (6 r^2 + h^2) / 12, Iz = m r^2.",
-      {{"mass", "mass [kg]"},
-       {"radius", "r [m]"},
-       {"height", "h, the full height [m]"}});
+      {{"mass", "mass [kg]"}, {"radius", "r [m]"}, {"height", "h, the full height [m]"}});
 }
 
 }  // namespace polhode::shapes

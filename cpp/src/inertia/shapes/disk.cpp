@@ -8,12 +8,10 @@ MassProperties disk(double mass, double radius) {
 }
 
 Record describe_disk() {
-  return make_record<&disk>(
-      "disk",
-      "A thin disk in the plane z = 0. "
-      "Ix = Iy = m r^2 / 4, Iz = m r^2 / 2.",
-      {{"mass", "mass [kg]"},
-       {"radius", "r [m]"}});
+  return make_record<&disk>("disk",
+                            "A thin disk in the plane z = 0. "
+                            "Ix = Iy = m r^2 / 4, Iz = m r^2 / 2.",
+                            {{"mass", "mass [kg]"}, {"radius", "r [m]"}});
 }
 
 }  // namespace polhode::shapes

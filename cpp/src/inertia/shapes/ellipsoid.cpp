@@ -11,12 +11,10 @@ MassProperties ellipsoid(double mass, const Vector3d& semi_axes) {
 }
 
 Record describe_ellipsoid() {
-  return make_record<&ellipsoid>(
-      "ellipsoid",
-      "A solid ellipsoid with semi-axes a, b, c along x, y, z. "
-      "Ix = m (b^2 + c^2) / 5, and cyclically.",
-      {{"mass", "mass [kg]"},
-       {"semi_axes", "a, b, c [m]"}});
+  return make_record<&ellipsoid>("ellipsoid",
+                                 "A solid ellipsoid with semi-axes a, b, c along x, y, z. "
+                                 "Ix = m (b^2 + c^2) / 5, and cyclically.",
+                                 {{"mass", "mass [kg]"}, {"semi_axes", "a, b, c [m]"}});
 }
 
 }  // namespace polhode::shapes

@@ -6,8 +6,8 @@ MassProperties hollow_box(double mass, const Vector3d& half_sides, double wall) 
   const Real m = positive(mass, "mass"), w = not_negative(wall, "wall");
   positive(half_sides, "half_sides");
   if (w > half_sides.minCoeff()) {
-    throw InvalidInput("wall", "at most the smallest of half_sides (" + to_text(half_sides.minCoeff()) + ")", to_text(wall),
-                       "the walls would meet");
+    throw InvalidInput("wall", "at most the smallest of half_sides (" + to_text(half_sides.minCoeff()) + ")",
+                       to_text(wall), "the walls would meet");
   }
   // With the cavity's half sides a' = a - w, the volume is 8 w V and the integral of x^2 is 8/3 w S_x, both written as
   // sums of positive terms, so that a thin wall costs no digits and w = 0 is its limit.
@@ -27,7 +27,8 @@ Record describe_hollow_box() {
   return make_record<&hollow_box>(
       "hollow_box",
       "A closed box with sides 2a, 2b, 2c along x, y, z outside and walls of one thickness w all round. "
-      "With V = a b c - a' b' c', where a' = a - w and so on: Ix = m (a (b^3 c + b c^3) - a' (b'^3 c' + b' c'^3)) / (3 V), and cyclically.",
+      "With V = a b c - a' b' c', where a' = a - w and so on: Ix = m (a (b^3 c + b c^3) - a' (b'^3 c' + b' c'^3)) / (3 "
+      "V), and cyclically.",
       {{"mass", "mass [kg]"},
        {"half_sides", "a, b, c: half of each outer side [m]"},
        {"wall", "w, thickness of the walls [m]; 0 is the limit of a thin sheet"}});

@@ -13,8 +13,7 @@ Record describe_rod() {
       "rod",
       "A thin rod along z. "
       "Ix = Iy = m l^2 / 12, Iz = 0: a valid tensor, though no rotation about z can be computed from it.",
-      {{"mass", "mass [kg]"},
-       {"length", "l, the full length [m]"}});
+      {{"mass", "mass [kg]"}, {"length", "l, the full length [m]"}});
 }
 
 }  // namespace polhode::shapes

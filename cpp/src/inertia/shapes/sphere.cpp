@@ -9,11 +9,7 @@ MassProperties sphere(double mass, double radius) {
 }
 
 Record describe_sphere() {
-  return make_record<&sphere>(
-      "sphere",
-      "A solid ball. I = 2/5 m r^2.",
-      {{"mass", "mass [kg]"},
-       {"radius", "r [m]"}});
+  return make_record<&sphere>("sphere", "A solid ball. I = 2/5 m r^2.", {{"mass", "mass [kg]"}, {"radius", "r [m]"}});
 }
 
 }  // namespace polhode::shapes

@@ -9,11 +9,8 @@ MassProperties spherical_shell(double mass, double radius) {
 }
 
 Record describe_spherical_shell() {
-  return make_record<&spherical_shell>(
-      "spherical_shell",
-      "A thin shell in the form of a sphere. I = 2/3 m r^2.",
-      {{"mass", "mass [kg]"},
-       {"radius", "r [m]"}});
+  return make_record<&spherical_shell>("spherical_shell", "A thin shell in the form of a sphere. I = 2/3 m r^2.",
+                                       {{"mass", "mass [kg]"}, {"radius", "r [m]"}});
 }
 
 }  // namespace polhode::shapes

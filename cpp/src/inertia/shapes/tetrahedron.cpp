@@ -5,7 +5,8 @@ namespace {
 
 /// Refuses four corners in one plane, as far as their doubles can tell.
 void require_volume(const Real (&e)[4][3]) {
-  const Real volume = e[1][0] * (e[2][1] * e[3][2] - e[2][2] * e[3][1]) + e[1][1] * (e[2][2] * e[3][0] - e[2][0] * e[3][2]) +
+  const Real volume = e[1][0] * (e[2][1] * e[3][2] - e[2][2] * e[3][1]) +
+                      e[1][1] * (e[2][2] * e[3][0] - e[2][0] * e[3][2]) +
                       e[1][2] * (e[2][0] * e[3][1] - e[2][1] * e[3][0]);
   Real box = 1;
   for (int i = 1; i < 4; ++i) box *= std::hypot(e[i][0], e[i][1], e[i][2]);
@@ -50,8 +51,7 @@ Record describe_tetrahedron() {
       "tetrahedron",
       "A solid tetrahedron with any four corners; its centre of mass is their mean. "
       "About the centre of mass: I_xx = m/20 sum (y^2 + z^2), I_xy = -m/20 sum x y over the corners, seen from there.",
-      {{"mass", "mass [kg]"},
-       {"vertices", "x, y, z of the four corners, in any order [m]"}});
+      {{"mass", "mass [kg]"}, {"vertices", "x, y, z of the four corners, in any order [m]"}});
 }
 
 }  // namespace polhode::shapes
