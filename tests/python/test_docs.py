@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("scenes/**/*.md"), *ROOT.glob("tests/**/*.md")])
+PAGES = sorted(page for places in ("*.md", "docs/**/*.md", "scenes/**/*.md", "tests/**/*.md") for page in ROOT.glob(places))
 
 
 def anchors(text):

@@ -20,7 +20,8 @@ CASES = json.loads((ROOT / "tests/reference/published.json").read_text())
 def errors(omega, attitude, omega_ref, attitude_ref):
     """The error measure of the scenes: of the rates, relative, and of the attitude [rad]."""
     rates = np.linalg.norm(omega - omega_ref, axis=-1).max() / np.linalg.norm(omega_ref, axis=-1).max()
-    apart = np.minimum(np.linalg.norm(attitude - attitude_ref, axis=-1), np.linalg.norm(attitude + attitude_ref, axis=-1))
+    both = (np.linalg.norm(attitude + sign * attitude_ref, axis=-1) for sign in (1, -1))
+    apart = np.minimum(*both)
     return rates, 4 * np.arcsin(apart.max() / 2)
 
 

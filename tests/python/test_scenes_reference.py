@@ -249,7 +249,8 @@ def test_symmetric_body_in_closed_form():
         p = mpmath.sqrt(w1**2 + w2**2 + c**2)
         for i in range(0, t.size, 20):
             spin, half = s * mpf(t[i]), mpmath.mpf(t[i]) / 2
-            sin_p, cos_p, sin_s, cos_s = mpmath.sin(p * half), mpmath.cos(p * half), mpmath.sin(s * half), mpmath.cos(s * half)  # fmt: skip
+            sin_p, cos_p = mpmath.sin(p * half), mpmath.cos(p * half)
+            sin_s, cos_s = mpmath.sin(s * half), mpmath.cos(s * half)
             rates = (w1 * mpmath.cos(spin) + w2 * mpmath.sin(spin), w2 * mpmath.cos(spin) - w1 * mpmath.sin(spin), w3)
             q = (sin_p / p * (w1 * cos_s + w2 * sin_s), sin_p / p * (w2 * cos_s - w1 * sin_s),
                  c / p * sin_p * cos_s + cos_p * sin_s, cos_p * cos_s - c / p * sin_p * sin_s)  # fmt: skip

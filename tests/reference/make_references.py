@@ -31,8 +31,10 @@ mp.dps = 40
 ORDER, TOLERANCE, STAGES = 40, -35, 12
 
 # Largest and first step of the collocation [s]: about half a radian, and the boundary layer of S7b resolved.
-STEPS = {"S1": (0.125, 0), "S2": (0.1, 0), "S3": (0.2, 0), "S4": (0.1, 0), "S5": (0.1, 0), "S5c": (0.1, 0),
-         "S6": (40.0, 0), "S7": (0.02, 0), "S7b": (0.0125, 2e-6), "S9": (0.1, 0), "N2": (0.1, 0), "Z1": (0.025, 0)}  # fmt: skip
+STEPS = {
+    "S1": (0.125, 0), "S2": (0.1, 0), "S3": (0.2, 0), "S4": (0.1, 0), "S5": (0.1, 0), "S5c": (0.1, 0), "S6": (40.0, 0),
+    "S7": (0.02, 0), "S7b": (0.0125, 2e-6), "S9": (0.1, 0), "N2": (0.1, 0), "Z1": (0.025, 0),
+}  # fmt: skip
 # A stiff scene is bounded by stability, which a high order hardly helps.
 LOW_ORDER = {"S7b": (24, 30)}
 COARSE = (0.05, 2e-6)  # its floor needs three digits, not thirty
