@@ -2,8 +2,11 @@
 
 import csv
 import math
+import os
 import pathlib
 import pickle
+import subprocess
+import sys
 import threading
 
 import numpy as np
@@ -227,3 +230,59 @@ def test_many_threads_may_share_one_motion():
     for omega, attitude in results:
         np.testing.assert_array_equal(omega, expected[0])
         np.testing.assert_array_equal(attitude, expected[1])
+
+
+LEVELS = """
+import csv, sys
+import numpy as np
+import polhode as ph
+answers = []
+for row in csv.DictReader(open(sys.argv[1])):
+    number = lambda *names: [float(row[name]) for name in names]
+    inertia = ph.InertiaTensor.from_moments(number("I1", "I2", "I3"), physical=False)
+    motion = ph.FreeMotion(inertia, number("w1", "w2", "w3"), number("x0", "y0", "z0", "w0"))
+    t = float(row["t"])
+    times = t * np.linspace(1, 0, 11)          # one block of eight and a rest
+    omega, attitude = motion.at(times)
+    for i in (0, 3, 10):
+        one = motion.at(float(times[i]))
+        assert (one[0] == omega[i]).all() and (one[1] == attitude[i]).all(), "an element depends on its place"
+    answers.append(np.concatenate([omega.ravel(), attitude.ravel()]))
+print(ph.build_info()["simd"])
+np.save(sys.argv[2], np.array(answers))
+"""
+
+
+@pytest.fixture(scope="module")
+def by_level(tmp_path_factory):
+    """{level: the answers to the whole table}, each from a process capped at that level."""
+    folder, found = tmp_path_factory.mktemp("levels"), {}
+    for level in ("baseline", "avx2", "avx512"):
+        file = folder / f"{level}.npy"
+        run = subprocess.run([sys.executable, "-c", LEVELS, str(REFERENCE / "free_motion.csv"), str(file)], check=True,
+                             capture_output=True, text=True, env={**os.environ, "POLHODE_SIMD": level})
+        if run.stdout.strip() == level:
+            found[level] = np.load(file)
+    return found
+
+
+def test_the_same_bits_on_avx2_and_avx512(by_level):
+    if len(by_level) < 3:
+        pytest.skip("this machine lacks a level")
+    assert by_level["avx2"].tobytes() == by_level["avx512"].tobytes()
+    assert by_level["avx2"].tobytes() != by_level["baseline"].tobytes(), "the cap has no effect"
+
+
+def test_every_level_keeps_the_promise(by_level, table):
+    for answers in by_level.values():
+        for row, answer in zip(table, answers, strict=True):
+            expected = numbers(row, "o1", "o2", "o3")
+            off = np.linalg.norm((answer[:3] - expected) / (np.abs(expected).max() or 1.0))
+            angle = float(angle_between(answer[33:37], numbers(row, "x", "y", "z", "w")))
+            assert max(off, angle) < 2e-15
+
+
+def test_a_level_that_does_not_exist_is_refused():
+    run = subprocess.run([sys.executable, "-c", "import polhode; polhode.build_info()"], capture_output=True, text=True,
+                         env={**os.environ, "POLHODE_SIMD": "mmx"})
+    assert run.returncode != 0 and "POLHODE_SIMD" in run.stderr

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "polhode/core/simd.hpp"
 #include "polhode/core/version.hpp"
 
 namespace polhode {
@@ -13,7 +14,7 @@ std::map<std::string, std::string> build_info() {
       {"flags", POLHODE_BUILD_FLAGS},
       {"eigen", std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION) + "." +
                     std::to_string(EIGEN_MINOR_VERSION)},
-      {"simd", "baseline"},
+      {"simd", to_text(simd_level())},
   };
 }
 

@@ -34,6 +34,8 @@ double representable(double scaled, int exponent, const char* name) {
   return value;
 }
 
+Quat working_attitude(const exact::FreeState<double>& s) { return {s.x, s.y, s.z, s.w}; }
+
 }  // namespace
 
 const char* to_text(FreeKind kind) {
@@ -86,10 +88,14 @@ void FreeMotion::classify(const Vector3d& I, const Vector3d& w, bool exact_axes)
 }
 
 void FreeMotion::set_up(const Vector3d& moments, const Matrix3d& R_BP, bool exact_axes) {
-  if (omega_.isZero(0.0)) return;
+  if (omega_.isZero(0.0)) {
+    const double q[] = {attitude_.x, attitude_.y, attitude_.z, attitude_.w};
+    for (std::size_t c = 0; c < 4; ++c) frame_.attitude[4 * c + 3] = q[c];
+    return;
+  }
   time_exponent_ = exponent_of(omega_);
   moment_exponent_ = exponent_of(moments);
-  time_scale_ = std::ldexp(1.0, time_exponent_);
+  frame_.time_scale = std::ldexp(1.0, time_exponent_);
   const Vector3d w = R_BP.transpose() * ldexp(omega_, -time_exponent_), I = ldexp(moments, -moment_exponent_);
 
   exact::FreeStart<double> start{};
@@ -133,33 +139,26 @@ void FreeMotion::set_up(const Vector3d& moments, const Matrix3d& R_BP, bool exac
     for (int a = 0; a < 3; ++a) M(c, a) = s.M[c][a];
   const Matrix3d S = R_BP * M;
   for (int c = 0; c < 3; ++c)
-    for (int a = 0; a < 3; ++a) omega_from_working_[static_cast<std::size_t>(3 * c + a)] = S(c, a) * time_scale_;
+    for (int a = 0; a < 3; ++a) frame_.omega[3 * c + a] = S(c, a) * frame_.time_scale;
   const auto turned = [&S](double x, double y, double z, double qw) {
     const Vector3d v = S * Vector3d(x, y, z);
     return Quat{v[0], v[1], v[2], qw};
   };
-  const auto first = evaluate_working(0.0);
+  Quat first;
+  if (form_ == Form::trig) first = working_attitude(exact::evaluate(trig_, 0.0));
+  if (form_ == Form::hyper) first = working_attitude(exact::evaluate(hyper_, 0.0));
   const Quat left = normalized(attitude_ * conjugate(turned(first.x, first.y, first.z, first.w)));
   for (std::size_t i = 0; i < 4; ++i) {
     const Quat q = left * turned(i == 0, i == 1, i == 2, i == 3);
-    attitude_from_working_[i] = q.x;
-    attitude_from_working_[4 + i] = q.y;
-    attitude_from_working_[8 + i] = q.z;
-    attitude_from_working_[12 + i] = q.w;
+    frame_.attitude[i] = q.x;
+    frame_.attitude[4 + i] = q.y;
+    frame_.attitude[8 + i] = q.z;
+    frame_.attitude[12 + i] = q.w;
   }
 }
 
-exact::FreeState<double> FreeMotion::evaluate_working(double scaled_time) const {
-  if (form_ == Form::trig) return exact::evaluate(trig_, scaled_time);
-  if (form_ == Form::hyper) return exact::evaluate(hyper_, scaled_time);
-  // About the second working axis.
-  exact::FreeState<double> state{};
-  math::sincos_cycles(math::cycle_fraction(scaled_time, trig_.kappa_hi, trig_.kappa_lo, 0.0), state.y, state.w);
-  return state;
-}
-
 double FreeMotion::checked_time(double t) const {
-  const double scaled = t * time_scale_;
+  const double scaled = t * frame_.time_scale;
   if (std::isnan(t) || std::isinf(t)) throw InvalidInput("t", "finite", to_text(t));
   if (form_ != Form::rest && !(std::abs(scaled) <= longest_)) {
     throw InvalidInput("t", "such that |omega t| <= 1e25 rad", to_text(t) + " s",
@@ -168,24 +167,18 @@ double FreeMotion::checked_time(double t) const {
   return scaled;
 }
 
-void FreeMotion::evaluate(double t, double* omega, double* attitude) const {
-  const double scaled = checked_time(t);
-  if (form_ == Form::rest) {
-    if (omega) std::fill_n(omega, 3, 0.0);
-    if (attitude) attitude[0] = attitude_.x, attitude[1] = attitude_.y, attitude[2] = attitude_.z, attitude[3] = attitude_.w;
-    return;
-  }
-  const exact::FreeState<double> s = evaluate_working(scaled);
-  if (omega) {
-    const auto& m = omega_from_working_;
-    for (std::size_t c = 0; c < 3; ++c)
-      omega[c] = m[3 * c] * s.omega[0] + m[3 * c + 1] * s.omega[1] + m[3 * c + 2] * s.omega[2];
-    if (form_ == Form::intermediate) std::copy_n(omega_.data(), 3, omega);
-  }
-  if (attitude) {
-    const auto& m = attitude_from_working_;
+/// At rest, or exactly on the unstable axis: omega as given, and a turn about it by half the angle in cycles.
+void FreeMotion::write_constant(const double* t, std::size_t n, double* omega, double* attitude) const {
+  for (std::size_t i = 0; i < n; ++i) {
+    if (omega) std::copy_n(omega_.data(), 3, omega + 3 * i);
+    if (attitude == nullptr) continue;
+    double sine = 0.0, cosine = 1.0;
+    const double scaled = t[i] * frame_.time_scale;
+    if (form_ == Form::intermediate) {
+      math::sincos_cycles(math::cycle_fraction(scaled, trig_.kappa_hi, trig_.kappa_lo, 0.0), sine, cosine);
+    }
     for (std::size_t c = 0; c < 4; ++c)
-      attitude[c] = (m[4 * c] * s.x + m[4 * c + 1] * s.y) + (m[4 * c + 2] * s.z + m[4 * c + 3] * s.w);
+      attitude[4 * i + c] = frame_.attitude[4 * c + 1] * sine + frame_.attitude[4 * c + 3] * cosine;
   }
 }
 
@@ -193,13 +186,23 @@ State FreeMotion::at(double t) const {
   State state;
   state.t = t;
   double q[4];
-  evaluate(t, state.omega.data(), q);
+  at(&t, 1, state.omega.data(), q);
   state.attitude = {q[0], q[1], q[2], q[3]};
   return state;
 }
 
 void FreeMotion::at(const double* t, std::size_t n, double* omega, double* attitude) const {
-  for (std::size_t i = 0; i < n; ++i) evaluate(t[i], omega ? omega + 3 * i : nullptr, attitude ? attitude + 4 * i : nullptr);
+  const double longest = form_ == Form::rest ? std::numeric_limits<double>::max() : longest_;
+  const double scale = form_ == Form::rest ? 1.0 : frame_.time_scale;
+  bool fine = true;
+  for (std::size_t i = 0; i < n; ++i) fine &= std::abs(t[i] * scale) <= longest;
+  if (!fine) {
+    for (std::size_t i = 0; i < n; ++i) checked_time(t[i]);
+  }
+  const exact::FreeKernels& kernels = exact::free_kernels();
+  if (form_ == Form::trig) return kernels.trig(trig_, frame_, t, n, omega, attitude);
+  if (form_ == Form::hyper) return kernels.hyper(hyper_, frame_, t, n, omega, attitude);
+  write_constant(t, n, omega, attitude);
 }
 
 double FreeMotion::period() const {

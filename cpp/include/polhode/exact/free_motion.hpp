@@ -1,11 +1,10 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <vector>
 
 #include "polhode/core/state.hpp"
-#include "polhode/exact/free_series.hpp"
+#include "polhode/exact/free_kernels.hpp"
 #include "polhode/inertia/inertia_tensor.hpp"
 
 namespace polhode {
@@ -71,10 +70,9 @@ class FreeMotion {
 
   void set_up(const Vector3d& moments, const Matrix3d& R_BP, bool exact_axes);
   void classify(const Vector3d& I, const Vector3d& w, bool exact_axes);
-  double checked_time(double t) const;
+  double checked_time(double t) const;  ///< t in scaled units
   Vector3d momentum_direction() const;
-  void evaluate(double t, double* omega, double* attitude) const;
-  exact::FreeState<double> evaluate_working(double scaled_time) const;
+  void write_constant(const double* t, std::size_t n, double* omega, double* attitude) const;
 
   InertiaTensor inertia_;
   Vector3d omega_;
@@ -82,12 +80,11 @@ class FreeMotion {
   FreeKind kind_ = FreeKind::rest;
   Form form_ = Form::rest;
   int time_exponent_ = 0, moment_exponent_ = 0;  ///< omega = 2^e omega', moments likewise
-  double time_scale_ = 1.0, longest_ = 0.0;      ///< 2^e; |t'| of 1e25 rad
+  double longest_ = 0.0;                         ///< |t'| of 1e25 rad
   double twice_T_ = 0.0, L_ = 0.0, precession_ = 0.0;  ///< scaled
   exact::FreeTrig<double> trig_;
   exact::FreeHyper<double> hyper_;
-  std::array<double, 9> omega_from_working_{};      ///< row by row, with the scale
-  std::array<double, 16> attitude_from_working_{};  ///< the quaternion product with all fixed turns, as a matrix
+  exact::FreeFrame frame_;
 };
 
 }  // namespace polhode

@@ -46,15 +46,14 @@ struct FreeHyper {
   T homoclinic;                            ///< 1 exactly on the separatrix, else 0
 };
 
-/// 1 / sqrt(|alpha|^2 + |beta|^2) turns the pair into a unit quaternion.
+/// 1 / sqrt(|alpha|^2 + |beta|^2), the scale, turns the pair into a unit quaternion; e^{i kappa t} turns both.
 template <class T>
-POLHODE_INLINE void turn_and_normalise(T re_a, T im_a, T re_b, T im_b, T size2, T sine, T cosine, FreeState<T>& out) {
-  const T scale = T(1.0) / sqrt(size2);
+POLHODE_INLINE void turn_and_normalise(T re_a, T im_a, T re_b, T im_b, T scale, T sine, T cosine, FreeState<T>& out) {
   const T c = cosine * scale, s = sine * scale;
-  out.w = re_a * c - im_a * s;
-  out.z = re_a * s + im_a * c;
-  out.x = re_b * c - im_b * s;
-  out.y = re_b * s + im_b * c;
+  out.w = madd(re_a, c, -(im_a * s));
+  out.z = madd(re_a, s, im_a * c);
+  out.x = madd(re_b, c, -(im_b * s));
+  out.y = madd(re_b, s, im_b * c);
 }
 
 template <class T, class C>
@@ -67,8 +66,8 @@ POLHODE_INLINE FreeState<T> evaluate(const FreeTrig<C>& body, T t) {
   const T re_b = c * polynomial(body.odd_cos, X), im_b = s * polynomial(body.odd_sin, X);
   const T size2 = madd(re_a, re_a, im_a * im_a) + madd(re_b, re_b, im_b * im_b);
   FreeState<T> out;
-  turn_and_normalise(re_a, im_a, re_b, im_b, size2, ks, kc, out);
-  const T inverse = T(1.0) / size2;
+  const T scale = T(1.0) / sqrt(size2), inverse = scale * scale;
+  turn_and_normalise(re_a, im_a, re_b, im_b, scale, ks, kc, out);
   out.omega[0] = s * polynomial(body.omega1, X) * inverse;
   out.omega[1] = c * polynomial(body.omega2, X) * inverse;
   out.omega[2] = polynomial(body.omega3, X) * inverse;
@@ -119,7 +118,7 @@ POLHODE_INLINE FreeState<T> evaluate(const FreeHyper<C>& body, T t) {
   }
   const T size2 = madd(re_a, re_a, im_a * im_a) + madd(re_b, re_b, im_b * im_b);
   FreeState<T> out;
-  turn_and_normalise(re_a, im_a, re_b, im_b, size2, sine, cosine, out);
+  turn_and_normalise(re_a, im_a, re_b, im_b, T(1.0) / sqrt(size2), sine, cosine, out);
 
   T D = T(0.0), V = T(0.0), Wp = E, Wm = E;
   for (int i = 2; i >= 0; --i) {

@@ -1,0 +1,19 @@
+#include "polhode/exact/free_kernels.hpp"
+
+#include "exact/lanes/levels.hpp"
+
+namespace polhode::exact {
+
+const FreeKernels& free_kernels(SimdLevel level) {
+  const FreeKernels* found = nullptr;
+  if (level == SimdLevel::avx512) found = avx512_free_kernels();
+  if (found == nullptr && level != SimdLevel::baseline) found = avx2_free_kernels();
+  return found != nullptr ? *found : *baseline_free_kernels();
+}
+
+const FreeKernels& free_kernels() {
+  static const FreeKernels& chosen = free_kernels(simd_level());
+  return chosen;
+}
+
+}  // namespace polhode::exact

@@ -1,0 +1,17 @@
+// Built with the flags of avx512 (cpp/CMakeLists.txt) where the compiler has them, else empty.
+#include "exact/lanes/levels.hpp"
+
+#ifdef __AVX512DQ__
+#define POLHODE_ISA isa_avx512
+#include "math/lanes/avx512.hpp"
+// The loops need `Wide`, which the line above defines.
+#include "exact/lanes/free_loops.hpp"
+
+namespace polhode::exact {
+const FreeKernels* avx512_free_kernels() { return &POLHODE_ISA::kernels; }
+}  // namespace polhode::exact
+#else
+namespace polhode::exact {
+const FreeKernels* avx512_free_kernels() { return nullptr; }
+}  // namespace polhode::exact
+#endif

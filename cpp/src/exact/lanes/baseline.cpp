@@ -1,0 +1,16 @@
+// One number at a time, for any processor.
+#define POLHODE_ISA isa_baseline
+#include "math/lanes/scalar.hpp"
+
+namespace polhode::POLHODE_ISA {
+using Wide = One;
+}
+
+#include "exact/lanes/free_loops.hpp"
+#include "exact/lanes/levels.hpp"
+
+namespace polhode::exact {
+
+const FreeKernels* baseline_free_kernels() { return &POLHODE_ISA::kernels; }
+
+}  // namespace polhode::exact
