@@ -1,6 +1,8 @@
 """Inertia tensors at the door, turned, and put together. Principal axes have their own file, shapes theirs."""
 
+import pathlib
 import pickle
+import re
 import warnings
 from fractions import Fraction
 
@@ -113,6 +115,17 @@ def test_the_opt_out_gives_up_the_triangle_inequality_alone():
     for matrix in (np.diag([-1, 2, 2]), [[1, 0.1, 0], [0, 1, 0], [0, 0, 1]], np.full((3, 3), np.nan)):
         with pytest.raises(ph.InvalidInput):
             ph.InertiaTensor(matrix, physical=False)
+
+
+def test_the_page_tells_what_happens():
+    page = (pathlib.Path(__file__).parents[2] / "docs" / "inertia.md").read_text()
+    names = {}
+    exec(compile(re.search(r"```python\n(.*?)```", page, flags=re.S)[1], "docs/inertia.md", "exec"), names)
+    assert list(names["block"].inertia.moments) == [20, 40, 52]
+    assert names["part"].mass == 11.5
+    with pytest.raises(ph.InvalidInput) as refusal:
+        ph.InertiaTensor([[1, 0, 0], [0, 2, 0], [0, 0, 5]])
+    assert str(refusal.value) in " ".join(page.split())
 
 
 # ---- values

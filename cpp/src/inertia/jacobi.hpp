@@ -10,9 +10,9 @@
 
 namespace polhode::inertia {
 
-/// Jacobi's rotations for N symmetric 3x3 matrices side by side (Jacobi 1846; Golub & Van Loan, Matrix Computations,
-/// 8.5). The plain loops over lanes have no branches and become vector instructions. A lane that has converged turns by
-/// exactly zero, so its result depends neither on its neighbours nor on N.
+/// Jacobi's rotations for N symmetric 3x3 matrices side by side (Jacobi1846; GolubVanLoan, 8.5). The plain loops over
+/// lanes have no branches and become vector instructions. A lane that has converged turns by exactly zero, so its
+/// result depends neither on its neighbours nor on N.
 template <std::size_t N>
 class Jacobi {
  public:
@@ -67,7 +67,7 @@ class Jacobi {
   }
 
   /// The square below which an entry counts as zero: turning it away would change neither diagonal entry by a rounding
-  /// nor, for positive matrices, by a part of itself (Demmel & Veselic 1992); or it is nothing beside the largest one.
+  /// nor, for positive matrices, by a part of itself (DemmelVeselic1992); or it is nothing beside the largest one.
   static double negligible(double app, double aqq) { return std::max(std::abs(app * aqq) * 0x1p-110, 0x1p-200); }
 
   bool converged() const {
