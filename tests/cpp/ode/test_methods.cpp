@@ -1,0 +1,208 @@
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "polhode/core/error.hpp"
+#include "polhode/ode/drive.hpp"
+#include "polhode/ode/methods.hpp"
+
+using namespace polhode;
+using namespace polhode::ode;
+
+namespace {
+
+/// y'' = -y with y(0) = (1, 0), or y' = y^2 when it should blow up.
+struct Oscillator {
+  static constexpr int dimension = 2;
+  void compute_derivative(double, const double* y, double* f) const { f[0] = y[1], f[1] = -y[0]; }
+  double error_norm(const double* e, const double*, const double*, double rtol, double atol) const {
+    return (std::abs(e[0]) + std::abs(e[1])) / (rtol + atol);
+  }
+  void restore(double*, double*) const {}
+};
+
+struct Blowup {
+  static constexpr int dimension = 1;
+  void compute_derivative(double, const double* y, double* f) const { f[0] = y[0] * y[0]; }
+  double error_norm(const double* e, const double* y0, const double* y1, double rtol, double atol) const {
+    const double size = std::fmax(std::abs(y0[0]), std::abs(y1[0]));
+    return std::abs(e[0]) / (rtol * size + atol);
+  }
+  void restore(double*, double*) const {}
+};
+
+struct Scaled {
+  static constexpr int dimension = 2;
+  double rate;
+  void compute_derivative(double, const double* v, double* f) const { f[0] = rate * v[1], f[1] = -rate * v[0]; }
+  double error_norm(const double* e, const double* a, const double* b, double rtol, double atol) const {
+    const double size = std::fmax(std::abs(a[0]) + std::abs(a[1]), std::abs(b[0]) + std::abs(b[1]));
+    return (std::abs(e[0]) + std::abs(e[1])) / (rtol * size + atol);
+  }
+  void restore(double*, double*) const {}
+};
+
+struct Clock {
+  static constexpr int dimension = 1;
+  void compute_derivative(double, const double*, double* f) const { f[0] = 1.0; }
+  double error_norm(const double* e, const double*, const double*, double rtol, double) const {
+    return std::abs(e[0]) / rtol;
+  }
+  void restore(double*, double*) const {}
+};
+
+template <class Method, class P>
+DriveResult run(const P& problem, std::vector<double> y0, std::vector<double> times, double rtol,
+                std::vector<double>& out, DriveOptions options = {}, Counts* counts = nullptr, double t0 = 0.0) {
+  typename Method::template Stepper<P> stepper(problem, t0, y0.data(), times.back(), {rtol, 0.0});
+  out.clear();
+  const DriveResult result = drive(stepper, times, [&](std::size_t, double, const double* y) {
+    for (int i = 0; i < P::dimension; ++i) out.push_back(y[i]);
+  }, options);
+  if (counts) *counts = stepper.counts();
+  return result;
+}
+
+template <class Method>
+void conform() {
+  const MethodRecord& record = find_method(Method::record.name);
+  const std::string name(record.name);
+  CAPTURE(name);
+  std::vector<double> y;
+  const Oscillator oscillator;
+
+  SUBCASE("the error falls as the power of the order, and stays near the tolerance") {
+    double error[2], steps[2];
+    for (int k = 0; k < 2; ++k) {
+      Counts counts;
+      const double rtol = k == 0 ? 1e-7 : 1e-10;
+      run<Method>(oscillator, {1, 0}, {10}, rtol, y, {}, &counts);
+      error[k] = std::hypot(y[0] - std::cos(10.0), y[1] + std::sin(10.0));
+      steps[k] = static_cast<double>(counts.steps);
+      CHECK(error[k] < 100 * rtol);
+      CHECK(error[k] > 0.01 * rtol);
+    }
+    const double slope = std::log(error[0] / error[1]) / std::log(steps[1] / steps[0]);
+    CHECK(slope > record.order - 0.4);
+    CHECK(slope < record.order + 1.2);
+  }
+
+  SUBCASE("samples between the steps have the order of the continuous extension") {
+    std::vector<double> times;
+    for (int i = 1; i <= 200; ++i) times.push_back(0.05 * i);
+    double error[2], steps[2];
+    for (int k = 0; k < 2; ++k) {
+      Counts counts;
+      run<Method>(oscillator, {1, 0}, times, k == 0 ? 1e-5 : 1e-8, y, {}, &counts);
+      error[k] = 0.0;
+      steps[k] = static_cast<double>(counts.steps);
+      for (std::size_t i = 0; i < times.size(); ++i) {
+        error[k] = std::fmax(error[k], std::hypot(y[2 * i] - std::cos(times[i]), y[2 * i + 1] + std::sin(times[i])));
+      }
+    }
+    CHECK(std::log(error[0] / error[1]) / std::log(steps[1] / steps[0]) > record.dense_order - 0.3);
+  }
+
+  SUBCASE("backwards, and a span of zero") {
+    run<Method>(oscillator, {1, 0}, {0.0, -3.0, -10.0}, 1e-11, y);
+    CHECK(y[0] == 1.0);
+    CHECK(std::abs(y[2] - std::cos(3.0)) < 1e-9);
+    CHECK(std::abs(y[5] - std::sin(10.0)) < 1e-9);
+    Counts counts;
+    const DriveResult none = run<Method>(oscillator, {1, 0}, {0.0, 0.0}, 1e-9, y, {}, &counts);
+    CHECK(none.samples == 2);
+    CHECK(counts.steps == 0);
+  }
+
+  SUBCASE("dense output is what the samples are") {
+    DriveOptions options;
+    options.dense = true;
+    std::vector<double> times{0.3, 1.7, 6.0};
+    const DriveResult result = run<Method>(oscillator, {1, 0}, times, 1e-8, y, options);
+    double at[2];
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      result.dense(times[i], at);
+      CHECK(std::abs(at[0] - y[2 * i]) < 1e-13);
+    }
+  }
+
+  SUBCASE("events: once each, by direction, terminal, and at a common zero") {
+    std::vector<Event> events{{[](double, const double* v) { return v[0]; }, 0, false},
+                              {[](double, const double* v) { return v[0]; }, 1, false},
+                              {[](double t, const double*) { return t - 7.0; }, 0, true}};
+    DriveOptions options;
+    options.events = events;
+    const DriveResult result = run<Method>(oscillator, {1, 0}, {20}, 1e-11, y, options);
+    CHECK(result.ending == Ending::event);
+    CHECK(result.t == doctest::Approx(7.0).epsilon(1e-14));
+    REQUIRE(result.hits.size() == 4);   // pi/2, 3 pi/2 twice (rising), 7
+    CHECK(result.hits[0].t == doctest::Approx(M_PI / 2).epsilon(1e-9));
+    CHECK(result.hits[1].t == doctest::Approx(3 * M_PI / 2).epsilon(1e-9));
+    CHECK(result.hits[2].t == result.hits[1].t);
+    CHECK(y.empty());
+  }
+
+  SUBCASE("a solution that blows up ends with the time reached") {
+    const DriveResult result = run<Method>(Blowup{}, {1.0}, {0.5, 2.0}, 1e-9, y);
+    CHECK((result.ending == Ending::underflow || result.ending == Ending::not_finite));
+    CHECK(std::abs(result.t - 1.0) < 1e-6);
+    REQUIRE(y.size() == 1);
+    CHECK(std::abs(y[0] - 2.0) < 1e-7);
+  }
+
+  SUBCASE("limits are kept: steps, and a progress that says stop") {
+    DriveOptions options;
+    options.max_steps = 5;
+    Counts counts;
+    CHECK(run<Method>(oscillator, {1, 0}, {1e3}, 1e-9, y, options, &counts).ending == Ending::max_steps);
+    CHECK(counts.steps == 5);
+  }
+
+  SUBCASE("scales of y and of time change nothing") {
+    std::vector<double> z;
+    run<Method>(Scaled{1.0}, {1, 0}, {10}, 1e-9, y);
+    for (const int power : {-40, 40}) {
+      const double s = std::ldexp(1.0, power);
+      run<Method>(Scaled{s}, {s, 0}, {10 / s}, 1e-9, z);
+      CHECK(z[0] == y[0] * s);
+      CHECK(z[1] == y[1] * s);
+    }
+  }
+}
+
+template <class... M>
+void conform_all(std::tuple<M...>*) {
+  (conform<M>(), ...);
+}
+
+}  // namespace
+
+TEST_CASE("every method of the list conforms") { conform_all(static_cast<Methods*>(nullptr)); }
+
+TEST_CASE("the list of methods: unique names, sources, and an unknown name refused with the known ones") {
+  for (const MethodRecord& record : methods()) {
+    CHECK(!record.doc.empty());
+    CHECK(!record.source.empty());
+    int same = 0;
+    for (const MethodRecord& other : methods()) same += other.name == record.name;
+    CHECK(same == 1);
+  }
+  CHECK_THROWS_WITH_AS(find_method("rk54"), doctest::Contains("rk45"), InvalidInput);
+}
+
+TEST_CASE("two zeros within one step are both found, and a touch is met once") {
+  std::vector<Event> events{{[](double, const double* y) { return (y[0] - 4.0) * (y[0] - 6.5); }, 0, false}};
+  DriveOptions options;
+  options.events = events;
+  std::vector<double> y;
+  Counts counts;
+  const DriveResult result = run<Rk45>(Clock{}, {0.0}, {10.0}, 1e-3, y, options, &counts);
+  CHECK(counts.steps <= 8);
+  REQUIRE(result.hits.size() == 2);
+  CHECK(result.hits[0].t == doctest::Approx(4.0).epsilon(1e-14));
+  CHECK(result.hits[1].t == doctest::Approx(6.5).epsilon(1e-14));
+}

@@ -1,0 +1,69 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "polhode/core/error.hpp"
+#include "polhode/exact/free_motion.hpp"
+#include "polhode/ode/methods.hpp"
+#include "polhode/solve/invariants.hpp"
+#include "polhode/solve/solve.hpp"
+
+using namespace polhode;
+
+namespace {
+
+Scene make_block(std::vector<double> times, std::vector<AnyTorque> torques = {}) {
+  return Scene({.inertia_B = InertiaTensor::from_moments({0.20, 0.40, 0.52}),
+                .omega = {1, 2, 3},
+                .torques = std::move(torques),
+                .times = std::move(times)});
+}
+
+}  // namespace
+
+TEST_CASE("solve agrees with the closed form, forwards and backwards") {
+  const Scene scene = make_block({10.0, -3.0, 0.0});
+  const Motion motion = solve(scene, {.rtol = 1e-12});
+  const FreeMotion free(Vector3d{0.20, 0.40, 0.52}, Vector3d{1, 2, 3});
+  REQUIRE(motion.t.size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const State exact = free.at(motion.t[i]);
+    for (std::size_t k = 0; k < 3; ++k) CHECK(std::abs(motion.omega[3 * i + k] - exact.omega[static_cast<int>(k)]) < 1e-9);
+  }
+  CHECK(succeeded(scene, solve(scene, {.accuracy = 1e-8})));
+  CHECK(compute_drift(scene, motion).size() == 2);
+}
+
+TEST_CASE("a C++ callable is a torque, and its exception comes through") {
+  const auto thruster = torques::Custom::from(
+      [](double, const double*, const double*, double* torque) { torque[0] = 0.01, torque[1] = -0.02, torque[2] = 0.03; },
+      {.uses_time = false, .uses_attitude = false, .uses_rates = false});
+  const Motion mine = solve(make_block({5.0}, {thruster}), {.rtol = 1e-9});
+  const Motion built_in = solve(make_block({5.0}, {torques::Constant({0.01, -0.02, 0.03})}), {.rtol = 1e-9});
+  CHECK(mine.omega == built_in.omega);
+
+  const auto broken = torques::Custom::from(
+      [](double t, const double*, const double*, double*) {
+        if (t > 1) throw std::domain_error("out of fuel");
+      },
+      {});
+  CHECK_THROWS_AS(solve(make_block({5.0}, {broken})), InvalidInput);   // it wrote nothing: NaN is named
+}
+
+TEST_CASE("options that contradict each other are refused") {
+  const Scene scene = make_block({1.0});
+  CHECK_THROWS_AS(solve(scene, {.accuracy = 1e-6, .rtol = 1e-6}), InvalidInput);
+  CHECK_THROWS_AS(solve(scene, {.accuracy = 0.0}), InvalidInput);
+  CHECK_THROWS_AS(solve(scene, {.method = "rk54"}), InvalidInput);
+  CHECK_THROWS_AS(solve(scene, {.step = 0.1}), InvalidInput);
+  CHECK_THROWS_AS(make_block({}), InvalidInput);
+}
+
+TEST_CASE("events end a run, and progress is told") {
+  SolveOptions options{.rtol = 1e-10, .events = {{[](const State& s) { return s.omega[0]; }, 0, true}}};
+  const Motion motion = solve(make_block({0.0, 100.0}), options);
+  CHECK(motion.status == Status::event);
+  REQUIRE(motion.events.size() == 1);
+  CHECK(std::abs(motion.events[0].state.omega[0]) < 1e-9);
+  CHECK(motion.t.size() == 1);
+}
