@@ -2,132 +2,138 @@
 
 from __future__ import annotations
 
+import difflib
 import os
 import pathlib
+import re
 import tomllib
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
+from collections.abc import Callable
+from functools import cache
+from typing import Annotated, Any, Literal, NamedTuple, Union
 
 import numpy as np
 
 from . import _core, torques
 from .scene import Scene, scene_folder
 
-if TYPE_CHECKING:
-    from pydantic import BaseModel
-
 InvalidInput = _core.InvalidInput
 
 
-def _models() -> type[BaseModel]:
-    """Build the pydantic model of a scene file; needs the `cli` extra."""
+def _pydantic() -> Any:
     try:
-        from pydantic import BaseModel, ConfigDict, Field, create_model, model_validator
+        import pydantic
     except ImportError:
         raise InvalidInput("scene files need pydantic: pip install 'polhode[cli]'") from None
+    return pydantic
 
-    number = Annotated[float, Field(allow_inf_nan=False)]
-    vector = Annotated[list[number], Field(min_length=3, max_length=3)]
-    quaternion = Annotated[list[number], Field(min_length=4, max_length=4)]
-    matrix = Annotated[list[vector], Field(min_length=3, max_length=3)]
-    strict = ConfigDict(extra="forbid")
 
-    class Euler(BaseModel):
-        model_config = strict
-        sequence: str
-        angles: list[number] | None = None
-        angles_deg: list[number] | None = None
+class Kinds(NamedTuple):
+    """What a key may hold: a finite number, or so many of them."""
 
-        @model_validator(mode="after")
-        def one_of(self) -> Euler:
-            if (self.angles is None) == (self.angles_deg is None):
-                raise ValueError("give angles (radians) or angles_deg, one of them")
-            return self
+    number: Any
+    pair: Any
+    vector: Any
+    quaternion: Any
+    matrix: Any
+    numbers: Any
 
-    class Body(BaseModel):
-        model_config = ConfigDict(extra="allow")   # a shape's own parameters, checked by the shape
-        moments: vector | None = None
-        matrix: matrix | None = None               # type: ignore[valid-type]
-        shape: str | None = None
-        physical: bool = True
 
-        @model_validator(mode="after")
-        def one_of(self) -> Body:
-            given = [k for k in ("moments", "matrix", "shape") if getattr(self, k) is not None]
-            if len(given) != 1:
-                raise ValueError(f"give one of moments, matrix and shape, got {', '.join(given) or 'none of them'}")
-            if self.shape is None and self.model_extra:
-                raise ValueError(f"unknown key {next(iter(self.model_extra))!r}")
-            return self
+def kinds() -> Kinds:
+    """Return the types of what scene files hold; strict, so that neither True nor "1" is a number."""
+    field = _pydantic().Field
+    number: Any = Annotated[float, field(allow_inf_nan=False)]
 
-    class Start(BaseModel):
-        model_config = strict
-        omega: vector | None = None
-        omega_deg: vector | None = None
-        attitude: quaternion | None = None
-        euler: Euler | None = None
-        t0: number = 0.0
+    def rows(one: Any, least: int, most: int | None = None) -> Any:
+        return Annotated[list[one], field(min_length=least, max_length=most)]
 
-        @model_validator(mode="after")
-        def one_of(self) -> Start:
-            if (self.omega is None) == (self.omega_deg is None):
-                raise ValueError("give omega (rad/s) or omega_deg (deg/s), one of them")
-            if self.attitude is not None and self.euler is not None:
-                raise ValueError("give attitude or euler, not both")
-            return self
+    vector = rows(number, 3, 3)
+    return Kinds(number, rows(number, 2, 2), vector, rows(number, 4, 4), rows(vector, 3, 3), rows(number, 1))
 
-    class Times(BaseModel):
-        model_config = strict
-        span: number | None = None
-        samples: Annotated[int, Field(ge=1)] | None = None
-        values: Annotated[list[number], Field(min_length=1)] | None = None
 
-        @model_validator(mode="after")
-        def one_of(self) -> Times:
-            if (self.values is None) != (self.span is not None and self.samples is not None) or (
-                self.values is not None and (self.span is not None or self.samples is not None)
-            ):
-                raise ValueError("give span and samples, or values")
-            return self
+def model(name: str, check: Callable[[Any], None] | None = None, extra: str = "forbid", /, **fields: Any) -> Any:
+    """Make the model of one table, with a check over its keys together."""
+    p = _pydantic()
 
-    kinds: list[Any] = []
+    def checked(table: Any) -> Any:
+        if check is not None:
+            check(table)
+        return table
+
+    return p.create_model(name, __config__=p.ConfigDict(extra=extra, strict=True),
+                          __validators__={"checked": p.model_validator(mode="after")(checked)}, **fields)
+
+
+def _one_of(table: Any, *choices: str) -> None:
+    given = [name for name in choices if getattr(table, name) is not None]
+    if len(given) != 1:
+        raise ValueError(f"give one of {', '.join(choices)}; got {' and '.join(given) or 'none of them'}")
+
+
+def _check_body(body: Any) -> None:
+    _one_of(body, "moments", "matrix", "shape")
+    if body.shape is not None:
+        wrong, beside = {"physical"} & body.model_fields_set, "a shape"
+    else:
+        wrong, beside = {"about"} & body.model_fields_set | set(body.model_extra), "moments or a matrix"
+    if wrong:
+        raise ValueError(f"unknown key {min(wrong)!r} beside {beside}")
+
+
+def _check_start(start: Any) -> None:
+    _one_of(start, "omega", "omega_deg")
+    if start.attitude is not None and start.euler is not None:
+        raise ValueError("give attitude or euler, not both")
+
+
+def _check_times(times: Any) -> None:
+    given = {name for name in ("span", "samples", "values") if getattr(times, name) is not None}
+    if given not in ({"span", "samples"}, {"values"}):
+        raise ValueError(f"give span and samples, or values; got {', '.join(sorted(given)) or 'none of them'}")
+
+
+@cache
+def body_model() -> Any:
+    """Return the pydantic model of a [body] table; what it does not know is a parameter of the shape."""
+    kind = kinds()
+    return model("Body", _check_body, "allow", moments=(kind.vector | None, None), matrix=(kind.matrix | None, None),
+                  shape=(str | None, None), about=(kind.vector | None, None), physical=(bool, True))
+
+
+@cache
+def scene_model() -> Any:
+    """Return the pydantic model of a scene file; its JSON Schema is `scene_model().model_json_schema()`."""
+    kind = kinds()
+    euler = model("Euler", lambda table: _one_of(table, "angles", "angles_deg"), sequence=(str, ...),
+                   angles=(kind.numbers | None, None), angles_deg=(kind.numbers | None, None))
+    start = model("Start", _check_start, omega=(kind.vector | None, None), omega_deg=(kind.vector | None, None),
+                   attitude=(kind.quaternion | None, None), euler=(euler | None, None), t0=(kind.number, 0.0))
+    times = model("Times", _check_times, span=(kind.number | None, None), values=(kind.numbers | None, None),
+                   samples=(Annotated[int, _pydantic().Field(ge=1)] | None, None))
+    any_torque: Any = Union[tuple(_torque_models())]
+    torque: Any = Annotated[any_torque, _pydantic().Field(discriminator="kind")]
+    return model("SceneFile", name=(str, ""), title=(str, ""), about=(str, ""),
+                  want=(list[Literal["omega", "attitude"]], ["omega", "attitude"]),
+                  body=(body_model(), ...), start=(start, ...), torques=(list[torque], []), times=(times, ...))
+
+
+def _torque_models() -> list[Any]:
+    """Return the models of all torques that can stand in a file, told apart by their kind."""
+    kind = kinds()
+    models = []
     for record in torques.records():
         if record["key"] == "custom":
             continue   # a function cannot stand in a file
         fields: dict[str, Any] = {"kind": (Literal[record["key"]], ...)}
         for parameter in record["parameters"]:
-            kind = {"real": number, "vector": vector, "matrix": matrix | vector}.get(parameter["kind"])
-            if kind is None:
-                kind = Literal[tuple(parameter["choices"])]
             default = ... if parameter["default"] is None else parameter["default"]
             if parameter["kind"] == "matrix":
-                fields["diagonal"] = (vector | None, None)
-                kind, default = kind | None, None
-            fields[parameter["name"]] = (kind, default)
-        kinds.append(create_model(record["name"], __config__=strict, **fields))
-    torque = Annotated[Union[tuple(kinds)], Field(discriminator="kind")]
-
-    return create_model(
-        "SceneFile",
-        __config__=strict,
-        name=(str, ""),
-        title=(str, ""),
-        about=(str, ""),
-        want=(list[Literal["omega", "attitude"]], ["omega", "attitude"]),
-        body=(Body, ...),
-        start=(Start, ...),
-        torques=(list[torque], []),
-        times=(Times, ...),
-    )
-
-
-_model: list[type[BaseModel]] = []
-
-
-def scene_model() -> type[BaseModel]:
-    """Return the pydantic model of a scene file; its JSON Schema is `scene_model().model_json_schema()`."""
-    if not _model:
-        _model.append(_models())
-    return _model[0]
+                fields[parameter["name"]], fields["diagonal"] = (kind.matrix | None, None), (kind.vector | None, None)
+            elif parameter["kind"] == "choice":
+                fields[parameter["name"]] = (Literal[tuple(parameter["choices"])], default)
+            else:
+                fields[parameter["name"]] = ({"real": kind.number, "vector": kind.vector}[parameter["kind"]], default)
+        models.append(model(record["name"], **fields))
+    return models
 
 
 def find_scene(source: str | os.PathLike[str]) -> pathlib.Path:
@@ -139,7 +145,7 @@ def find_scene(source: str | os.PathLike[str]) -> pathlib.Path:
     if path.parent == pathlib.Path() and not path.suffix and installed.is_file():
         return installed
     names = ", ".join(sorted(p.stem for p in scene_folder().glob("*.toml")))
-    raise InvalidInput(f"scene: must be a file, or one of {names}, got {str(source)!r}")
+    raise InvalidInput(f"scene: must be a file, or one of {names}; got {str(source)!r}")
 
 
 def read_toml(path: pathlib.Path) -> dict[str, Any]:
@@ -152,36 +158,67 @@ def read_toml(path: pathlib.Path) -> dict[str, Any]:
         raise InvalidInput(f"{path}: cannot be read: {error.strerror}") from None
 
 
-def validate(model: type[BaseModel], data: dict[str, Any], where: str) -> Any:
-    """Check data against a model; the first wrong key is named in one line."""
-    from pydantic import ValidationError
+def _keys(schema: Any) -> set[str]:
+    """Return every key that stands anywhere in a JSON Schema."""
+    if isinstance(schema, list):
+        return set().union(*map(_keys, schema))
+    if not isinstance(schema, dict):
+        return set()
+    return set(schema.get("properties", {})).union(*map(_keys, schema.values()))
 
+
+def _explain(table: Any, error: Any) -> str:
+    """One line for one finding of pydantic: the key, and what is wrong with it."""
+    where = ".".join(str(part) for part in error["loc"]) or "the file"
+    if error["type"] == "missing":
+        return f"{where}: missing"
+    if error["type"] == "extra_forbidden":
+        near = difflib.get_close_matches(str(error["loc"][-1]), _keys(table.model_json_schema()), n=1)
+        return f"{where}: unknown key{f', did you mean {near[0]!r}?' if near else ''}"
+    if error["type"] == "value_error":
+        return f"{where}: {error['ctx']['error']}"
+    if error["type"] == "union_tag_not_found":
+        return f"{where}: missing the key 'kind'"
+    if error["type"] == "union_tag_invalid":
+        return f"{where}.kind: must be one of {error['ctx']['expected_tags']}; got {error['ctx']['tag']!r}"
+    found = repr(error["input"])
+    text = re.sub(r"^Input should|^List should", "must", error["msg"]).replace(" after validation", "")
+    text = re.sub(r"a valid dictionary or instance of \w+", "a table", text).replace("a valid integer", "an integer").replace("a valid ", "a ")
+    return f"{where}: {text}; got {found if len(found) < 60 else found[:57] + '...'}"
+
+
+def validate(table: Any, data: dict[str, Any], where: str) -> Any:
+    """Check data against the model of a table; up to three wrong keys are named in one line."""
     try:
-        return model.model_validate(data)
-    except ValidationError as error:
-        details = error.errors()
-        lines = [f"{'.'.join(str(part) for part in d['loc']) or 'top level'}: {d['msg'].removeprefix('Value error, ')}"
-                 for d in details]
+        return table.model_validate(data)
+    except _pydantic().ValidationError as error:
+        lines = [_explain(table, one) for one in error.errors()]
         more = f" (and {len(lines) - 3} more)" if len(lines) > 3 else ""
         raise InvalidInput(f"{where}: {'; '.join(lines[:3])}{more}") from None
 
 
-def body_inertia(body: Any) -> Any:
-    """Return the InertiaTensor that the [body] table describes."""
+def body_properties(body: Any) -> Any:
+    """Return the MassProperties of a [body] table that names a shape."""
     from . import shapes
-    from .inertia import InertiaTensor
 
+    names = [record[0] for record in _core.shape_records()]
+    if body.shape not in names:
+        raise InvalidInput(f"body.shape: must be one of {', '.join(names)}; got {body.shape!r}")
+    try:
+        return getattr(shapes, body.shape)(**body.model_extra)
+    except TypeError as error:
+        raise InvalidInput(f"body: {error}") from None
+
+
+def body_inertia(body: Any) -> _core.InertiaTensor:
+    """Return the InertiaTensor that a [body] table describes."""
     if body.shape is not None:
-        make = getattr(shapes, body.shape, None) if body.shape in shapes.__all__ else None
-        if make is None:
-            raise InvalidInput(f"body.shape: must be one of {', '.join(shapes.__all__)}, got {body.shape!r}")
-        try:
-            return make(**body.model_extra).inertia
-        except TypeError as error:
-            raise InvalidInput(f"body: {error}") from None
+        properties = body_properties(body)
+        tensor: _core.InertiaTensor = properties.inertia if body.about is None else properties.about(body.about)
+        return tensor
     if body.moments is not None:
-        return InertiaTensor.from_moments(body.moments, physical=body.physical)
-    return InertiaTensor(body.matrix, physical=body.physical)
+        return _core.InertiaTensor.from_moments(body.moments, physical=body.physical)
+    return _core.InertiaTensor(body.matrix, physical=body.physical)
 
 
 def _torque(entry: Any) -> Any:
@@ -194,24 +231,30 @@ def _torque(entry: Any) -> Any:
     return getattr(torques, record["name"])(**values)
 
 
+def _attitude(start: Any) -> Any:
+    if start.euler is None:
+        return (0.0, 0.0, 0.0, 1.0) if start.attitude is None else start.attitude
+    from .attitude import Rotation
+
+    degrees = start.euler.angles is None
+    angles = start.euler.angles_deg if degrees else start.euler.angles
+    return Rotation.from_euler(start.euler.sequence, angles, degrees=degrees).as_quat()
+
+
 def make_scene(data: dict[str, Any], where: str = "scene") -> Scene:
     """Build a scene from the content of a scene file."""
     entry = validate(scene_model(), data, where)
     start, times = entry.start, entry.times
-    attitude: Any = (0.0, 0.0, 0.0, 1.0) if start.attitude is None else start.attitude
+    grid = times.values
+    if grid is None:
+        grid = np.linspace(start.t0, start.t0 + times.span, times.samples)
     try:
-        if start.euler is not None:
-            from .attitude import Rotation
-
-            degrees = start.euler.angles is None
-            angles = start.euler.angles_deg if degrees else start.euler.angles
-            attitude = Rotation.from_euler(start.euler.sequence, angles, degrees=degrees).as_quat()
         return Scene(
             inertia=body_inertia(entry.body),
             omega=np.radians(start.omega_deg) if start.omega is None else start.omega,
-            attitude=attitude,
+            attitude=_attitude(start),
             torques=[_torque(one) for one in entry.torques],
-            times=times.values if times.values is not None else np.linspace(start.t0, start.t0 + times.span, times.samples),
+            times=grid,
             want=entry.want,
             t0=start.t0,
             name=entry.name,
@@ -226,3 +269,12 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
     data = read_toml(path)
     data.setdefault("name", path.stem)
     return make_scene(data, path.name)
+
+
+def load_body(source: str | os.PathLike[str]) -> Any:
+    """Return the checked [body] table of a scene file, or of a file that holds nothing else."""
+    path = find_scene(source)
+    data = read_toml(path)
+    if not isinstance(data.get("body"), dict):
+        raise InvalidInput(f"{path.name}: body: missing, or not a table")
+    return validate(body_model(), data["body"], f"{path.name}: body")

@@ -1,0 +1,10 @@
+"""Speed against accuracy: every method, the closed forms and other programs on the same scenes, in one run.
+
+`chart(scenes, folder)` measures, draws and writes; `measure` and `pictures` are its two halves.
+"""
+
+from __future__ import annotations
+
+from .chart import chart as chart
+
+__all__ = ["chart"]

@@ -1,0 +1,107 @@
+"""The whole of a chart: measure every scene, draw, write, and say where the files are."""
+
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+import time
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from .._core import InvalidInput
+from ..scene import Scene
+from ..schema import find_scene, read_toml
+from . import pictures
+from .candidates import candidates
+from .measure import SceneResult, measure
+from .results import document
+
+DRAWING = 1.5   # seconds a scene's picture takes, about
+
+
+def _title(source: Any) -> str:
+    return "" if isinstance(source, Scene) else str(read_toml(find_scene(source)).get("title", ""))
+
+
+def _check_folder(folder: pathlib.Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InvalidInput(f"output: {folder} cannot be made: {error.strerror}") from None
+    if not os.access(folder, os.W_OK):
+        raise InvalidInput(f"output: {folder} cannot be written to")
+
+
+def chart(
+    scenes: Iterable[Any],
+    folder: str | os.PathLike[str],
+    *,
+    budget: float = 150.0,
+    peers: bool = True,
+    progress: Callable[[int, str], object] = lambda done, text: None,
+    show: Callable[[SceneResult], object] = lambda result: None,
+) -> tuple[list[SceneResult], dict[str, Any]]:
+    """Measure scenes, draw their pictures, and write everything to a folder.
+
+    Parameters
+    ----------
+    scenes : iterable of Scene, paths or names
+        With omega and attitude wanted.
+    folder : path
+        Made when it is not there. Gets ``<scene>.png`` and ``.svg``, ``overview``, ``limits`` (where a stepper fails) and ``results.json``.
+    budget : float
+        About how long the whole may take [s]. What does not fit is left out, slow programs first, and listed.
+    peers : bool
+        Whether other programs take part, where they are installed.
+    progress : callable
+        ``progress(scenes done, what is being done)``.
+    show : callable
+        Is given each scene's result as soon as it is there.
+
+    Returns
+    -------
+    results : list of SceneResult
+    document : dict
+        What stands in results.json.
+
+    Raises
+    ------
+    InvalidInput
+        For a scene that cannot be read, a budget that is not positive, a folder that cannot be written.
+    """
+    start = time.perf_counter()
+    if not budget > 0:
+        raise InvalidInput(f"budget: must be positive, got {budget:g}")
+    sources = list(scenes)
+    loaded = [(source if isinstance(source, Scene) else Scene.load(source), _title(source)) for source in sources]
+    if not loaded:
+        raise InvalidInput("scenes: none given")
+    for scene, _ in loaded:
+        if set(scene.want) != {"omega", "attitude"}:
+            raise InvalidInput(f"{scene.name or 'scene'}: want: must be omega and attitude for a chart, got {', '.join(scene.want)}")
+    names = [scene.name for scene, _ in loaded]
+    if len(set(names)) < len(names):
+        raise InvalidInput(f"scenes: {max(names, key=names.count)!r} is given twice; each needs a name of its own for its picture")
+    output = pathlib.Path(folder)
+    _check_folder(output)
+
+    taking_part = candidates(peers)
+    results: list[SceneResult] = []
+    for index, (scene, title) in enumerate(loaded):
+        left = budget - (time.perf_counter() - start) - DRAWING * (len(loaded) + 2)
+        share = max(left, 0.1 * budget) / (len(loaded) - index)
+        label = scene.name or "scene"
+        results.append(measure(scene, title, taking_part, share, lambda text: progress(index, f"{label}: {text}")))
+        show(results[-1])
+
+    files: list[pathlib.Path] = []
+    for result in results:
+        progress(len(results), f"pictures: {result.scene.name}")
+        files += pictures.work_precision(result, output)
+    progress(len(results), "pictures: overview")
+    files += pictures.overview(results, output) + pictures.limits(results, output)
+    written = [path.name for path in files] + ["results.json"]
+    content = document(results, time.perf_counter() - start, written)
+    (output / "results.json").write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+    return results, content

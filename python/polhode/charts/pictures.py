@@ -1,0 +1,244 @@
+"""The pictures: work against precision for one scene, for all of them, and where steppers fail."""
+
+from __future__ import annotations
+
+import math
+import pathlib
+import statistics
+from typing import Any
+
+from . import style
+from .findings import (
+    all_ratios, headline, held_by_stability, stalls, to_error, to_ratio, to_time, under_headline, without_answer,
+)  # fmt: skip
+from .measure import SceneResult
+
+LOST = 4.0   # an attitude is never further off than pi
+
+
+def _wrap(text: str, width: int) -> str:
+    import textwrap
+
+    return "\n".join(textwrap.wrap(text, width))
+
+
+def _time_ticks(axes: Any, which: str = "y") -> None:
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    axis = getattr(axes, f"{which}axis")
+    axis.set_major_locator(LogLocator(10, numticks=12))
+    axis.set_minor_formatter(NullFormatter())
+    axis.set_major_formatter(FuncFormatter(lambda value, _: to_time(value)))
+
+
+def _error_ticks(axes: Any, which: str = "x", every: int = 3) -> None:
+    from matplotlib.ticker import FixedLocator, FuncFormatter
+
+    axis = getattr(axes, f"{which}axis")
+    axis.set_major_locator(FixedLocator([10.0**-k for k in range(0, 19, every)]))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: "1" if value == 1 else f"1e{round(math.log10(value))}"))
+
+
+def _curves(axes: Any, result: SceneResult) -> list[tuple[float, float, str, str]]:
+    """Draw all candidates; return where each one's name belongs: its most accurate end."""
+    ends = []
+    for name in result.names("method", "exact", "peer"):
+        points = result.of(name)
+        family = points[0].family
+        x = [min(max(p.error, 1e-17), LOST) for p in points]
+        axes.plot(x, [p.seconds for p in points], **style.line(name, family))
+        ends.append((x[-1], points[-1].seconds, name, style.colour(name)))
+    return ends
+
+
+def _frame(axes: Any, results: list[SceneResult]) -> None:
+    """Log-log axes, with accuracy growing to the right."""
+    points = [p for r in results for p in r.points if p.answered]
+    floors = [r.truth.floor for r in results if r.truth.floor]
+    least = min([p.error for p in points if p.error > 0] + floors)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlim(LOST * 2.5, 10.0 ** (math.floor(math.log10(max(least, 1e-17))) - 0.3))
+    low, high = (math.log10(f(p.seconds for p in points)) for f in (min, max))
+    air = max(0.35, 1.0 - (high - low) / 2)   # two decades at least, or a flat line would look rough
+    axes.set_ylim(10 ** (low - air), 10 ** (high + air))
+
+
+def _floor(axes: Any, result: SceneResult, text: bool) -> None:
+    known = result.truth.floor if result.truth.floor is not None else result.truth.uncertainty
+    if known <= 0:
+        return
+    axes.axvline(known, color=style.FLOOR, linewidth=1.2, linestyle=(0, (1, 2)), zorder=1)
+    if text:
+        word = "input rounding" if result.truth.floor is not None else "reference's own uncertainty"
+        axes.annotate(f"{word} {to_error(known)}", (known, 0.015), xycoords=("data", "axes fraction"), xytext=(-4, 0),
+                      textcoords="offset points", rotation=90, ha="right", va="bottom", fontsize=8, color=style.QUIET, zorder=6, bbox=style.HALO)
+
+
+def _spread(axes: Any, ends: list[tuple[float, float, str, str]], gap: float = 13.0) -> None:
+    """Write the names at the right end of the curves, pushed apart where they would lie on each other."""
+    height = axes.transData
+    placed: list[tuple[float, float]] = []
+    for x, y, name, ink in sorted(ends, key=lambda end: end[1]):
+        px, py = height.transform((x, y))
+        width, dy = 7.0 * len(name), 0.0
+        while any(abs(py + dy - qy) < gap and abs(px - qx) < width + 20 for qx, qy in placed):
+            dy += 2.0
+        placed.append((px, py + dy))
+        style.label(axes, x, y, name, ink, xytext=(8, dy * 72 / axes.figure.dpi))
+
+
+def work_precision(result: SceneResult, folder: pathlib.Path) -> list[pathlib.Path]:
+    """One scene: time against error."""
+    with style.used() as plt:
+        title, under = _wrap(headline(result), 70), _wrap(under_headline(result), 125)
+        below = 5.2 - 0.62 - 0.25 * title.count("\n") - 0.18 * under.count("\n")
+        figure = plt.figure(figsize=(8.2, 5.2))
+        axes = figure.add_axes((0.105, 0.62 / 5.2, 0.74, (below - 0.9) / 5.2))
+        _frame(axes, [result])
+        _time_ticks(axes)
+        _error_ticks(axes, every=2)
+        _floor(axes, result, text=True)
+        _spread(axes, _curves(axes, result))
+        axes.set_xlabel("largest error over all samples: rates relative, attitude in rad (more accurate to the right)")
+        axes.set_ylabel("time for all samples")
+        style.heading(figure, title, under, 0.03)
+        paths = style.save(figure, folder, result.scene.name or "scene")
+        plt.close(figure)
+    return paths
+
+
+def overview(results: list[SceneResult], folder: pathlib.Path) -> list[pathlib.Path]:
+    """All scenes as small multiples on the same axes."""
+    columns = min(len(results), 5 if len(results) > 8 else 4 if len(results) > 3 else 3)
+    rows = -(-len(results) // columns)
+    with style.used() as plt:
+        width, height = 1.0 + 2.35 * columns, 2.0 + 2.3 * rows
+        figure, grid = plt.subplots(rows, columns, figsize=(width, height), sharex=True, sharey=True, squeeze=False)
+        figure.subplots_adjust(left=0.72 / width, right=1 - 0.15 / width, bottom=0.62 / height, top=1 - 1.68 / height,
+                               wspace=0.09, hspace=0.28)
+        for axes in grid.flat[len(results):]:
+            axes.set_visible(False)
+        names: dict[str, str] = {}
+        for axes, result in zip(grid.flat, results):
+            _frame(axes, results)
+            _time_ticks(axes)
+            _error_ticks(axes, every=5)
+            _floor(axes, result, text=False)
+            _curves(axes, result)
+            silent = without_answer(result)
+            if silent:
+                text = "\n".join(f"{name} {why.split(':')[0]}" for name, why in silent.items())
+                axes.text(0.04, 0.05, text, transform=axes.transAxes, fontsize=7.5, color=style.QUIET, linespacing=1.4)
+            names |= {p.candidate: p.family for p in result.points if p.answered}
+            axes.set_title(f"{result.scene.name} {result.title}", fontsize=9)
+        handles = [plt.Line2D([], [], label=name, **style.line(name, family)) for name, family in names.items()]
+        handles.append(plt.Line2D([], [], color=style.FLOOR, linestyle=(0, (1, 2)), label="rounding of the input"))
+        figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.6 / width, 1 - 0.98 / height), ncols=len(handles),
+                      frameon=False, fontsize=9, borderaxespad=0, handlelength=2.2, columnspacing=1.6)
+        figure.supxlabel("largest error over all samples (more accurate to the right)", fontsize=9.5, color=style.QUIET,
+                         y=0.1 / height)
+        figure.supylabel("time for all samples", fontsize=9.5, color=style.QUIET, x=0.06 / width)
+        style.heading(figure, _wrap(_overview_title(results), 22 * columns), "one thread; ratios are medians over all scenes; lower and further right is better",
+                      0.72 / width)
+        paths = style.save(figure, folder, "overview")
+        plt.close(figure)
+    return paths
+
+
+def _overview_title(results: list[SceneResult]) -> str:
+    exact = [p for r in results for n in r.names("exact") for p in r.of(n)]
+    first = next((n for r in results for n in r.names("method")), "")
+    parts = []
+    if exact:
+        worst, longest = max(p.error for p in exact), max(p.seconds for p in exact)
+        parts.append(f"closed forms are right to {to_error(worst)} within {to_time(longest)}")
+    medians = {}
+    for peer in dict.fromkeys(n for r in results for n in r.names("peer")):
+        ratios = all_ratios(results, peer)
+        if ratios:
+            medians[peer] = statistics.median(ratios)
+    if medians:
+        listed = " and ".join(f"{peer} {to_ratio(ratio)}" for peer, ratio in medians.items())
+        parts.append(f"at equal error, {listed} times the time of {first}")
+    text = "; ".join(parts) or "Time against error"
+    return text[:1].upper() + text[1:]
+
+
+def limits(results: list[SceneResult], folder: pathlib.Path) -> list[pathlib.Path]:
+    """Where steppers fail: errors that no tolerance brings down, and steps that stability dictates."""
+    stuck = [r for r in results if any(stalls(r, n) for n in r.names("method"))]
+    stiff = [r for r in results if any(held_by_stability(r, n) for n in r.names("method"))]
+    panels: list[tuple[Any, SceneResult]] = [(_stalling, r) for r in stuck[:2]] + [(_stiff, r) for r in stiff[:2]]
+    if not panels:
+        return []
+    with style.used() as plt:
+        width = 0.3 + 5.6 * len(panels)
+        figure, grid = plt.subplots(1, len(panels), figsize=(width, 4.8), squeeze=False)
+        figure.subplots_adjust(left=0.85 / width, right=1 - 0.95 / width, bottom=0.13, top=0.72, wspace=0.5)
+        for axes, (draw, result) in zip(grid.flat, panels):
+            draw(axes, result, results)
+        style.heading(figure, "Where steppers fail, and no tolerance helps", "from loose tolerances on the left to tight ones on the right",
+                      0.3 / width)
+        paths = style.save(figure, folder, "limits")
+        plt.close(figure)
+    return paths
+
+
+def _tolerance_axis(axes: Any) -> None:
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.invert_xaxis()
+    _error_ticks(axes)
+    axes.set_xlabel("tolerance")
+
+
+def _stalling(axes: Any, result: SceneResult, results: list[SceneResult]) -> None:
+    """Error against tolerance, beside error = tolerance and the closed form."""
+    _tolerance_axis(axes)
+    names = result.names("method", "peer")
+    points = [p for n in names for p in result.of(n)]
+    tolerances = sorted({p.value for p in points})
+    axes.plot(tolerances, tolerances, color=style.FLOOR, linewidth=1.2, linestyle=(0, (4, 3)), zorder=1)
+    axes.annotate("error = tolerance", (1e-9, 1e-9), xytext=(-6, -4), textcoords="offset points", ha="right", va="top",
+                  fontsize=9, color=style.QUIET)
+    for name in names:
+        curve = result.of(name)
+        axes.plot([p.value for p in curve], [p.error for p in curve], label=name, **style.line(name, curve[0].family))
+    for name in result.names("exact"):
+        exact = result.of(name)[0]
+        axes.axhline(exact.error, color=style.colour(name), linewidth=2)
+        axes.annotate(f"closed form: {to_error(exact.error)} in {to_time(exact.seconds)}", (tolerances[-1], exact.error), xytext=(0, 6),
+                      textcoords="offset points", fontsize=9, fontweight="bold", color=style.colour(name))
+    axes.set_ylim(min(1e-16, tolerances[0]), 10)
+    _error_ticks(axes, "y")
+    axes.set_ylabel("largest error")
+    best = min(p.error for n in result.names("method") for p in result.of(n))
+    axes.set_title(f"{result.scene.name} {result.title}: rounding keeps the error\nabove {to_error(best)}, whatever the tolerance")
+    axes.legend(loc="upper right", frameon=False, fontsize=9)
+
+
+def _stiff(axes: Any, result: SceneResult, results: list[SceneResult]) -> None:
+    """Steps against tolerance: flat where stability rules, beside the other scenes where accuracy does."""
+    _tolerance_axis(axes)
+    held = [n for n in result.names("method") if held_by_stability(result, n)]
+    name, ends = held[0], []
+    rest = [r.of(name) for r in results if r is not result and r.of(name) and not held_by_stability(r, name)]
+    for points in rest:
+        axes.plot([p.value for p in points], [p.stats["steps"] for p in points], color=style.FLOOR, linewidth=1.1, zorder=2)
+    if rest:
+        lowest = min(rest, key=lambda points: points[-1].stats["steps"])[-1]
+        axes.annotate(f"the other scenes, {name}", (lowest.value, lowest.stats["steps"]), xytext=(0, -14),
+                      textcoords="offset points", ha="right", va="top", fontsize=9, color=style.QUIET)
+    for one in held:
+        points = result.of(one)
+        axes.plot([p.value for p in points], [p.stats["steps"] for p in points], **style.line(one, "method"))
+        ends.append((points[-1].value, float(points[-1].stats["steps"]), f"{result.scene.name} {one}", style.colour(one)))
+    points = result.of(name)
+    steps = [p.stats["steps"] for p in points]
+    axes.set_ylabel("steps")
+    axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.0f}")
+    axes.set_title(f"{result.scene.name} {result.title}: stability asks for {min(steps):,} steps\n"
+                   f"({to_time(min(p.seconds for p in points))}), whatever the tolerance")
+    axes.set_ylim(None, max(e[1] for e in ends) * 2.5)
+    _spread(axes, ends, gap=11)

@@ -1,0 +1,70 @@
+"""results.json: machine, versions, and every point of a chart."""
+
+from __future__ import annotations
+
+import math
+import os
+import platform
+from importlib import metadata
+from typing import Any
+
+from .._core import build_info
+from .findings import headline
+from .measure import Point, SceneResult
+from .truth import to_json
+
+FORMAT = "polhode chart 1"
+MEASURE = ("error: over all samples, the larger of |omega - truth| / max |truth| and the angle of the rotation between the "
+           "attitudes [rad]; seconds: CPU time of the thread for all samples, median of the repeats, taken in turn with all others; "
+           "drift: largest move of each invariant from its start, relative")
+
+
+def machine() -> dict[str, Any]:
+    """Return what the times depend on."""
+    processor = platform.processor()
+    try:
+        with open("/proc/cpuinfo", encoding="utf-8") as lines:
+            processor = next(line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))
+    except (OSError, StopIteration):
+        pass
+    return {"processor": processor or platform.machine(), "cores": os.cpu_count(), "system": platform.platform(),
+            "python": platform.python_version()}
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of what took part, of those that are installed."""
+    found = {}
+    for name in ("numpy", "scipy", "matplotlib"):
+        try:
+            found[name] = metadata.version(name)
+        except metadata.PackageNotFoundError:
+            pass
+    return found
+
+
+def _number(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
+
+
+def _point(point: Point) -> dict[str, Any]:
+    return {
+        "candidate": point.candidate, "family": point.family, "setting": point.setting,
+        "status": "left out" if point.left_out else "failed" if point.why else "answered", "why": point.why,
+        "error": _number(point.error), "error_omega": _number(point.error_omega),
+        "error_attitude": _number(point.error_attitude), "seconds": _number(point.seconds), "repeats": point.repeats,
+        "counts": dict(point.stats), "drift": {name: _number(value) for name, value in point.drift.items()},
+    }
+
+
+def document(results: list[SceneResult], seconds: float, files: list[str]) -> dict[str, Any]:
+    """Return the content of results.json; numbers that are not finite are null."""
+    return {
+        "format": FORMAT, "measure": MEASURE, "seconds": seconds, "polhode": build_info(), "machine": machine(),
+        "versions": versions(), "files": files,
+        "scenes": [
+            {"name": r.scene.name, "title": r.title, "samples": int(r.scene.times.size),
+             "span": float(r.scene.times[-1] - r.scene.t0), "reference": to_json(r.truth), "finding": headline(r),
+             "notes": r.notes, "seconds": r.seconds, "points": [_point(p) for p in r.points]}
+            for r in results
+        ],
+    }

@@ -1,0 +1,45 @@
+"""The command line: `polhode run`, `chart`, `methods` and `inertia`.
+
+Exit status: 0 fine, 1 a finding (an invariant that moved, a body that cannot be), 2 bad input, with one line that says what.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+
+
+EXTRA = ("typer", "rich", "pydantic")
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command and leave with its status."""
+    sys.exit(_run(arguments))
+
+
+def _run(arguments: Sequence[str] | None) -> int:
+    try:
+        from .app import app
+
+        return app(args=arguments, prog_name="polhode", standalone_mode=False) or 0
+    except ModuleNotFoundError as error:
+        if (error.name or "").partition(".")[0] not in EXTRA:
+            raise
+        return _say(f"the command line needs {error.name}: pip install 'polhode[cli]'", 2)
+    except BrokenPipeError:   # the reader has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())   # or Python complains when it flushes at the end
+        return 0
+    except KeyboardInterrupt:
+        return _say("interrupted", 130)
+    except Exception as error:
+        if type(error).__name__ == "Abort":   # what typer makes of Ctrl-C
+            return _say("interrupted", 130)
+        if not hasattr(error, "format_message"):   # not about the arguments: a fault, to be seen whole
+            raise
+        return _say(error.format_message(), 2)
+
+
+def _say(text: str, status: int) -> int:
+    print(f"polhode: {text}", file=sys.stderr)
+    return status

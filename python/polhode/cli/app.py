@@ -1,0 +1,138 @@
+"""The commands."""
+
+from __future__ import annotations
+
+import functools
+import json
+import pathlib
+import sys
+import time
+from collections.abc import Callable
+from typing import Annotated, Any
+
+import typer
+
+from .. import __version__
+from .._core import IntegrationFailure, InvalidInput
+from ..scene import Scene
+from ..solver import methods as method_records
+from ..solver import solve
+from . import files, show
+
+app = typer.Typer(name="polhode", add_completion=False, no_args_is_help=True, rich_markup_mode=None,
+                  pretty_exceptions_enable=False, context_settings={"help_option_names": ["-h", "--help"]},
+                  help="Rigid bodies that turn: where does the body point, and how fast does it spin, at time t?")
+
+Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")]
+
+
+def _command(function: Callable[..., int | None]) -> Callable[..., None]:
+    """Make a command of a function: what it returns is the status, and bad input is one line and status 2."""
+
+    @app.command()
+    @functools.wraps(function)
+    def wrapped(*args: Any, **kwargs: Any) -> None:
+        try:
+            status = function(*args, **kwargs) or 0
+        except InvalidInput as error:
+            print(f"polhode: {error}", file=sys.stderr)
+            status = 2
+        except IntegrationFailure as error:
+            print(f"polhode: {error}", file=sys.stderr)
+            status = 1
+        raise typer.Exit(status)
+
+    return wrapped
+
+
+def _print_json(content: Any) -> None:
+    print(json.dumps(content, indent=1, allow_nan=False))
+
+
+@app.callback(invoke_without_command=True)
+def _top(version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False) -> None:
+    if version:
+        print(f"polhode {__version__}")
+        raise typer.Exit(0)
+
+
+@_command
+def run(
+    scene: Annotated[str, typer.Argument(help="A scene file, or the name of one of polhode's own, such as S1.")],
+    accuracy: Annotated[float | None, typer.Option(help="Of every sample; 1e-9 when nothing is given.")] = None,
+    method: Annotated[str | None, typer.Option(help="One of `polhode methods`.")] = None,
+    rtol: Annotated[float | None, typer.Option(help="Relative tolerance of a step.")] = None,
+    atol: Annotated[float | None, typer.Option(help="Absolute tolerance of a step.")] = None,
+    step: Annotated[float | None, typer.Option(help="Of methods with a fixed step [s].")] = None,
+    max_steps: Annotated[int, typer.Option(help="Give up after so many.")] = 10_000_000,
+    output: Annotated[pathlib.Path | None, typer.Option("-o", "--output", help="Write all samples: .csv, .npz or .json.")] = None,
+    as_json: Json = False,
+) -> int:
+    """Turn the body of a scene, and show the ends, the invariants and the cost."""
+    if output is not None:
+        files.check(output)
+    with show.Bar("turning") as bar:
+        start = time.perf_counter()
+        motion = solve(Scene.load(scene), accuracy, method=method, rtol=rtol, atol=atol, step=step, max_steps=max_steps,
+                       progress=bar.fraction)
+        seconds = time.perf_counter() - start
+    if as_json:
+        _print_json(files.to_json(motion, seconds))
+    else:
+        show.motion(motion, seconds)
+    if output is not None:
+        files.write(output, motion, seconds)
+        print(f"wrote {output}", file=sys.stderr if as_json else sys.stdout)
+    return 0 if motion.success else 1
+
+
+@_command
+def methods(as_json: Json = False) -> int:
+    """List every method with its order, what it keeps, and its source."""
+    records = method_records()
+    if as_json:
+        _print_json(records)
+    else:
+        show.methods(records)
+    return 0
+
+
+@_command
+def inertia(
+    file: Annotated[str, typer.Argument(help="A TOML file with a [body] table as in scenes, or a scene's name.")],
+    as_json: Json = False,
+) -> int:
+    """Judge a body: its moments, principal axes and symmetry, and whether there can be such a body."""
+    from .body import examine
+
+    finding = examine(file)
+    if as_json:
+        _print_json(finding)
+    else:
+        show.body(finding)
+    return 0 if finding["valid"] else 1
+
+
+@_command
+def chart(
+    scenes: Annotated[list[str], typer.Argument(help="Scene files, or names such as S1.")],
+    output: Annotated[pathlib.Path, typer.Option("-o", "--output", help="The folder for pictures and results.")] = pathlib.Path("charts"),
+    budget: Annotated[float, typer.Option(help="About how long the whole may take [s]; what does not fit is left out and listed.")] = 150.0,
+    peers: Annotated[bool, typer.Option(help="Run SciPy beside, where it is installed.")] = True,
+    as_json: Json = False,
+) -> int:
+    """Chart speed against accuracy: all methods on the scenes given, against their stored truth."""
+    try:
+        import matplotlib  # noqa: F401
+    except ImportError:
+        raise InvalidInput("charts need matplotlib: pip install 'polhode[plot]'") from None
+    from ..charts import chart as make_chart
+
+    with show.Bar("charting", len(scenes)) as bar:
+        _, content = make_chart(scenes, output, budget=budget, peers=peers, progress=bar.step,
+                                show=(lambda result: None) if as_json else (lambda result: bar.print_above(result)))
+    if as_json:
+        _print_json(content)
+    else:
+        show.chart_end(content, output)
+    return 0

@@ -1,0 +1,51 @@
+"""A body in a TOML file: what it is, or why there can be none."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .._core import InertiaTensor, InvalidInput
+from ..schema import body_inertia, body_properties, load_body
+
+
+def examine(source: str) -> dict[str, Any]:
+    """Return moments, axes, symmetry and verdict of a [body] table.
+
+    A tensor that breaks the triangle inequality is a finding, not an error: `valid` is false, and `verdict` says why.
+    """
+    body = load_body(source)
+    finding: dict[str, Any] = {"file": str(source), "valid": True, "verdict": "a body can have this tensor"}
+    if body.shape is not None:
+        properties = body_properties(body)
+        finding |= {"shape": body.shape, "mass": properties.mass, "com": list(properties.com)}
+    try:
+        tensor = body_inertia(body)
+    except InvalidInput as error:
+        finding |= {"valid": False, "verdict": str(error)}
+        tensor = _loosely(body)
+    if tensor is not None:
+        if not tensor.physical:
+            finding["valid"] = False
+            if finding["verdict"].startswith("a body"):
+                finding["verdict"] = _verdict(tensor)
+        principal = tensor.principal()
+        finding |= {"matrix": tensor.matrix.tolist(), "moments": tensor.moments.tolist(), "axes": tensor.axes.tolist(),
+                    "symmetry": tensor.symmetry, "arbitrary": principal.arbitrary}
+    return finding
+
+
+def _loosely(body: Any) -> InertiaTensor | None:
+    """The tensor without the triangle inequality, if it holds at least what every tensor must."""
+    try:
+        return body_inertia(body.model_copy(update={"physical": False}))
+    except InvalidInput:
+        return None
+
+
+def _verdict(tensor: InertiaTensor) -> str:
+    """Why a tensor that was let through by `physical = false` would have been refused."""
+    try:
+        InertiaTensor(tensor.matrix)
+    except InvalidInput as error:
+        return str(error)
+    return "a body can have this tensor"

@@ -1,0 +1,55 @@
+"""Motions as files: CSV for eyes and spreadsheets, NPZ for NumPy, JSON for everything else."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import pathlib
+from typing import Any
+
+import numpy as np
+
+from .._core import InvalidInput
+from ..motion import Motion
+
+COLUMNS = {"t": ("t",), "omega": ("omega_x", "omega_y", "omega_z"),
+           "attitude": ("attitude_x", "attitude_y", "attitude_z", "attitude_w")}
+
+
+def check(path: pathlib.Path) -> None:
+    """Refuse, before anything is computed, a file that cannot be written."""
+    if path.suffix not in (".csv", ".npz", ".json"):
+        raise InvalidInput(f"output: must end in .csv, .npz or .json, got {str(path)!r}")
+    if path.is_dir() or not path.parent.is_dir() or not os.access(path.parent, os.W_OK):
+        raise InvalidInput(f"output: {path} cannot be written: no such folder, or not writable")
+
+
+def _arrays(motion: Motion) -> dict[str, Any]:
+    arrays = {"t": motion.t, "omega": motion.omega, "attitude": motion.attitude}
+    return {name: array for name, array in arrays.items() if array is not None}
+
+
+def to_json(motion: Motion, seconds: float) -> dict[str, Any]:
+    """Return everything a motion says; what is not a finite number is null."""
+    return {
+        "scene": motion.scene.name, "plan": motion.plan._asdict(), "asked": motion.asked,
+        "success": motion.success, "status": motion.status, "message": motion.message,
+        "error": motion.error if math.isfinite(motion.error) else None, "error_kind": motion.error_kind,
+        "drift": motion.drift, "stats": motion.stats, "seconds": seconds,
+        **{name: array.tolist() for name, array in _arrays(motion).items()},
+    }
+
+
+def write(path: pathlib.Path, motion: Motion, seconds: float) -> None:
+    """Write a motion by the file's ending; CSV holds every bit, as the shortest digits that read back the same."""
+    arrays = _arrays(motion)
+    if path.suffix == ".npz":
+        np.savez_compressed(path, **arrays)
+    elif path.suffix == ".json":
+        path.write_text(json.dumps(to_json(motion, seconds)) + "\n", encoding="utf-8")
+    else:
+        header = ",".join(column for name in arrays for column in COLUMNS[name])
+        table = np.column_stack(list(arrays.values()))
+        rows = (",".join(map(repr, row)) for row in table.tolist())
+        path.write_text("\n".join([header, *rows]) + "\n", encoding="utf-8")

@@ -1,0 +1,177 @@
+"""Tables to read. On a terminal they fit it; anywhere else nothing is cut to a width."""
+
+from __future__ import annotations
+
+import pathlib
+import sys
+import time
+from typing import TYPE_CHECKING, Any
+
+from rich import box
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+from rich.text import Text
+
+if TYPE_CHECKING:
+    from ..charts.measure import Point, SceneResult
+    from ..motion import Motion
+
+UNCUT = 100_000
+
+
+def console(stderr: bool = False) -> Console:
+    """Return a console on what stdout (or stderr) is now."""
+    stream = sys.stderr if stderr else sys.stdout
+    return Console(file=stream, highlight=False, width=None if stream.isatty() else UNCUT, soft_wrap=False)
+
+
+class Bar:
+    """Progress on stderr: a bar on a terminal, else a line whenever something new begins, and none for what ends at once."""
+
+    def __init__(self, title: str, total: float = 1.0) -> None:
+        self._console = console(stderr=True)
+        self._bar = Progress(TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), console=self._console,
+                             transient=True, disable=not self._console.is_terminal)
+        self._task = self._bar.add_task(title, total=total)
+        self._title, self._last, self._start = title, "", time.monotonic()
+
+    def __enter__(self) -> Bar:
+        self._bar.start()
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        self._bar.stop()
+
+    def fraction(self, reached: float, last: float) -> bool:
+        """The callback of `solve`."""
+        done = reached / last if last else 1.0
+        self._bar.update(self._task, completed=done)
+        if not self._console.is_terminal and time.monotonic() - self._start > 2:
+            self._line(f"{self._title}: {int(10 * done) * 10} %")
+        return True
+
+    def step(self, done: int, text: str) -> None:
+        """The callback of `chart`."""
+        self._bar.update(self._task, completed=done, description=text)
+        if not self._console.is_terminal:
+            self._line(f"{time.monotonic() - self._start:5.0f} s  {text}")
+
+    def _line(self, text: str) -> None:
+        if text != self._last:
+            print(text, file=sys.stderr, flush=True)
+            self._last = text
+
+    def print_above(self, result: SceneResult) -> None:
+        """Print a scene's table while the bar goes on below it."""
+        if self._console.is_terminal and sys.stdout.isatty():
+            self._bar.stop()
+            scene(result)
+            self._bar.start()
+        else:
+            scene(result)
+            sys.stdout.flush()
+
+
+def _table(*columns: str, left: int = 1) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
+    for index, column in enumerate(columns):
+        table.add_column(column, justify="left" if index < left else "right", no_wrap=not sys.stdout.isatty())
+    return table
+
+
+def _numbers(row: Any) -> list[str]:
+    return [f"{value:.9g}" for value in row]
+
+
+def motion(result: Motion, seconds: float) -> None:
+    """First and last samples, the invariants' drift, counts, message."""
+    out = console()
+    plan, n = result.plan, len(result)
+    out.print(Text(f"{result.scene.name or 'scene'}: {n} samples by {plan.method}, model {plan.model}, state {plan.state}"))
+    names = ["t [s]"] + (["omega x", "y", "z [rad/s]"] if result.omega is not None else [])
+    names += ["attitude x", "y", "z", "w"] if result.attitude is not None else []
+    table = _table(*names, left=0)
+    shown = range(n) if n <= 8 else [0, 1, 2, -1, n - 3, n - 2, n - 1]
+    for i in shown:
+        cells = ["..."] * len(names) if i < 0 else _numbers([result.t[i]])
+        for array in (result.omega, result.attitude):
+            if i >= 0 and array is not None:
+                cells += _numbers(array[i])
+        table.add_row(*cells)
+    out.print(table)
+    drift = ", ".join(f"{name.replace('_', ' ')} {value:.1e}" for name, value in result.drift.items())
+    counts = ", ".join(f"{value:,} {name}" for name, value in result.stats.items())
+    out.print(Text(f"drift   {drift or 'nothing here is kept by the motion'}"))
+    out.print(Text(f"cost    {counts}; {1e3 * seconds:.3g} ms"))
+    out.print(Text(f"result  {'' if result.success else 'FINDING: '}{result.message}"))
+
+
+def methods(records: list[dict[str, Any]]) -> None:
+    """One line a method."""
+    table = _table("method", "order", "dense", "steps", "keeps", "what it is", "source", left=7)
+    for record in records:
+        table.add_row(record["name"], str(record["order"]), str(record["dense_order"]),
+                      "adaptive" if record["adaptive"] else "fixed", record["keeps"], record["doc"], record["source"])
+    console().print(table)
+
+
+def body(finding: dict[str, Any]) -> None:
+    """What `inertia` found."""
+    out = console()
+    table = _table("", "", left=2)
+    table.show_header = False
+    for name in ("shape", "mass", "com", "moments", "symmetry", "arbitrary", "axes", "verdict"):
+        value = finding.get(name)
+        if value is None:
+            continue
+        if name == "axes":
+            value = "\n".join("  ".join(f"{x:12.9f}" for x in row) for row in value)
+        elif isinstance(value, list):
+            value = ", ".join(f"{x:.9g}" for x in value)
+        unit = {"mass": " [kg]", "com": " [m]", "moments": " [kg m^2]", "axes": " (columns)"}.get(name, "")
+        table.add_row(f"{name}{unit}", Text(value if isinstance(value, str) else f"{value:.9g}"))
+    out.print(table)
+
+
+def _drifts(point: Point) -> tuple[str, str]:
+    energy = [v for k, v in point.drift.items() if k in ("energy", "jacobi")]
+    momentum = [v for k, v in point.drift.items() if k.endswith("momentum")]
+    return tuple(f"{v[0]:.0e}" if v else "-" for v in (energy, momentum))  # type: ignore[return-value]
+
+
+def scene(result: SceneResult) -> None:
+    """The table of one scene of a chart."""
+    from ..charts.findings import headline, to_time
+
+    out = console()
+    truth = result.truth
+    known = f"input rounding {truth.floor:.0e}" if truth.floor is not None else f"uncertain by {truth.uncertainty:.0e}"
+    out.print(Text(f"\n{result.scene.name} {result.title}: {headline(result)}"))
+    out.print(Text(f"reference: {truth.kind} ({truth.source}), {known}"))
+    table = _table("method", "setting", "error", "time", "repeats", "steps", "derivatives", "drift of energy", "of momentum", left=2)
+    for point in result.points:
+        if not point.answered:
+            continue
+        counts = [f"{point.stats[key]:,}" if point.stats.get(key, -1) >= 0 else "-" for key in ("steps", "derivatives")]
+        table.add_row(point.candidate, point.setting, f"{point.error:.1e}", to_time(point.seconds), str(point.repeats),
+                      *counts, *_drifts(point))
+    out.print(table)
+    missing: dict[tuple[str, str], list[str]] = {}
+    for point in result.points:
+        if not point.answered:
+            missing.setdefault((point.candidate, ("left out: " if point.left_out else "failed: ") + point.why), []).append(point.setting)
+    for (name, why), settings in missing.items():
+        out.print(Text(f"{name} {', '.join(settings)}: {why}"))
+    for note in result.notes:
+        out.print(Text(note))
+
+
+def chart_end(content: dict[str, Any], folder: pathlib.Path) -> None:
+    """Say where the files are."""
+    machine, out = content["machine"], console()
+    out.print(Text(f"\n{len(content['scenes'])} scenes in {content['seconds']:.0f} s on {machine['processor']}"))
+    for name in content["files"]:
+        if not name.endswith(".svg"):
+            out.print(Text(f"{folder / name}"))
+    out.print(Text("each picture is there as .svg too"))

@@ -1,0 +1,311 @@
+"""Charts: errors held against mpmath, what the sweep does with failures and budgets, the words, the files."""
+
+import json
+import re
+from pathlib import Path
+
+import mpmath
+import numpy as np
+import pytest
+
+import polhode as ph
+from polhode.charts import chart
+from polhode.charts.candidates import Answer, Candidate, Failure, candidates, tolerances
+from polhode.charts.findings import (
+    all_ratios, front, headline, held_by_stability, stalls, time_to_reach, to_count, to_error, to_time, without_answer,
+)  # fmt: skip
+from polhode.charts.measure import Point, SceneResult, measure
+from polhode.charts.results import document
+from polhode.charts.scipy_peer import refuses, right_hand_side
+from polhode.charts.truth import Truth, compute_errors, find_truth
+
+TINY = ph.Scene(inertia=(1.0, 2.0, 2.5), omega=(1.0, 2.0, 3.0), times=np.linspace(0, 1, 5), name="tiny")
+
+
+def silent(*_):
+    pass
+
+
+def stored(name):
+    return find_truth(ph.Scene.load(name))
+
+
+# errors
+
+
+def angle_with_mpmath(q, r):
+    with mpmath.workdps(60):
+        q, r = ([mpmath.mpf(float(x)) for x in row] for row in (q, r))
+        along = abs(mpmath.fdot(q, r)) / mpmath.sqrt(mpmath.fdot(q, q) * mpmath.fdot(r, r))
+        return float(2 * mpmath.acos(min(along, mpmath.mpf(1))))
+
+
+@pytest.mark.parametrize("angle", [1e-15, 1e-12, 1e-8, 1e-3, 0.5, 3.0])
+def test_the_angle_is_right_at_every_size(angle):
+    rng = np.random.default_rng(5)
+    r = rng.normal(size=(20, 4))
+    r /= np.linalg.norm(r, axis=1)[:, None]
+    axis = rng.normal(size=(20, 3))
+    axis *= np.sin(angle / 2) / np.linalg.norm(axis, axis=1)[:, None]
+    x, w = r[:, :3], r[:, 3:]
+    turned = np.hstack([w * axis + np.cos(angle / 2) * x + np.cross(x, axis), w * np.cos(angle / 2) - np.sum(x * axis, axis=1)[:, None]])
+    turned *= rng.choice([-1.0, 1.0], (20, 1))   # q and -q are one attitude
+    for one, other in zip(turned, r, strict=True):
+        truth = Truth(np.ones((1, 3)), other[None], "made", "", 0.0, None)
+        found = compute_errors(np.ones((1, 3)), one[None], truth)
+        # 1.2e-16: the truth is a float64 quaternion, not quite unit, which is what acos of the products sees.
+        assert abs(found.attitude - angle_with_mpmath(one, other)) < 1e-14 * angle + 1.2e-16
+        assert found.omega == 0
+
+
+def test_rates_are_relative_to_the_largest():
+    truth = Truth(np.array([[3.0, 0, 4.0], [0, 0, 1.0]]), np.tile([0.0, 0, 0, 1], (2, 1)), "made", "", 0.0, None)
+    errors = compute_errors(np.array([[3.0, 0, 4.0], [0.5, 0, 1.0]]), truth.attitude, truth)
+    assert errors.omega == 0.1 and errors.attitude == 0 and errors.largest == 0.1
+    assert np.isnan(compute_errors(np.full((2, 3), np.nan), truth.attitude, truth).largest)
+
+
+# truth
+
+
+def test_stored_truth_serves_only_its_own_scene():
+    truth = stored("S5")
+    assert truth.kind == "stored" and truth.floor == 1.9e-14 and truth.omega.shape == (201, 3)
+    other = ph.Scene.load("S5").replace(omega=(0.3, 0.2, 3.1), times=np.linspace(0, 1, 11))
+    made = find_truth(other)
+    assert made.kind == "made" and made.floor is None and 0 < made.uncertainty < 1e-11
+
+
+def test_a_made_truth_is_as_good_as_it_says():
+    truth = find_truth(TINY)
+    omega, attitude = ph.FreeMotion((1.0, 2.0, 2.5), (1.0, 2.0, 3.0)).at(TINY.times)
+    assert compute_errors(omega, attitude, truth).largest < 3 * truth.uncertainty + 1e-14
+
+
+# candidates
+
+
+def test_every_adaptive_method_takes_part():
+    names = [c.name for c in candidates()]
+    assert [m["name"] for m in ph.methods() if m["adaptive"]] == [n for n in names if n in {m["name"] for m in ph.methods()}]
+    assert {c.family for c in candidates(with_peers=False)} == {"method", "exact"}
+
+
+@pytest.mark.parametrize(("name", "exact"), [("S1", "FreeMotion"), ("S4", "HeavyTop"), ("S5", None), ("S7", None)])
+def test_closed_forms_take_part_where_they_apply(name, exact):
+    scene = ph.Scene.load(name)
+    found = [c for c in candidates() if c.family == "exact" and not c.refuses(scene)]
+    assert [c.name for c in found] == ([exact] if exact else [])
+    for candidate in found:
+        answer = candidate.run(scene, 0.0, None)
+        assert compute_errors(answer.omega, answer.attitude, stored(name)).largest < 1e-14
+
+
+@pytest.mark.parametrize("name", ["S1", "S4", "S5", "S6", "S7", "S7b", "S9"])
+def test_scipys_right_hand_side_is_the_derivative_of_the_truth(name):
+    """Against difference quotients of a solution one step of 1e-4 of the span's scale either way."""
+    scene = ph.Scene.load(name)
+    if name == "S7b":   # start on the slow motion, where differences can be taken
+        truth = stored(name)
+        scene = scene.replace(omega=truth.omega[500], attitude=truth.attitude[500])
+    assert refuses(scene) == ""
+    h = 1e-5 / np.linalg.norm(scene.omega)
+    two = scene.replace(times=[-h, h] if name != "S7b" else [0, 2 * h])
+    motion = ph.solve(two, method="rk45", rtol=1e-14)
+    y = np.hstack([motion.omega, motion.attitude])
+    slope = (y[1] - y[0]) / (2 * h)
+    middle = np.concatenate([scene.omega, scene.attitude]) if name != "S7b" else y.mean(axis=0)
+    rate = np.linalg.norm(scene.omega)
+    scale = np.array([rate**2] * 3 + [rate] * 4)
+    np.testing.assert_allclose(np.array(right_hand_side(scene)(0.0, middle)) / scale, slope / scale, atol=2e-8 if name != "S7b" else 2e-3)
+
+
+def test_scipys_right_hand_side_for_a_full_tensor_and_a_torque_fixed_in_space():
+    turn = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]])
+    scene = ph.Scene(inertia=turn @ np.diag([1.0, 2.0, 2.5]) @ turn.T, omega=(1.0, 2.0, 3.0), attitude=(0.1, 0.7, 0.1, 0.7),
+                     torques=[ph.torques.Constant((0.3, -0.2, 0.1), "space")], times=[-1e-5, 1e-5])
+    motion = ph.solve(scene, method="rk45", rtol=1e-14)
+    y = np.hstack([motion.omega, motion.attitude])
+    f = right_hand_side(scene)(0.0, np.concatenate([scene.omega, scene.attitude]))
+    np.testing.assert_allclose(f, (y[1] - y[0]) / 2e-5, atol=2e-9)
+
+
+def test_scipy_refuses_what_it_cannot_do():
+    custom = ph.torques.Custom(lambda t, w, q: (0.0, 0.0, 0.0))
+    assert "Custom" in refuses(TINY.replace(torques=[custom]))
+    assert "in order" in refuses(TINY.replace(times=[1.0, 0.5]))
+
+
+# the sweep
+
+
+def fake(run, name="fake", family="method", settings=tolerances(3, 6)):
+    return Candidate(name, family, "", settings, run, lambda scene: "")
+
+
+def exact(scene, value, limit):
+    return Answer(*ph.FreeMotion(scene.inertia, scene.omega).at(scene.times), {"steps": 1})
+
+
+def test_crashes_nan_and_lateness_are_points_and_the_others_go_on():
+    def crash(scene, value, limit):
+        raise ZeroDivisionError("of zero")
+
+    def nothing(scene, value, limit):
+        return Answer(np.full((5, 3), np.nan), np.full((5, 4), np.nan), {})
+
+    def late(scene, value, limit):
+        raise Failure(f"not done within {limit:.2g} s")
+
+    runs = {"crash": crash, "nothing": nothing, "late": late, "exact": exact}
+    result = measure(TINY, "", [fake(run, name) for name, run in runs.items()], 2.0, silent)
+    whys = {name: [p.why for p in result.points if p.candidate == name] for name in runs}
+    assert whys["crash"] == ["ZeroDivisionError: of zero"] * 4
+    assert whys["nothing"] == ["returned NaN or infinity"] * 4
+    assert whys["late"][0].startswith("not done within") and set(whys["late"][1:]) == {"a looser setting was not done in time"}
+    assert whys["exact"] == [""] * 4 and all(p.repeats == 5 and p.error < 1e-12 for p in result.of("exact"))
+    assert without_answer(result) == {"crash": "ZeroDivisionError: of zero", "nothing": "returned NaN or infinity", "late": whys["late"][0]}
+
+
+def test_what_does_not_fit_the_budget_is_left_out_and_says_so():
+    result = measure(ph.Scene.load("S1"), "", candidates(), 0.4, silent)
+    left_out = [p for p in result.points if p.left_out]
+    assert left_out and all("s were left" in p.why or "not done in time" in p.why for p in left_out)
+    assert result.seconds < 4 and result.of("rk45")
+
+
+# the words
+
+
+def made_up(points, **changes):
+    truth = Truth(np.ones((1, 3)), np.ones((1, 4)), "stored", "", 3e-16, 1e-13)
+    return SceneResult(TINY, "made up", truth, points, [], 1.0, **changes)
+
+
+def curve(name, family, values, errors, seconds, steps=None):
+    steps = steps or [round(1 / v) for v in values]
+    return [Point(name, family, f"{v:g}", v, error=e, seconds=s, repeats=1, stats={"steps": n})
+            for v, e, s, n in zip(values, errors, seconds, steps, strict=True)]
+
+
+VALUES = [10.0**-k for k in range(3, 13)]
+
+
+def test_time_to_reach_is_a_power_law_along_the_front():
+    points = curve("a", "method", [1e-2, 1e-4, 1e-5], [1e-2, 1e-6, 1e-4], [1.0, 100.0, 1000.0])
+    assert [p.seconds for p in front(points)] == [1.0, 100.0]
+    assert time_to_reach(points, 1e-4) == pytest.approx(10.0)
+    assert time_to_reach(points, 1e-2) == 1 and np.isnan(time_to_reach(points, 1e-7)) and np.isnan(time_to_reach(points, 1.0))
+
+
+def test_stalling_and_stability_are_told_from_plain_convergence():
+    times = [1e-3 * 1.6**k for k in range(10)]
+    plain = made_up(curve("rk45", "method", VALUES, VALUES, times))
+    stuck = made_up(curve("rk45", "method", VALUES, [max(v, 2e-5) for v in VALUES], times))
+    held = made_up(curve("rk45", "method", VALUES, VALUES, [0.2] * 10, [1_500_000] * 10))
+    assert [stalls(r, "rk45") for r in (plain, stuck, held)] == [False, True, False]
+    assert [held_by_stability(r, "rk45") for r in (plain, stuck, held)] == [False, False, True]
+    assert headline(stuck) == "No tolerance takes rk45 below 2e-5"
+    assert headline(held) == "Stability holds rk45 to 1.5 million steps and 200 ms at every tolerance"
+    assert headline(plain).startswith("rk45 reaches 1e-12 in 68.7 ms")
+
+
+def test_speed_is_compared_at_equal_error():
+    times = [1e-3 * 10 ** (0.2 * k) for k in range(10)]
+    own = curve("rk45", "method", VALUES, VALUES, times)
+    peer = curve("SciPy RK45", "peer", VALUES[:4], [10 * v for v in VALUES[:4]], [200 * t for t in times[:4]])
+    ratios = all_ratios([made_up(own + peer)], "SciPy RK45")
+    np.testing.assert_allclose(ratios, 200 * 10**0.2, rtol=1e-12)   # the peer's errors are ten times as large
+    assert "SciPy takes 320 times as long at equal error" in headline(made_up(own + peer))
+
+
+@pytest.mark.parametrize(("found", "text"), [
+    (to_time(2.46e-4), "246 µs"), (to_time(0.9999e-3), "1 ms"), (to_time(12.34), "12.3 s"), (to_time(5e-9), "5 ns"),
+    (to_error(2.3e-5), "2e-5"), (to_error(0.23), "0.2"), (to_error(3.1), "3.1"), (to_error(0), "0"),
+    (to_count(1_545_000), "1.5 million"), (to_count(65_432), "65 thousand"), (to_count(812), "812"),
+])  # fmt: skip
+def test_numbers_in_words(found, text):
+    assert found == text
+
+
+# the whole
+
+
+@pytest.fixture(scope="module")
+def charted(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("charts")
+    said = []
+    results, content = chart(["S5", TINY], folder, budget=3, peers=False, progress=lambda i, text: said.append(text))
+    return folder, results, content, said
+
+
+def test_files_of_a_chart(charted):
+    folder, _, content, said = charted
+    assert sorted(p.name for p in folder.iterdir()) == sorted(content["files"])
+    assert {"S5.png", "S5.svg", "tiny.png", "overview.png", "results.json"} <= set(content["files"])
+    assert all((folder / name).stat().st_size > 5000 for name in content["files"] if name.endswith(".png"))
+    assert "S5: rk45" in said and "pictures: overview" in said
+    text = (folder / "S5.svg").read_text()
+    assert "rk45" in text and "input rounding 2e-14" in text
+
+
+def test_results_json(charted):
+    folder, results, content, _ = charted
+    assert json.loads((folder / "results.json").read_text()) == json.loads(json.dumps(content, allow_nan=False))
+    assert set(content) == {"format", "measure", "seconds", "polhode", "machine", "versions", "files", "scenes"}
+    assert content["polhode"]["version"] == ph.__version__ and content["machine"]["cores"] >= 1 and "numpy" in content["versions"]
+    scene = content["scenes"][0]
+    assert scene["name"] == "S5" and scene["reference"]["kind"] == "stored" and scene["finding"] == headline(results[0])
+    assert content["scenes"][1]["reference"]["kind"] == "made"
+    points = {p["setting"]: p for p in scene["points"] if p["candidate"] == "rk45"}
+    assert list(points) == [f"1e-{k:02d}" for k in range(3, 15)]
+    for setting, point in points.items():
+        assert point["status"] == "answered" and point["seconds"] > 0 and point["repeats"] >= 1
+        assert point["error"] == max(point["error_omega"], point["error_attitude"]) and point["counts"]["steps"] > 0
+        assert set(point["drift"]) == {"energy", "vertical_momentum"}
+    assert points["1e-06"]["error"] < 1e-4 and points["1e-12"]["error"] < 1e-10
+    motion = ph.solve(ph.Scene.load("S5"), method="rk45", rtol=1e-6)
+    assert points["1e-06"]["drift"] == pytest.approx(motion.drift) and points["1e-06"]["counts"] == motion.stats
+
+
+def test_numbers_that_are_none_are_null():
+    lost = Point("a", "method", "x", 1.0, why="failed")
+    point = document([made_up([lost])], 1.0, [])["scenes"][0]["points"][0]
+    assert point["status"] == "failed" and point["error"] is None and point["seconds"] is None
+
+
+def test_failing_scenes_have_their_picture(tmp_path):
+    from polhode.charts import pictures
+
+    times = [1e-3 * 1.6**k for k in range(10)]
+    stuck = made_up(curve("rk45", "method", VALUES, [max(v, 2e-5) for v in VALUES], times))
+    held = made_up(curve("rk45", "method", VALUES, VALUES, [0.2] * 10, [1_500_000] * 10))
+    paths = pictures.limits([stuck, held], tmp_path)
+    text = next(p for p in paths if p.suffix == ".svg").read_text()
+    assert "above 2e-5" in text and re.search(r"stability asks for 1,500,000 steps", text)
+    assert pictures.limits([made_up(curve("rk45", "method", VALUES, VALUES, times))], tmp_path) == []
+
+
+def test_the_command_prints_tables_uncut(tmp_path):
+    from typer.testing import CliRunner
+
+    from polhode.cli.app import app
+
+    result = CliRunner().invoke(app, ["chart", "S5", "-o", str(tmp_path), "--budget", "1", "--no-peers"])
+    assert result.exit_code == 0, result.output
+    row = next(line for line in result.stdout.splitlines() if re.match(r"rk45 +1e-09", line))
+    assert re.fullmatch(r"rk45 +1e-09 +\d\.\de-\d\d +[\d.]+ (µs|ms) +\d +[\d,]+ +[\d,]+ +\de-\d\d +\de-\d\d *", row)
+    assert str(Path(tmp_path) / "overview.png") in result.stdout and "input rounding 2e-14" in result.stdout
+    content = CliRunner().invoke(app, ["chart", "S5", "-o", str(tmp_path), "--budget", "1", "--no-peers", "--json"])
+    assert json.loads(content.stdout)["scenes"][0]["name"] == "S5"
+
+
+@pytest.mark.parametrize(("arguments", "words"), [
+    ({"scenes": []}, "none given"),
+    ({"scenes": [TINY, TINY]}, "'tiny' is given twice"),
+    ({"scenes": [TINY], "budget": float("nan")}, "budget: must be positive"),
+    ({"scenes": [TINY.replace(want=["omega"])]}, "want: must be omega and attitude"),
+])  # fmt: skip
+def test_bad_input(arguments, words, tmp_path):
+    with pytest.raises(ph.InvalidInput, match=words):
+        chart(folder=tmp_path, **arguments)

@@ -1,0 +1,186 @@
+"""The command line: what it prints and writes, its status, and one clear line on bad input."""
+
+import csv
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import polhode as ph
+from polhode.cli import main
+from polhode.cli.app import app
+
+RUNNER = CliRunner()
+SMALL = """name = "small"
+title = "a brick for a moment"
+[body]
+moments = [1.0, 2.0, 2.5]
+[start]
+omega = [1.0, 2.0, 3.0]
+[times]
+span = 2.0
+samples = 21
+"""
+
+
+@pytest.fixture
+def small(tmp_path):
+    file = tmp_path / "small.toml"
+    file.write_text(SMALL)
+    return file
+
+
+def call(*arguments):
+    return RUNNER.invoke(app, [str(a) for a in arguments])
+
+
+def left(*arguments, capsys):
+    """Status, stdout and stderr of `main`, which also sees wrong options."""
+    with pytest.raises(SystemExit) as leaving:
+        main([str(a) for a in arguments])
+    out = capsys.readouterr()
+    return leaving.value.code or 0, out.out, out.err
+
+
+def test_run_shows_ends_drift_cost_and_message(small):
+    result = call("run", small, "--accuracy", "1e-8")
+    assert result.exit_code == 0, result.output
+    motion = ph.solve(ph.Scene.load(small), 1e-8)
+    text = result.stdout
+    assert "small: 21 samples by " + motion.plan.method in text
+    for i in (0, -1):
+        assert all(f"{x:.9g}" in text for x in [motion.t[i], *motion.omega[i], *motion.attitude[i]])
+    assert f"energy {motion.drift['energy']:.1e}" in text and f"{motion.stats['steps']:,} steps" in text
+    assert motion.message in text
+
+
+def test_run_finds_an_invariant_that_moved():
+    result = call("run", "S1", "--method", "rk45", "--rtol", "1e-6")
+    assert result.exit_code == 1
+    assert "FINDING: " in result.stdout and "moved by" in result.stdout
+    assert call("run", "S1", "--method", "rk45", "--rtol", "1e-6", "--max-steps", 10).exit_code == 1
+
+
+def test_run_writes_every_bit(small, tmp_path):
+    motion = ph.solve(ph.Scene.load(small), method="rk45", rtol=1e-9)
+    for ending in ("csv", "npz", "json"):
+        file = tmp_path / f"out.{ending}"
+        result = call("run", small, "--method", "rk45", "--rtol", "1e-9", "-o", file)
+        assert result.exit_code == 0 and f"wrote {file}" in result.stdout
+    with np.load(tmp_path / "out.npz") as arrays:
+        for name in ("t", "omega", "attitude"):
+            np.testing.assert_array_equal(arrays[name], getattr(motion, name))
+    rows = list(csv.reader((tmp_path / "out.csv").read_text().splitlines()))
+    assert rows[0] == ["t", "omega_x", "omega_y", "omega_z", "attitude_x", "attitude_y", "attitude_z", "attitude_w"]
+    table = np.array(rows[1:], dtype=float)
+    np.testing.assert_array_equal(table, np.column_stack([motion.t, motion.omega, motion.attitude]))
+    content = json.loads((tmp_path / "out.json").read_text())
+    assert content["omega"] == motion.omega.tolist() and content["success"] is True
+
+
+def test_run_as_json(small):
+    content = json.loads(call("run", small, "--json").stdout)
+    assert content["scene"] == "small" and len(content["t"]) == 21 and content["error"] is None
+    assert content["stats"]["steps"] > 0 and set(content["drift"]) == {"energy", "angular_momentum"}
+
+
+def test_methods():
+    records = json.loads(call("methods", "--json").stdout)
+    assert [r["name"] for r in records] == [r["name"] for r in ph.methods()]
+    text = call("methods").stdout
+    assert all(r["name"] in text and r["source"] in text for r in records)
+
+
+def test_inertia_of_a_shape(tmp_path):
+    file = tmp_path / "box.toml"
+    file.write_text('[body]\nshape = "box"\nmass = 12.0\nhalf_sides = [0.3, 0.2, 0.1]\n')
+    finding = json.loads(call("inertia", file, "--json").stdout)
+    np.testing.assert_allclose(finding["moments"], [0.2, 0.4, 0.52], rtol=1e-15)
+    assert finding["mass"] == 12 and finding["symmetry"] == "triaxial" and finding["valid"] is True
+    assert np.array(finding["axes"]).shape == (3, 3)
+    text = call("inertia", file).stdout
+    assert "0.2, 0.4, 0.52" in text and "triaxial" in text and "a body can have this tensor" in text
+
+
+@pytest.mark.parametrize("more", ["", "physical = false\n"])
+def test_inertia_of_no_body_is_a_finding(tmp_path, more):
+    file = tmp_path / "bad.toml"
+    file.write_text(f"[body]\nmoments = [1.0, 1.0, 3.0]\n{more}")
+    result = call("inertia", file)
+    assert result.exit_code == 1 and "a deficit of 33.33 %" in result.stdout and "1, 1, 3" in result.stdout
+    assert json.loads(call("inertia", file, "--json").stdout)["valid"] is False
+
+
+def test_inertia_of_what_is_no_tensor_at_all(tmp_path):
+    file = tmp_path / "bad.toml"
+    file.write_text("[body]\nmatrix = [[1.0, 2.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]\n")
+    finding = call("inertia", file, "--json")
+    assert finding.exit_code == 1 and "moments" not in json.loads(finding.stdout)
+
+
+@pytest.mark.parametrize(("arguments", "words"), [
+    (("run", "S77"), "scene: must be a file, or one of N2, S1"),
+    (("run", "S1", "--method", "rk99"), "rk99"),
+    (("run", "S1", "--accuracy", "-1"), "accuracy: must be above 0"),
+    (("run", "S1", "--accuracy", "1e-9", "--rtol", "1e-9"), "accuracy: must be left out"),
+    (("run", "S1", "--accuracy", "tight"), "Invalid value for '--accuracy'"),
+    (("run", "S1", "-o", "out.txt"), "output: must end in .csv, .npz or .json"),
+    (("run", "S1", "-o", "nowhere/out.csv"), "cannot be written"),
+    (("run",), "scene"),
+    (("run", "S1", "--fast"), "--fast"),
+    (("walk",), "walk"),
+    (("inertia", "nothing.toml"), "must be a file"),
+    (("chart", "S77"), "scene: must be a file"),
+    (("chart", "S1", "S1"), "'S1' is given twice"),
+    (("chart", "S1", "--budget", "0"), "budget: must be positive"),
+    (("chart", "S1", "-o", "/proc/no/such"), "cannot be made"),
+])  # fmt: skip
+def test_bad_input_is_one_line_and_status_2(arguments, words, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    status, out, err = left(*arguments, capsys=capsys)
+    assert status == 2 and out == ""
+    assert words in err and err.startswith("polhode: ") and err.count("\n") == 1
+
+
+def test_version_and_help(capsys):
+    assert left("--version", capsys=capsys)[:2] == (0, f"polhode {ph.__version__}\n")
+    status, out, _ = left("run", "--help", capsys=capsys)
+    assert status == 0 and "--accuracy" in out
+
+
+def test_a_real_process_piped_is_not_cut(tmp_path):
+    environment = os.environ | {"COLUMNS": "40"}
+    command = [sys.executable, "-m", "polhode", "methods"]
+    result = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, env=environment, check=False)
+    assert result.returncode == 0 and result.stderr == ""
+    for record in ph.methods():
+        assert any(line.startswith(record["name"]) and record["doc"] in line and record["source"] in line
+                   for line in result.stdout.splitlines())
+
+
+@pytest.mark.parametrize(("hidden", "arguments", "words"), [
+    ("typer", ["methods"], "needs typer: pip install 'polhode[cli]'"),
+    ("rich", ["methods"], "needs rich: pip install 'polhode[cli]'"),
+    ("pydantic", ["run", "S1"], "pip install 'polhode[cli]'"),
+    ("matplotlib", ["chart", "S1"], "pip install 'polhode[plot]'"),
+])  # fmt: skip
+def test_without_an_extra_one_line_says_which(hidden, arguments, words, tmp_path):
+    program = (f"import sys; sys.modules[{hidden!r}] = None; import polhode.cli; polhode.cli.main({arguments!r})")
+    result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=tmp_path, check=False)
+    assert result.returncode == 2 and words in result.stderr and result.stderr.count("\n") == 1
+
+
+def test_the_package_alone_imports_no_extra():
+    heavy = {"typer", "rich", "pydantic", "matplotlib", "scipy"}
+    program = f"import sys, polhode; print(sorted({heavy} & set(sys.modules)))"
+    assert subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout == "[]\n"
+
+
+def test_scenes_of_the_tree_and_names_are_the_same():
+    file = Path(__file__).parents[2] / "scenes/S1.toml"
+    assert json.loads(call("run", file, "--json").stdout)["omega"] == json.loads(call("run", "S1", "--json").stdout)["omega"]
