@@ -13,6 +13,7 @@ from ._core import build_info as build_info
 from .attitude import Rotation as Rotation
 from .attitude import body_rates as body_rates
 from .attitude import euler_rates as euler_rates
+from .batch import free_motion as free_motion
 from .inertia import InertiaTensor as InertiaTensor
 from .inertia import MassProperties as MassProperties
 from .inertia import PrincipalAxes as PrincipalAxes

@@ -88,6 +88,7 @@ void FreeMotion::classify(const Vector3d& I, const Vector3d& w, bool exact_axes)
 }
 
 void FreeMotion::set_up(const Vector3d& moments, const Matrix3d& R_BP, bool exact_axes) {
+  frame_.time_scale = 1.0;
   if (omega_.isZero(0.0)) {
     const double q[] = {attitude_.x, attitude_.y, attitude_.z, attitude_.w};
     for (std::size_t c = 0; c < 4; ++c) frame_.attitude[4 * c + 3] = q[c];

@@ -8,17 +8,34 @@
 namespace polhode::exact {
 
 /// What leads from the working frames back to the caller's: fixed for one body.
-struct FreeFrame {
-  double omega[9] = {};       ///< omega = matrix omega', row by row, with the scale of time in it
-  double attitude[16] = {};   ///< the quaternion product with every fixed turn: q = matrix q'
-  double time_scale = 1.0;    ///< t' = t * time_scale, a power of two
+template <class T>
+struct FreeFrameOf {
+  T omega[9];       ///< omega = matrix omega', row by row, with the scale of time in it
+  T attitude[16];   ///< the quaternion product with every fixed turn: q = matrix q'
+  T time_scale;     ///< t' = t * time_scale, a power of two
+};
+using FreeFrame = FreeFrameOf<double>;
+
+/// Moments (3), omega (3) and attitude (4) of many bodies, row by row.
+struct FreeStarts {
+  const double* moments;
+  const double* omega;
+  const double* attitude;
 };
 
-/// The loops over times of one body, compiled for one instruction set. omega (n, 3) and attitude (n, 4) row by row;
-/// either may be null. An element's bits depend neither on n nor on its place; avx2 and avx512 give the same.
+/// The loops, compiled for one instruction set. omega (n, 3) and attitude (n, 4) row by row; either may be null. A
+/// row's bits depend neither on n nor on its place; avx2 and avx512 give the same.
 struct FreeKernels {
+  /// One body at many times.
   void (*trig)(const FreeTrig<double>&, const FreeFrame&, const double* t, std::size_t n, double* omega, double* attitude);
   void (*hyper)(const FreeHyper<double>&, const FreeFrame&, const double* t, std::size_t n, double* omega, double* attitude);
+
+  /// n bodies, each at its own time: set up and evaluated in lanes. `left` gets the indices of those that this cannot
+  /// do (next to the separatrix, at rest, steady on the unstable axis, out of range); returns how many they are.
+  std::size_t (*once)(FreeStarts starts, const double* t, std::size_t n, double* omega, double* attitude, std::size_t* left);
+
+  /// The constants of n bodies; `left` as for `once`.
+  std::size_t (*set_up)(FreeStarts starts, std::size_t n, FreeTrig<double>* trig, FreeFrame* frames, std::size_t* left);
 };
 
 /// Those of a level; of the next lower one that was compiled.

@@ -84,7 +84,7 @@ class FreeMotion {
   double twice_T_ = 0.0, L_ = 0.0, precession_ = 0.0;  ///< scaled
   exact::FreeTrig<double> trig_;
   exact::FreeHyper<double> hyper_;
-  exact::FreeFrame frame_;
+  exact::FreeFrame frame_{};
 };
 
 }  // namespace polhode

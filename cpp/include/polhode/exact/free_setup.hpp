@@ -60,7 +60,7 @@ POLHODE_INLINE N hypot(N a, N b) {
   const auto first = a > b;
   const N large = select(first, a, b), small = select(first, b, a);
   const N ratio = small / select(large == N(0.0), N(1.0), large);
-  return large * sqrt(N(1.0) + ratio * ratio);
+  return large * sqrt(one_plus(ratio * ratio));
 }
 
 template <class T>
@@ -96,9 +96,9 @@ POLHODE_INLINE FreeConstants<T> analyse(FreeStart<T> s) {
   for (int a = 0; a < 3; ++a) {
     f.m[a] = two_prod(s.I[a], s.w[a]);
     n[a] = f.m[a] * f.m[a];
-    f.twice_T = f.twice_T + f.m[a] * s.w[a];
+    f.twice_T = plus(f.twice_T, f.m[a] * s.w[a]);
   }
-  f.L = sqrt(n[0] + n[1] + n[2]);
+  f.L = sqrt(plus(plus(n[0], n[1]), n[2]));
 
   const N J1(s.I[0]), J2(s.I[1]), J3(s.I[2]);
   const N d1 = abs(two_diff(s.I[2], s.I[0])) / (J1 * J3), d2 = abs(two_diff(s.I[2], s.I[1])) / (J2 * J3);
@@ -158,7 +158,8 @@ POLHODE_INLINE FreeTrig<T> set_up_trig(const FreeConstants<T>& f) {
   const N q_rho = select(rho.hi == zero, N(0.0), q / select(rho.hi == zero, N(1.0), rho));
 
   // The start's theta argument: a constant, double is enough.
-  const LandenChain<T> chain1(f.k.hi, f.kc.hi);
+  LandenChain<T> chain1;
+  for (int i = 0; i <= chain1.stages; ++i) chain1.k[i] = chain.k[i].hi, chain1.kc[i] = chain.kc[i].hi;
   const N La1 = select(steady, N(1.0), f.La1);
   const T sn = select(steady, zero, (f.m[1] * sqrt(f.r) / La1).hi), cn = select(steady, one, (f.m[0] / La1).hi);
   const N La3 = select(f.La3.hi == zero, N(1.0), f.La3);
@@ -176,15 +177,15 @@ POLHODE_INLINE FreeTrig<T> set_up_trig(const FreeConstants<T>& f) {
   }
   N sum(1.0), moment(0.0);
   for (int j = 10; j >= 2; j -= 2) {
-    sum = sum + (up[j] + down[j]);
-    moment = moment + N(T(double(j))) * (up[j] - down[j]);
+    sum = plus(sum, plus(up[j], down[j]));
+    moment = plus(moment, (up[j] - down[j]) * T(double(j)));
   }
 
   const N J3(f.start.I[2]);
   const N a3kc = f.a3 * f.kc;
   const N inverse_turn = Constant<N>::of(0.15915494309189535, -9.839338337591243e-18);  // 1 / 2 pi
   const N nu = f.p / ratio_K;
-  const N psi1 = (f.twice_T / f.L + f.La3 * f.kc / J3) / (N(1.0) + a3kc);
+  const N psi1 = plus(f.twice_T / f.L, f.La3 * f.kc / J3) / one_plus(a3kc);
   const N kappa = scaled(psi1, T(0.5)) - nu * (moment / sum);
 
   FreeTrig<T> c;

@@ -64,6 +64,38 @@ POLHODE_INLINE DoubleDouble<T> operator+(DoubleDouble<T> a, DoubleDouble<T> b) {
   return fast_two_sum(v.hi, v.lo + t.lo);
 }
 
+/// a + b at half the cost, for terms of one sign: between opposite signs it cancels as plain numbers do.
+template <class T>
+POLHODE_INLINE DoubleDouble<T> plus(DoubleDouble<T> a, DoubleDouble<T> b) {
+  const auto s = two_sum(a.hi, b.hi);
+  return fast_two_sum(s.hi, s.lo + (a.lo + b.lo));
+}
+template <class T>
+POLHODE_INLINE T plus(T a, T b) {
+  return a + b;
+}
+
+/// 1 + a for 0 <= a <= 1.
+template <class T>
+POLHODE_INLINE DoubleDouble<T> one_plus(DoubleDouble<T> a) {
+  const auto s = fast_two_sum(T(1.0), a.hi);
+  return fast_two_sum(s.hi, s.lo + a.lo);
+}
+template <class T>
+POLHODE_INLINE T one_plus(T a) {
+  return T(1.0) + a;
+}
+
+/// 2 a, exactly.
+template <class T>
+POLHODE_INLINE DoubleDouble<T> twice(DoubleDouble<T> a) {
+  return {a.hi + a.hi, a.lo + a.lo};
+}
+template <class T>
+POLHODE_INLINE T twice(T a) {
+  return a + a;
+}
+
 template <class T>
 POLHODE_INLINE DoubleDouble<T> operator-(DoubleDouble<T> a, DoubleDouble<T> b) {
   return a + (-b);
@@ -72,15 +104,15 @@ POLHODE_INLINE DoubleDouble<T> operator-(DoubleDouble<T> a, DoubleDouble<T> b) {
 template <class T>
 POLHODE_INLINE DoubleDouble<T> operator*(DoubleDouble<T> a, DoubleDouble<T> b) {
   const auto p = two_prod(a.hi, b.hi);
-  return fast_two_sum(p.hi, p.lo + (a.hi * b.lo + a.lo * b.hi));
+  return fast_two_sum(p.hi, p.lo + madd(a.hi, b.lo, a.lo * b.hi));
 }
 
 template <class T>
 POLHODE_INLINE DoubleDouble<T> operator/(DoubleDouble<T> a, DoubleDouble<T> b) {
-  const T q = a.hi / b.hi;
+  const T inverse = T(1.0) / b.hi, q = a.hi * inverse;
   const auto p = two_prod(q, b.hi);
   const T remainder = ((a.hi - p.hi) - p.lo) + (a.lo - q * b.lo);
-  return fast_two_sum(q, remainder / b.hi);
+  return fast_two_sum(q, remainder * inverse);
 }
 
 template <class T>

@@ -20,29 +20,30 @@ struct LandenChain {
   N k[stages + 1];
   N kc[stages + 1];
 
+  POLHODE_INLINE LandenChain() = default;
   POLHODE_INLINE LandenChain(N modulus, N complement) {
     k[0] = modulus;
     kc[0] = complement;
     for (int i = 0; i < stages; ++i) {
-      const N s = N(1.0) + kc[i], ratio = k[i] / s;
+      const N inverse = N(1.0) / one_plus(kc[i]), ratio = k[i] * inverse;
       k[i + 1] = ratio * ratio;
-      kc[i + 1] = (sqrt(kc[i]) + sqrt(kc[i])) / s;
+      kc[i + 1] = twice(sqrt(kc[i]) * inverse);
     }
   }
 
   /// 2 K(k) / pi, where K is the complete integral of the first kind.
   POLHODE_INLINE N two_K_over_pi() const {
-    N product = N(1.0) + k[1];
-    for (int i = 2; i <= stages; ++i) product = product * (N(1.0) + k[i]);
+    N product = one_plus(k[1]);
+    for (int i = 2; i <= stages; ++i) product = product * one_plus(k[i]);
     return product;
   }
 
   /// The nome q = exp(-pi K'/K) with its relative accuracy for any k -> 0, without log or exp:
   /// the product of the chain up to k_4, whose own nome is a short series in k_4^2 / 16.
   POLHODE_INLINE N nome() const {
-    const N s0 = N(1.0) + kc[0], s1 = N(1.0) + kc[1], s2 = N(1.0) + kc[2], s3 = N(1.0) + kc[3];
+    const N s0 = one_plus(kc[0]), s1 = one_plus(kc[1]), s2 = one_plus(kc[2]), s3 = one_plus(kc[3]);
     const N x = k[4] * k[4] * N(0.0625);
-    const N tail = N(1.0) + x * (N(0.5) + x * N(3.375));
+    const N tail = one_plus(x * plus(N(0.5), x * N(3.375)));
     const N c = Constant<N>::of(0.8408964152537145, 4.099505010290748e-17);  // 2^(-1/4)
     return k[0] * k[0] * c * tail / (s0 * s0 * s1 * sqrt(s2 * sqrt(s3)));
   }
@@ -53,22 +54,23 @@ struct LandenChain {
 template <class N>
 struct ImaginaryDescent {
   N P, Q, H;
-  POLHODE_INLINE N exp_minus() const { return Q / (P + H); }
+  POLHODE_INLINE N exp_minus() const { return Q / plus(P, H); }
 };
 
 /// Jacobi's imaginary argument down the chain of k: only positive terms. Needs P >= 0, Q + R > 0.
 template <class N>
 POLHODE_INLINE ImaginaryDescent<N> descend_imaginary(const LandenChain<N>& chain, N P, N Q, N R) {
   for (int i = 1; i <= chain.stages; ++i) {
-    P = P + P;
-    Q = (Q + R) * (N(1.0) + chain.k[i]);
-    const N slope = chain.k[i] * (P / Q);
-    R = Q * sqrt(N(1.0) + slope * slope);
+    P = twice(P);
+    Q = plus(Q, R) * one_plus(chain.k[i]);
+    if (i == chain.stages) break;
+    const N slope = chain.k[i] * P / Q;
+    R = Q * sqrt(plus(N(1.0), slope * slope));
   }
   // The hypotenuse from the larger leg: either may be 1e-200 of the other.
   const auto P_larger = P > Q;
   const N ratio = select(P_larger, Q / P, P / Q);
-  return {P, Q, select(P_larger, P, Q) * sqrt(N(1.0) + ratio * ratio)};
+  return {P, Q, select(P_larger, P, Q) * sqrt(one_plus(ratio * ratio))};
 }
 
 /// (X, Y) proportional to (cos z, sin z), z = pi u / 2K, from (P, C, Q, R) proportional to (sn, cn, 1, dn)(u, k):
@@ -82,12 +84,12 @@ template <class N>
 POLHODE_INLINE RealDescent<N> descend_real(const LandenChain<N>& chain, N P, N C, N Q, N R) {
   N X = C, Y = P;
   for (int i = 1; i <= chain.stages; ++i) {
-    P = P + P;
-    Q = (Q + R) * (N(1.0) + chain.k[i]);
+    P = twice(P);
+    Q = plus(Q, R) * one_plus(chain.k[i]);
     const N kP = chain.k[i] * P;
     R = sqrt((Q - kP) * (Q + kP));
     Y = Y * R;
-    X = X * Q * (N(1.0) + chain.k[i]);
+    X = X * Q * one_plus(chain.k[i]);
   }
   return {X, Y};
 }

@@ -5,7 +5,7 @@
 #define POLHODE_ISA isa_avx512
 #include "math/lanes/avx512.hpp"
 // The loops need `Wide`, which the line above defines.
-#include "exact/lanes/free_loops.hpp"
+#include "exact/lanes/free_bodies.hpp"
 
 namespace polhode::exact {
 const FreeKernels* avx512_free_kernels() { return &POLHODE_ISA::kernels; }

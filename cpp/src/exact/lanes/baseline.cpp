@@ -6,7 +6,7 @@ namespace polhode::POLHODE_ISA {
 using Wide = One;
 }
 
-#include "exact/lanes/free_loops.hpp"
+#include "exact/lanes/free_bodies.hpp"
 #include "exact/lanes/levels.hpp"
 
 namespace polhode::exact {

@@ -13,16 +13,16 @@ struct Rows {
   T omega[3], attitude[4];
 };
 
-template <class T, class Body>
-POLHODE_INLINE Rows<T> rows_at(const Body& body, const FreeFrame& frame, T t) {
+template <class T, class Body, class Frame>
+POLHODE_INLINE Rows<T> rows_at(const Body& body, const Frame& frame, T t) {
   const exact::FreeState<T> s = exact::evaluate(body, t * T(frame.time_scale));
   Rows<T> rows;
   for (int c = 0; c < 3; ++c) {
-    const double* m = frame.omega + 3 * c;
+    const auto* m = frame.omega + 3 * c;
     rows.omega[c] = madd(T(m[0]), s.omega[0], madd(T(m[1]), s.omega[1], T(m[2]) * s.omega[2]));
   }
   for (int c = 0; c < 4; ++c) {
-    const double* m = frame.attitude + 4 * c;
+    const auto* m = frame.attitude + 4 * c;
     rows.attitude[c] = madd(T(m[0]), s.x, madd(T(m[1]), s.y, madd(T(m[2]), s.z, T(m[3]) * s.w)));
   }
   return rows;
@@ -54,7 +54,5 @@ void at_times(const Body& body, const FreeFrame& frame, const double* t, std::si
   if (omega) return loop<true, false>(body, frame, t, n, omega, attitude);
   if (attitude) return loop<false, true>(body, frame, t, n, omega, attitude);
 }
-
-inline constexpr exact::FreeKernels kernels = {&at_times<exact::FreeTrig<double>>, &at_times<exact::FreeHyper<double>>};
 
 }  // namespace polhode::POLHODE_ISA

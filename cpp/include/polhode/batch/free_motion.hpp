@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+
+namespace polhode {
+
+/// Free motion of many bodies at many times, on plain C-contiguous arrays.
+struct FreeMotionBatch {
+  std::size_t bodies = 0, times = 0;
+  const double* moments = nullptr;   ///< (bodies, 3) principal moments in the body axes, any order [kg m^2]
+  const double* omega = nullptr;     ///< (bodies, 3) at t = 0 [rad/s]
+  const double* attitude = nullptr;  ///< (bodies, 4) at t = 0, (x, y, z, w)
+  const double* t = nullptr;         ///< (times) for all bodies, or (bodies, times) with own_times [s]
+  bool own_times = false;
+};
+
+/// Writes omega (bodies, times, 3) and attitude (bodies, times, 4); either may be null. The bits of the result do not
+/// depend on the number of threads (0: as many as the machine has, for work that pays for them).
+///
+/// A row with an input that is not finite comes out as NaN; returns how many rows did. Throws InvalidInput, with the
+/// number of the body, for moments no body has, attitudes that are not unit and |omega t| > 1e25 rad.
+std::size_t free_motion(const FreeMotionBatch& batch, double* omega, double* attitude, int threads = 0);
+
+}  // namespace polhode

@@ -1,0 +1,172 @@
+#include "polhode/batch/free_motion.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "polhode/batch/parallel.hpp"
+#include "polhode/core/error.hpp"
+#include "polhode/exact/free_motion.hpp"
+
+namespace polhode {
+namespace {
+
+constexpr std::size_t block = 64;  // bodies set up together: their constants stay in the cache
+
+bool finite(const double* values, std::size_t n) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < n; ++i) sum += values[i] * 0.0;
+  return sum == 0.0;
+}
+
+std::string row_name(const char* what, std::size_t body) { return std::string(what) + "[" + std::to_string(body) + "]"; }
+
+/// The door for one body of finite numbers; |omega| comes back.
+double check_body(const FreeMotionBatch& b, std::size_t body) {
+  const double *I = b.moments + 3 * body, *w = b.omega + 3 * body, *q = b.attitude + 4 * body;
+  const double largest = std::max({I[0], I[1], I[2]}), smallest = std::min({I[0], I[1], I[2]});
+  if (!(smallest > 0.0)) {
+    throw InvalidInput(row_name("inertia", body), "positive about every axis", to_text(smallest),
+                       "a rod or a point has no moment about some axis, and its spin there no meaning");
+  }
+  const double deficit = 2.0 * largest - (I[0] + I[1] + I[2]);
+  if (deficit > InertiaTensor::tolerance * largest) {
+    throw InvalidInput(row_name("inertia", body), "within the triangle inequality: no moment above the sum of the two others",
+                       "(" + to_text(I[0]) + ", " + to_text(I[1]) + ", " + to_text(I[2]) + ")");
+  }
+  const double norm2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+  if (!(std::abs(norm2 - 1.0) <= 2e-6)) {
+    throw InvalidInput(row_name("attitude", body), "a unit quaternion (x, y, z, w)", "norm " + to_text(std::sqrt(norm2)),
+                       "normalise it first, if it is meant to be an attitude");
+  }
+  return std::hypot(w[0], w[1], w[2]);
+}
+
+void check_times(const double* t, std::size_t n, double speed, std::size_t body) {
+  double longest = 0.0;
+  for (std::size_t i = 0; i < n; ++i) longest = std::abs(t[i]) > longest && !std::isinf(t[i]) ? std::abs(t[i]) : longest;
+  if (longest * speed > 1e25) {
+    throw InvalidInput(row_name("t", body), "such that |omega t| <= 1e25 rad", to_text(longest) + " s",
+                       "beyond that no digit worth having is left of the phase");
+  }
+}
+
+/// One run of bodies, on one thread.
+class Run {
+ public:
+  Run(const FreeMotionBatch& batch, double* omega, double* attitude) : b_(batch), omega_(omega), attitude_(attitude) {}
+
+  /// Bodies [first, last); returns how many rows are poisoned.
+  std::size_t operator()(std::size_t first, std::size_t last) {
+    std::size_t poisoned = 0;
+    for (std::size_t begin = first; begin < last; begin += block) poisoned += do_block(begin, std::min(last, begin + block));
+    return poisoned;
+  }
+
+ private:
+  const double* times_of(std::size_t body) const { return b_.t + (b_.own_times ? body * b_.times : 0); }
+  double* omega_of(std::size_t body, std::size_t i = 0) const { return omega_ ? omega_ + 3 * (body * b_.times + i) : nullptr; }
+  double* attitude_of(std::size_t body, std::size_t i = 0) const { return attitude_ ? attitude_ + 4 * (body * b_.times + i) : nullptr; }
+
+  std::size_t do_block(std::size_t begin, std::size_t end) {
+    const exact::FreeKernels& kernels = exact::free_kernels();
+    const std::size_t n = end - begin;
+    bool sound[block];
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t body = begin + i;
+      sound[i] = finite(b_.moments + 3 * body, 3) && finite(b_.omega + 3 * body, 3) && finite(b_.attitude + 4 * body, 4);
+      if (!sound[i]) continue;
+      check_times(times_of(body), b_.times, check_body(b_, body), body);
+    }
+    const exact::FreeStarts starts{b_.moments + 3 * begin, b_.omega + 3 * begin, b_.attitude + 4 * begin};
+    std::size_t left[block], remaining = 0;
+    const bool once = b_.times == 1 && (b_.own_times || b_.bodies == 1);
+    if (once) {
+      remaining = kernels.once(starts, b_.t + begin, n, omega_of(begin), attitude_of(begin), left);
+    } else {
+      trig_.resize(block), frames_.resize(block);
+      remaining = kernels.set_up(starts, n, trig_.data(), frames_.data(), left);
+    }
+    std::size_t poisoned = 0, next = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t body = begin + i;
+      const bool by_itself = next < remaining && left[next] == i;
+      if (by_itself) ++next;
+      if (!sound[i]) {
+        poisoned += poison(body, 0, b_.times);
+      } else if (by_itself) {
+        const FreeMotion motion = single(body);
+        poisoned += each_run(body, [&](const double* t, std::size_t count, double* w, double* q) { motion.at(t, count, w, q); });
+      } else {
+        poisoned += each_run(body, [&](const double* t, std::size_t count, double* w, double* q) {
+          if (!once) kernels.trig(trig_[i], frames_[i], t, count, w, q);
+        });
+      }
+    }
+    return poisoned;
+  }
+
+  FreeMotion single(std::size_t body) const {
+    const double *I = b_.moments + 3 * body, *w = b_.omega + 3 * body, *q = b_.attitude + 4 * body;
+    return {InertiaTensor::from_moments({I[0], I[1], I[2]}), {w[0], w[1], w[2]}, {q[0], q[1], q[2], q[3]}};
+  }
+
+  std::size_t poison(std::size_t body, std::size_t from, std::size_t count) const {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    if (omega_) std::fill_n(omega_of(body, from), 3 * count, nan);
+    if (attitude_) std::fill_n(attitude_of(body, from), 4 * count, nan);
+    return count;
+  }
+
+  /// evaluate(t, count, omega, attitude) for each run of finite times; the rows between are poisoned and counted.
+  template <class Evaluate>
+  std::size_t each_run(std::size_t body, const Evaluate& evaluate) const {
+    const double* t = times_of(body);
+    if (finite(t, b_.times)) {
+      evaluate(t, b_.times, omega_of(body), attitude_of(body));
+      return 0;
+    }
+    std::size_t poisoned = 0;
+    for (std::size_t i = 0, end = 0; i < b_.times; i = end) {
+      const bool good = std::isfinite(t[i]);
+      for (end = i; end < b_.times && std::isfinite(t[end]) == good;) ++end;
+      if (good) {
+        evaluate(t + i, end - i, omega_of(body, i), attitude_of(body, i));
+      } else {
+        poisoned += poison(body, i, end - i);
+      }
+    }
+    return poisoned;
+  }
+
+  const FreeMotionBatch& b_;
+  double *omega_, *attitude_;
+  std::vector<exact::FreeTrig<double>> trig_;
+  std::vector<exact::FreeFrame> frames_;
+};
+
+}  // namespace
+
+std::size_t free_motion(const FreeMotionBatch& batch, double* omega, double* attitude, int threads) {
+  if (batch.bodies == 0 || batch.times == 0) return 0;
+  std::atomic<std::size_t> poisoned{0};
+  const std::size_t states = batch.bodies * batch.times;
+  if (batch.bodies == 1 && batch.times > 4096) {
+    // One body: its times are cut, each piece at a multiple of the longest vector.
+    const std::size_t team = thread_count(threads, states, 20000);
+    parallel_for(batch.times, team, 1024, [&](std::size_t begin, std::size_t end) {
+      FreeMotionBatch piece = batch;
+      piece.t = batch.t + begin, piece.times = end - begin;
+      poisoned += Run(piece, omega ? omega + 3 * begin : nullptr, attitude ? attitude + 4 * begin : nullptr)(0, 1);
+    });
+    return poisoned;
+  }
+  const std::size_t team = thread_count(threads, states, 2000);
+  parallel_for(batch.bodies, team, block, [&](std::size_t begin, std::size_t end) { poisoned += Run(batch, omega, attitude)(begin, end); });
+  return poisoned;
+}
+
+}  // namespace polhode

@@ -1,0 +1,236 @@
+"""Many bodies, many times: closed forms on arrays that broadcast."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._core import InertiaTensor, InvalidInput
+
+__all__ = ["free_motion"]
+
+Array = npt.NDArray[np.float64]
+WIDTHS = {"omega": 3, "attitude": 4}
+
+
+def _numbers(value: Any, name: str, width: int | None) -> Array:
+    """A float64 array whose last axis has the width asked for; NaN and inf may pass."""
+    if hasattr(value, "as_quat"):
+        value = value.as_quat()
+    try:
+        array = np.asarray(value)
+    except ValueError:
+        array = np.empty(0, dtype=object)
+    if array.dtype.kind not in "fiub":
+        raise InvalidInput(f"{name}: must be an array of real numbers, got dtype {array.dtype}")
+    if width is not None and (array.ndim == 0 or array.shape[-1] != width):
+        raise InvalidInput(f"{name}: must be an array of shape (..., {width}), got shape {array.shape}")
+    return array.astype(np.float64, copy=False)
+
+
+def _wanted(want: str | Sequence[str]) -> tuple[str, ...]:
+    names = (want,) if isinstance(want, str) else tuple(want)
+    if not names or any(name not in WIDTHS for name in names) or len(set(names)) != len(names):
+        raise InvalidInput(f"want: must be one or both of 'omega' and 'attitude', got {want!r}")
+    return names
+
+
+def _require_memory(shape: tuple[int, ...], names: tuple[str, ...]) -> None:
+    states = 1
+    for size in shape:
+        states *= size
+    needed = states * sum(8 * WIDTHS[name] for name in names)
+    try:
+        there = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    except (ValueError, OSError, AttributeError):
+        return
+    if needed > there:
+        raise MemoryError(f"{states} states need {needed} bytes; this machine has {there}")
+
+
+def _axes(shape: tuple[int, ...], loops: Sequence[tuple[int, ...]]) -> tuple[list[int], list[int]]:
+    """Which axes of the result belong to bodies (some parameter varies along them) and which to times alone."""
+    padded = [(1,) * (len(shape) - len(loop)) + loop for loop in loops]
+    bodies = [k for k in range(len(shape)) if any(loop[k] != 1 for loop in padded)]
+    return bodies, [k for k in range(len(shape)) if k not in bodies]
+
+
+def _targets(out: Any, names: tuple[str, ...], shape: tuple[int, ...]) -> dict[str, Any]:
+    if out is None:
+        return {}
+    given = (out,) if isinstance(out, np.ndarray) else tuple(out)
+    if len(given) != len(names):
+        raise InvalidInput(f"out: must be one array for each of {names}, got {len(given)}")
+    targets = {}
+    for name, array in zip(names, given, strict=True):
+        wanted = (*shape, WIDTHS[name])
+        if not isinstance(array, np.ndarray) or array.dtype != np.float64 or array.shape != wanted or not array.flags.writeable:
+            found = f"{array.dtype} of shape {array.shape}" if isinstance(array, np.ndarray) else type(array).__name__
+            raise InvalidInput(f"out: must be a writeable float64 array of shape {wanted} for {name}, got {found}")
+        targets[name] = array
+    return targets
+
+
+def _evaluate(
+    parameters: Sequence[tuple[Array, int]],
+    t: Array,
+    out: Any,
+    want: str | Sequence[str],
+    kernel: Callable[..., int],
+) -> Any:
+    """Broadcasts, calls kernel(*flat parameters, t, omega, attitude) and brings the results to the caller's shape.
+
+    `parameters` are (array, how many of its last axes belong to one body).
+    """
+    names = _wanted(want)
+    loops = [array.shape[: array.ndim - core] for array, core in parameters]
+    try:
+        shape = np.broadcast_shapes(*loops, t.shape)
+    except ValueError:
+        raise InvalidInput(f"t: must broadcast with the bodies, got shapes {', '.join(map(str, [*loops, t.shape]))}") from None
+    targets = _targets(out, names, shape)
+    _require_memory(shape, names)
+    bodies, times = _axes(shape, loops)
+    order = bodies + times
+    body_shape, time_shape = [shape[k] for k in bodies], [shape[k] for k in times]
+
+    flat = []
+    for array, core in parameters:
+        tail = array.shape[array.ndim - core :]
+        spread = np.broadcast_to(array, (*shape, *tail))
+        spread = spread.transpose(*order, *range(len(shape), len(shape) + core))
+        spread = spread[(slice(None),) * len(bodies) + (0,) * len(times)] if all(time_shape) else spread.reshape(0, *tail)
+        flat.append(np.ascontiguousarray(spread).reshape(-1, *tail))
+    n_bodies, n_times = int(np.prod(body_shape)), int(np.prod(time_shape))
+    own_times = any(size != 1 for k, size in enumerate((1,) * (len(shape) - t.ndim) + t.shape) if k in bodies)
+    spread_t = np.broadcast_to(t, shape).transpose(order)
+    if own_times or n_times == 0 or n_bodies == 0:
+        flat_t = np.ascontiguousarray(spread_t).reshape(n_bodies, n_times)
+    else:
+        flat_t = np.ascontiguousarray(spread_t[(0,) * len(bodies)]).reshape(n_times)
+
+    results: dict[str, Any] = {}
+    in_place = order == sorted(order)
+    for name in names:
+        target = targets.get(name)
+        if target is not None and in_place and target.flags.c_contiguous:
+            results[name] = target
+        else:
+            results[name] = np.empty((*body_shape, *time_shape, WIDTHS[name]))
+    poisoned = kernel(*flat, flat_t, results.get("omega"), results.get("attitude")) if n_bodies and n_times else 0
+    if poisoned:
+        warnings.warn(f"{poisoned} rows are NaN because their input is not finite", RuntimeWarning, stacklevel=3)
+
+    inverse = [*np.argsort(order), len(shape)]
+    for name in names:
+        target = targets.get(name)
+        if target is None:
+            results[name] = results[name].transpose(inverse)
+        elif results[name] is not target:
+            target[...] = results[name].transpose(inverse)
+            results[name] = target
+    answer = tuple(results[name] for name in names)
+    return answer[0] if isinstance(want, str) else answer
+
+
+def free_motion(
+    inertia: InertiaTensor | npt.ArrayLike,
+    omega: npt.ArrayLike,
+    attitude: Any,
+    t: npt.ArrayLike,
+    *,
+    out: Any = None,
+    want: str | Sequence[str] = ("omega", "attitude"),
+    threads: int | None = None,
+) -> Any:
+    """Torque-free motion of many bodies at many times; everything broadcasts as in a NumPy gufunc.
+
+    Parameters
+    ----------
+    inertia : array_like, shape (..., 3), or InertiaTensor
+        Principal moments in the body axes, in any order [kg m^2]; or one tensor for all bodies.
+    omega : array_like, shape (..., 3)
+        Angular velocity at t = 0, in body axes [rad/s].
+    attitude : array_like, shape (..., 4), or Rotation
+        Attitude at t = 0, body to space, unit, (x, y, z, w).
+    t : array_like, shape (...)
+        Times [s]. Bodies (B, 1) and times (T,) give the full grid (B, T), each body set up once.
+    out : ndarray or tuple of ndarray, optional
+        Where to write, float64, one for each of `want`. Saves the cost of fresh memory, which exceeds that of the
+        motion itself.
+    want : str or sequence of str
+        What is computed: 'omega', 'attitude' or both. A single name gives a single array.
+    threads : int, optional
+        At most this many; by default as many as the machine has. The bits of the result do not depend on it.
+
+    Returns
+    -------
+    omega : ndarray, shape (..., 3)
+        In body axes [rad/s].
+    attitude : ndarray, shape (..., 4)
+        Body to space, unit, (x, y, z, w).
+
+    Raises
+    ------
+    InvalidInput
+        Shapes that do not broadcast, moments that no body has, attitudes that are not unit, abs(omega t) > 1e25 rad.
+    MemoryError
+        The result would not fit into this machine: before anything is computed, with the number of bytes.
+
+    Warns
+    -----
+    RuntimeWarning
+        Once, with their count, when rows came out NaN because their input is not finite.
+
+    Notes
+    -----
+    The formulas of :class:`FreeMotion`; see docs/exact.md.
+    """
+    if threads is not None and (isinstance(threads, bool) or not isinstance(threads, int) or threads < 1):
+        raise InvalidInput(f"threads: must be a positive whole number, got {threads!r}")
+    speeds, attitudes, times = _numbers(omega, "omega", 3), _numbers(attitude, "attitude", 4), _numbers(t, "t", None)
+    if isinstance(inertia, InertiaTensor):
+        matrix = inertia.matrix
+        if np.count_nonzero(matrix - np.diag(np.diag(matrix))):
+            return _turned(inertia, speeds, attitudes, times, out, want, threads)
+        moments = np.diag(matrix).copy()
+    else:
+        moments = _numbers(inertia, "inertia", 3)
+
+    def kernel(*arguments: Any) -> int:
+        return _core._free_motion(*arguments, threads or 0)
+
+    return _evaluate([(moments, 1), (speeds, 1), (attitudes, 1)], times, out, want, kernel)
+
+
+def _turned(
+    inertia: InertiaTensor, omega: Array, attitude: Array, t: Array, out: Any, want: str | Sequence[str], threads: int | None
+) -> Any:
+    """A tensor with products of inertia: the motion of its principal axes P, R_BP turning it back."""
+    from .attitude import Rotation
+
+    R_BP = inertia.axes
+    q_BP = Rotation.from_matrix(R_BP).as_quat()
+
+    def times(p: Array, q: Array) -> Array:
+        x, y, z, w = np.moveaxis(p, -1, 0)
+        a, b, c, d = np.moveaxis(q, -1, 0)
+        return np.stack([w * a + x * d + y * c - z * b, w * b - x * c + y * d + z * a,
+                         w * c + x * b - y * a + z * d, w * d - x * a - y * b - z * c], axis=-1)
+
+    names = _wanted(want)
+    found = free_motion(inertia.moments, omega @ R_BP, times(attitude, q_BP), t, want=names, threads=threads)
+    back = {"omega": lambda w: w @ R_BP.T, "attitude": lambda q: times(q, q_BP * [-1, -1, -1, 1])}
+    answer = [back[name](values) for name, values in zip(names, found, strict=True)]
+    targets = _targets(out, names, answer[0].shape[:-1])
+    for k, name in enumerate(names):
+        if name in targets:
+            targets[name][...] = answer[k]
+            answer[k] = targets[name]
+    return answer[0] if isinstance(want, str) else tuple(answer)
