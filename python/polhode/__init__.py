@@ -9,11 +9,12 @@ from ._core import HeavyTop as HeavyTop
 from ._core import IntegrationFailure as IntegrationFailure
 from ._core import InvalidInput as InvalidInput
 from ._core import __version__ as __version__
-from ._core import build_info as build_info
 from .attitude import Rotation as Rotation
 from .attitude import body_rates as body_rates
 from .attitude import euler_rates as euler_rates
 from .batch import free_motion as free_motion
+from .build import build_info as build_info
+from .build import cmake_prefix as cmake_prefix
 from .inertia import InertiaTensor as InertiaTensor
 from .inertia import MassProperties as MassProperties
 from .inertia import PrincipalAxes as PrincipalAxes

@@ -1,0 +1,70 @@
+"""The examples run, and the C++ program prints what its Python twin prints, against both ways of installing polhode."""
+
+import pathlib
+import re
+import subprocess
+import sys
+import sysconfig
+from fractions import Fraction
+
+import pytest
+
+import polhode as ph
+
+ROOT = pathlib.Path(__file__).parents[2]
+DEV_BUILD = ROOT / "build/dev"
+EXAMPLES = sorted((ROOT / "examples/python").glob("*.py"))
+
+
+def run(*command):
+    """Standard output; whatever goes to standard error is a failure."""
+    done = subprocess.run([str(part) for part in command], capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert not done.stderr, done.stderr
+    return done.stdout
+
+
+def run_example(path):
+    return run(sys.executable, "-W", "error", path)
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_python_example_runs(path):
+    assert run_example(path).count("\n") > 5
+
+
+def test_the_homework_block_has_its_moments():
+    text = run_example(ROOT / "examples/python/block.py")
+    a, b, c = Fraction(3, 10), Fraction(2, 10), Fraction(1, 10)
+    space = 8 * (a**2 * b**2 + b**2 * c**2 + a**2 * c**2) / (a**2 + b**2 + c**2)          # 2M/3 = 8
+    face = 8 * (a**2 * b**2 + 2 * b**2 * c**2 + 2 * a**2 * c**2) / (a**2 + b**2)
+    assert re.search(r"diagonal of the block: +(\S+)", text)[1] == f"{float(space):.6f}"
+    assert re.search(r"diagonal of the face z = c: +(\S+)", text)[1] == f"{float(face):.6f}"
+    assert "refused: inertia: must be within the triangle inequality" in text
+
+
+def test_the_top_follows_its_closed_form():
+    text = run_example(ROOT / "examples/python/top.py")
+    assert float(re.search(r"closed form: (\S+) rad", text)[1]) < 1e-8
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory):
+    """Prefix of `cmake --install`, with the ordinary layout of CMake packages."""
+    if not (DEV_BUILD / "CMakeCache.txt").exists():
+        pytest.skip("no build tree to install from")
+    prefix = tmp_path_factory.mktemp("prefix")
+    run("cmake", "--install", DEV_BUILD, "--prefix", prefix)
+    return prefix
+
+
+@pytest.mark.parametrize("source", ["cmake --install", "pip install"])
+def test_cpp_example_links_and_prints_what_its_twin_prints(source, request, tmp_path):
+    prefix = request.getfixturevalue("installed") if source == "cmake --install" else ph.cmake_prefix()
+    cmeel = pathlib.Path(sysconfig.get_paths()["purelib"]) / "cmeel.prefix"   # Eigen, where Debian's is not installed
+    configured = run("cmake", "-S", ROOT / "examples/cpp", "-B", tmp_path, f"-DCMAKE_PREFIX_PATH={prefix};{cmeel}",
+                     "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Wconversion -Werror", "-DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF")
+    assert "Configuring done" in configured
+    assert f"polhode_DIR:PATH={prefix}/lib" in (tmp_path / "CMakeCache.txt").read_text()
+    run("cmake", "--build", tmp_path)
+    assert run(tmp_path / "racket") == run_example(ROOT / "examples/python/racket.py")
