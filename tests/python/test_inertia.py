@@ -246,12 +246,14 @@ def test_taking_more_than_there_is():
 
 
 @fixed
-@given(st.floats(1e-9, 0.999), rotations, points)
-def test_flat_bodies_with_holes_are_not_refused_for_rounding(radius, rotation, shift):
+@given(st.floats(0.01, 9), rotations, points)
+def test_flat_bodies_with_holes_are_not_refused_for_rounding(digits, rotation, shift):
+    """However thin the ring that is left: the difference's rounding is judged by what it was taken from."""
+    radius = 1 - 10**-digits
     disk = ph.shapes.disk(1, 1).moved(rotation, shift)
     hole = ph.shapes.disk(radius**2, radius).moved(rotation, shift)
     washer = disk - hole
-    close(washer.inertia.moments[2], 0.5 * (1 + radius**2) * (1 - radius**2), 1, 1e-13 / (1 - radius**2))
+    close(washer.inertia.moments[2], 0.5 * (1 + radius**2) * (1 - radius**2), 1, 1e-14)
 
 
 def test_a_hole_leaves_what_is_known():
