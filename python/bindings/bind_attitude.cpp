@@ -142,27 +142,45 @@ Array from_euler(py::handle seq, py::handle value, bool degrees) {
   return q;
 }
 
-Array as_euler(py::handle seq, const Array& q, bool degrees) {
-  const EulerSequence sequence = to_sequence(seq);
-  Array angles(with_tail(q, 1, {3}));
+/// Rows (..., 4) to rows (..., tail) by a kernel that refuses nothing.
+template <class Out, class Kernel>
+py::array_t<Out, py::array::c_style | py::array::forcecast> convert(const Array& q, std::initializer_list<py::ssize_t> tail,
+                                                                    const Kernel& kernel) {
+  py::array_t<Out, py::array::c_style | py::array::forcecast> result(with_tail(q, 1, tail));
   const std::size_t n = rows(q, 4);
   const double* in = q.data();
-  double* out = angles.mutable_data();
-  py::gil_scoped_release nogil;
-  arrays::to_euler(sequence, n, in, unit_of(degrees), out);
-  return angles;
+  Out* out = result.mutable_data();
+  {
+    py::gil_scoped_release nogil;
+    kernel(n, in, out);
+  }
+  return result;
 }
 
-py::array_t<bool> locked(py::handle seq, const Array& q) {
+Array as_euler(py::handle seq, const Array& q, bool degrees) {
   const EulerSequence sequence = to_sequence(seq);
-  py::array_t<bool> flags(with_tail(q, 1, {}));
-  const std::size_t n = rows(q, 4);
-  const double* in = q.data();
-  bool* out = flags.mutable_data();
-  py::gil_scoped_release nogil;
-  arrays::gimbal_lock(sequence, n, in, out);
-  return flags;
+  return convert<double>(q, {3}, [&](std::size_t n, const double* in, double* out) {
+    arrays::to_euler(sequence, n, in, unit_of(degrees), out);
+  });
 }
+
+py::array_t<bool> gimbal_lock_of(py::handle seq, const Array& q) {
+  const EulerSequence sequence = to_sequence(seq);
+  return convert<bool>(q, {}, [&](std::size_t n, const double* in, bool* out) {
+    arrays::gimbal_lock(sequence, n, in, out);
+  });
+}
+
+Array as_rotvec(const Array& q, bool degrees) {
+  return convert<double>(q, {3}, [&](std::size_t n, const double* in, double* out) {
+    arrays::to_rotation_vector(n, in, unit_of(degrees), out);
+  });
+}
+
+Array as_matrix(const Array& q) { return convert<double>(q, {3, 3}, arrays::to_matrix); }
+Array magnitude(const Array& q) { return convert<double>(q, {}, arrays::rotation_angle); }
+Array canonical_of(const Array& q) { return convert<double>(q, {4}, arrays::canonical); }
+Array conjugate_of(const Array& q) { return convert<double>(q, {4}, arrays::conjugate); }
 
 Array from_matrix(py::handle value) {
   const Array matrix = to_array_with_tail(value, "matrix", {3, 3});
@@ -182,16 +200,6 @@ Array from_matrix(py::handle value) {
   return q;
 }
 
-Array as_matrix(const Array& q) {
-  Array matrix(with_tail(q, 1, {3, 3}));
-  const std::size_t n = rows(q, 4);
-  const double* in = q.data();
-  double* out = matrix.mutable_data();
-  py::gil_scoped_release nogil;
-  arrays::to_matrix(n, in, out);
-  return matrix;
-}
-
 Array from_rotvec(py::handle value, bool degrees) {
   const Array rotvec = to_array_with_tail(value, "rotvec", {3});
   Array q(with_tail(rotvec, 1, {4}));
@@ -205,36 +213,6 @@ Array from_rotvec(py::handle value, bool degrees) {
   }
   if (refused != n) require_finite(rotvec, "rotvec");
   return q;
-}
-
-Array as_rotvec(const Array& q, bool degrees) {
-  Array rotvec(with_tail(q, 1, {3}));
-  const std::size_t n = rows(q, 4);
-  const double* in = q.data();
-  double* out = rotvec.mutable_data();
-  py::gil_scoped_release nogil;
-  arrays::to_rotation_vector(n, in, unit_of(degrees), out);
-  return rotvec;
-}
-
-Array canonical_of(const Array& q) {
-  Array out(with_tail(q, 0, {}));
-  const std::size_t n = rows(q, 4);
-  const double* in = q.data();
-  double* unit = out.mutable_data();
-  py::gil_scoped_release nogil;
-  arrays::canonical(n, in, unit);
-  return out;
-}
-
-Array magnitude(const Array& q) {
-  Array angle(with_tail(q, 1, {}));
-  const std::size_t n = rows(q, 4);
-  const double* in = q.data();
-  double* out = angle.mutable_data();
-  py::gil_scoped_release nogil;
-  arrays::rotation_angle(n, in, out);
-  return angle;
 }
 
 Array multiply(const Array& q_AB, const Array& q_BC) {
@@ -304,9 +282,10 @@ void bind_attitude(py::module_& m) {
   py::module_ a = m.def_submodule("attitude", "Kernels of polhode.attitude on arrays (..., 4) of unit quaternions.");
   a.def("normalize", &normalize, py::arg("quat"), py::arg("scalar_first"));
   a.def("canonical", &canonical_of, py::arg("quat"));
+  a.def("conjugate", &conjugate_of, py::arg("quat"));
   a.def("from_euler", &from_euler, py::arg("sequence"), py::arg("angles"), py::arg("degrees"));
   a.def("as_euler", &as_euler, py::arg("sequence"), py::arg("quat"), py::arg("degrees"));
-  a.def("gimbal_lock", &locked, py::arg("sequence"), py::arg("quat"));
+  a.def("gimbal_lock", &gimbal_lock_of, py::arg("sequence"), py::arg("quat"));
   a.def("from_matrix", &from_matrix, py::arg("matrix"));
   a.def("as_matrix", &as_matrix, py::arg("quat"));
   a.def("from_rotvec", &from_rotvec, py::arg("rotvec"), py::arg("degrees"));

@@ -257,7 +257,7 @@ class Rotation:
 
     def inv(self) -> Rotation:
         """The inverse rotation; as an attitude, from space to body."""
-        return _wrap(self._quat * _CONJUGATE)
+        return _wrap(_kernels.conjugate(self._quat))
 
     def __mul__(self, other: Any) -> Rotation:
         """R_AB * R_BC = R_AC: first `other`, then this one. Shapes broadcast."""
@@ -337,9 +337,6 @@ class Rotation:
     def __repr__(self) -> str:
         quat = np.array2string(self._quat, separator=", ", threshold=40, floatmode="unique", prefix="Rotation.from_quat(")
         return f"Rotation.from_quat({quat})"
-
-
-_CONJUGATE = np.array([-1.0, -1.0, -1.0, 1.0])
 
 
 def _set(rotation: Rotation, quat: FloatArray) -> None:

@@ -99,7 +99,10 @@ std::size_t normalize(std::size_t n, const double* q, double* unit_q) {
     Quat unit = load(q + 4 * i);
     const double square = square_norm(unit);
     if (!(std::abs(square - 1.0) <= 2e-6)) return i;
-    if (std::abs(square - 1.0) > 1e-12) unit = scaled(unit, 1.0 / std::sqrt(square));
+    if (std::abs(square - 1.0) > 1e-12) {
+      const double size = std::sqrt(square);
+      unit = {unit.x / size, unit.y / size, unit.z / size, unit.w / size};
+    }
     store(scaled(unit, back_to_unit_if_off(square_norm(unit))), unit_q + 4 * i);
   }
   return n;
@@ -107,6 +110,10 @@ std::size_t normalize(std::size_t n, const double* q, double* unit_q) {
 
 void canonical(std::size_t n, const double* q, double* canonical_q) {
   for (std::size_t i = 0; i < n; ++i) store(polhode::canonical(load(q + 4 * i)), canonical_q + 4 * i);
+}
+
+void conjugate(std::size_t n, const double* q, double* __restrict q_inverse) {
+  for (std::size_t i = 0; i < n; ++i) store(polhode::conjugate(load(q + 4 * i)), q_inverse + 4 * i);
 }
 
 void multiply(std::size_t n, const double* q_AB, std::size_t step_AB, const double* q_BC, std::size_t step_BC,

@@ -32,6 +32,8 @@ std::size_t normalize(std::size_t n, const double* q, double* unit_q);
 /// Of q and -q the one with w >= 0, as polhode::canonical.
 void canonical(std::size_t n, const double* q, double* canonical_q);
 
+void conjugate(std::size_t n, const double* q, double* q_inverse);
+
 /// q_AC = q_AB q_BC of unit quaternions, brought back to unit norm.
 void multiply(std::size_t n, const double* q_AB, std::size_t step_AB, const double* q_BC, std::size_t step_BC,
               double* q_AC);
