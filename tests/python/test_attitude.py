@@ -1,8 +1,11 @@
 """Rotation against SciPy's, the laws of the group, and Rotation as a container."""
 
 import copy
+import doctest
 import math
+import pathlib
 import pickle
+import re
 
 import mpmath
 import numpy as np
@@ -13,6 +16,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.spatial.transform import Rotation as SciPy
 
 import polhode as ph
+from polhode import attitude
 
 SEQUENCES = [a + b + c for axes in ("XYZ", "xyz") for a in axes for b in axes for c in axes if a != b != c]
 law = settings(derandomize=True, deadline=None, max_examples=100)
@@ -342,3 +346,16 @@ def test_array_likes():
     assert ph.Rotation.from_euler("zyx", angles) == ph.Rotation.from_euler("zyx", angles.tolist())
     singles = ph.Rotation.random(5, rng=9).as_quat().astype(np.float32)
     assert_allclose(ph.Rotation(singles).as_quat(), singles, atol=2e-7)
+
+
+# ---- what is written about it
+
+
+def test_the_examples_of_the_docstrings_and_the_page():
+    assert doctest.testmod(attitude).failed == 0 and doctest.testmod(attitude).attempted > 0
+    page = (pathlib.Path(__file__).parents[2] / "docs" / "attitude.md").read_text()
+    names = {}
+    exec(re.search(r"```python\n(.*?)```", page, flags=re.S)[1], names)
+    assert_allclose(names["turn"].as_euler("ZXZ", degrees=True), [40, 25, 10], rtol=1e-14)
+    assert_allclose(names["omega"], [0.1 * math.sin(0.4) * math.sin(0.2), 0.1 * math.sin(0.4) * math.cos(0.2),
+                                     0.1 * math.cos(0.4) + 5.0], rtol=1e-15)
