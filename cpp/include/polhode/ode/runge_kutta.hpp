@@ -17,7 +17,8 @@ template <class Tableau, Problem P>
 class RungeKuttaStepper final : public Stepper {
  public:
   static constexpr int N = P::dimension;
-  static constexpr int segment_size = 5 * N;
+  static constexpr int M = (N + 1) / 2 * 2;       ///< padded to whole vectors of two; the pad stays zero
+  static constexpr int segment_size = 5 * M;
 
   RungeKuttaStepper(const P& problem, double t0, const double* y0, double t_end, const Tolerances& tolerances)
       : Stepper(N, segment_size, &evaluate_segment, t0),
@@ -36,7 +37,7 @@ class RungeKuttaStepper final : public Stepper {
     if (fresh_) {
       fresh_ = false;
     } else {
-      std::copy_n(k_[Tableau::stages - 1], N, k_[0]);
+      std::copy_n(k_[Tableau::stages - 1], M, k_[0]);
       problem_.restore(y_, k_[0]);
     }
     bool finite = true;
@@ -58,8 +59,8 @@ class RungeKuttaStepper final : public Stepper {
         const double next = h * control_.accepted(error);
         // A step cut short by the end says little about the next one; keep the longer of the two.
         h_ = last ? direction * std::max(std::abs(next), std::abs(h_)) : next;
-        std::copy_n(y_, N, y_old_);
-        std::copy_n(y_new_, N, y_);
+        std::copy_n(y_, M, y_old_);
+        std::copy_n(y_new_, M, y_);
         segment_ready_ = false;
         ++counts_.steps;
         return StepResult::accepted;
@@ -83,10 +84,10 @@ class RungeKuttaStepper final : public Stepper {
   /// The continuous extension at the fraction s of a step: the cubic Hermite polynomial in nested form, and the bump.
   static void evaluate_segment(const double* segment, double s, double* out) {
     const double r = 1.0 - s;
-    for (int i = 0; i < N; ++i) {
-      const double* c = segment + 5 * i;
-      out[i] = c[0] + s * (c[1] + r * (c[2] + s * (c[3] + r * c[4])));
-    }
+    const double *c0 = segment, *c1 = c0 + M, *c2 = c1 + M, *c3 = c2 + M, *c4 = c3 + M;
+    double y[M];
+    for (int i = 0; i < M; ++i) y[i] = c0[i] + s * (c1[i] + r * (c2[i] + s * (c3[i] + r * c4[i])));
+    std::copy_n(y, N, out);
   }
 
  private:
@@ -102,7 +103,7 @@ class RungeKuttaStepper final : public Stepper {
 
   template <int S, int... J>
   void compute_stage(double h, std::integer_sequence<int, J...>) {
-    for (int i = 0; i < N; ++i) {
+    for (int i = 0; i < M; ++i) {
       double sum = 0.0;
       ((Tableau::a[S][J] != 0.0 ? void(sum += Tableau::a[S][J] * k_[J][i]) : void()), ...);
       y_new_[i] = y_[i] + h * sum;
@@ -111,7 +112,7 @@ class RungeKuttaStepper final : public Stepper {
   }
 
   void combine_error(double h) {
-    for (int i = 0; i < N; ++i) {
+    for (int i = 0; i < M; ++i) {
       double sum = 0.0;
       for (int s = 0; s < Tableau::stages; ++s) sum += Tableau::error[s] * k_[s][i];
       error_[i] = h * sum;
@@ -122,15 +123,15 @@ class RungeKuttaStepper final : public Stepper {
     if (segment_ready_) return;
     segment_ready_ = true;
     const double h = h_taken_;
-    for (int i = 0; i < N; ++i) {
+    double *c0 = segment_, *c1 = c0 + M, *c2 = c1 + M, *c3 = c2 + M, *c4 = c3 + M;
+    for (int i = 0; i < M; ++i) {
       double bump = 0.0;
       for (int s = 0; s < Tableau::stages; ++s) bump += Tableau::bump[s] * k_[s][i];
-      double* c = segment_ + 5 * i;
-      c[0] = y_old_[i];
-      c[1] = y_[i] - y_old_[i];
-      c[2] = h * k_[0][i] - c[1];
-      c[3] = c[1] - h * k_[Tableau::stages - 1][i] - c[2];
-      c[4] = h * bump;
+      c0[i] = y_old_[i];
+      c1[i] = y_[i] - y_old_[i];
+      c2[i] = h * k_[0][i] - c1[i];
+      c3[i] = c1[i] - h * k_[Tableau::stages - 1][i] - c2[i];
+      c4[i] = h * bump;
     }
   }
 
@@ -159,9 +160,9 @@ class RungeKuttaStepper final : public Stepper {
   Tolerances tolerances_;
   double h_ = 0.0, h_taken_ = 0.0;
   bool fresh_ = true, segment_ready_ = false;
-  double y_[N], y_old_[N] = {}, y_new_[N] = {}, error_[N] = {};
-  double k_[Tableau::stages][N] = {};
-  double segment_[segment_size] = {};
+  alignas(16) double y_[M] = {}, y_old_[M] = {}, y_new_[M] = {}, error_[M] = {};
+  alignas(16) double k_[Tableau::stages][M] = {};
+  alignas(16) double segment_[segment_size] = {};
 };
 
 }  // namespace polhode::ode

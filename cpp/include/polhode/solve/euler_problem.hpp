@@ -50,7 +50,7 @@ class EulerProblem {
   static void unpack(const double* y, double* omega, double* attitude) {
     std::copy_n(y, 3, omega);
     if constexpr (with_attitude) {
-      const double s = 1.0 / std::sqrt(y[3] * y[3] + y[4] * y[4] + y[5] * y[5] + y[6] * y[6]);
+      const double s = compute_unit_scale(y + 3);
       for (int i = 0; i < 4; ++i) attitude[i] = s * y[3 + i];
     }
   }
@@ -100,16 +100,22 @@ class EulerProblem {
     }
   }
 
-  /// |q| = 1 again. The derivative of q is linear in q and the torques see only its direction, so both scale alike.
+  /// |q| = 1 again. The derivative of q is linear in q and scales with it; what the torques make of so small a change is
+  /// of higher order than the step's error.
   void restore(double* y, double* f) const {
     if constexpr (with_attitude) {
-      const double n = y[3] * y[3] + y[4] * y[4] + y[5] * y[5] + y[6] * y[6];
-      const double s = std::abs(n - 1.0) < 1e-8 ? 1.5 - 0.5 * n : 1.0 / std::sqrt(n);
+      const double s = compute_unit_scale(y + 3);
       for (int i = 3; i < 7; ++i) y[i] *= s, f[i] *= s;
     }
   }
 
  private:
+  /// 1/|q|; within 1e-8 of unity its tangent is exact to rounding.
+  static double compute_unit_scale(const double* q) {
+    const double n = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    return std::abs(n - 1.0) < 1e-8 ? 1.5 - 0.5 * n : 1.0 / std::sqrt(n);
+  }
+
   static double sum(const double* v, int n) {
     double total = 0.0;
     for (int i = 0; i < n; ++i) total += std::abs(v[i]);
