@@ -92,6 +92,7 @@ py::dict solve_scene(const Scene& scene, const py::object& accuracy, const py::o
   stats["rejected"] = counts.rejected;
   stats["derivatives"] = counts.derivatives;
   stats["events"] = counts.events;
+  stats["seconds"] = counts.seconds;
   result["stats"] = stats;
   result["status"] = std::string(to_text(motion->status));
   result["message"] = motion->message;

@@ -48,7 +48,7 @@ class Motion:
     status : {"finished", "event", "max_steps", "stopped", "failed"}
     message : str
     stats : dict
-        steps, rejected, derivatives, events: what it cost.
+        steps, rejected, derivatives, events, seconds: what it cost; seconds are wall time inside the compiled core.
     events : tuple of EventHit
         Every zero that was found, in the order of the integration.
     plan : Plan
@@ -64,7 +64,7 @@ class Motion:
         self.omega: Floats | None = result["omega"]
         self.attitude: Floats | None = result["attitude"]
         self.status: str = result["status"]
-        self.stats: dict[str, int] = result["stats"]
+        self.stats: dict[str, Any] = result["stats"]
         self.plan = Plan(*result["plan"])
         self.error: float = result["error"]
         self.error_kind: str = result["error_kind"]

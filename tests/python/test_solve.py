@@ -199,7 +199,7 @@ def test_everything_scales(power):
     r = 2.0 ** (power // 3)
     faster = ph.solve(scene("S5", omega=np.array((0.3, 0.2, 3)) * r, times=PARTS["S5"]["times"] / r,
                             torques=[ph.torques.Gravity(2 * r * r, (0.3, 0.2, 0.5))]), rtol=1e-9)
-    assert faster.stats == base.stats
+    assert all(faster.stats[key] == base.stats[key] for key in base.stats if key != "seconds")
     np.testing.assert_array_equal(faster.attitude, base.attitude)
 
 

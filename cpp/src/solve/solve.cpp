@@ -1,5 +1,6 @@
 #include "polhode/solve/solve.hpp"
 
+#include <chrono>
 #include <cmath>
 
 #include "polhode/core/error.hpp"
@@ -111,10 +112,12 @@ Motion solve(const Scene& scene, const SolveOptions& options) {
   if (raised) rtol = least_rtol;
   const RunOptions run_options{options, {rtol, options.atol.value_or(0.0)}};
 
+  const auto begin = std::chrono::steady_clock::now();
   Motion motion = ode::with_method(method, [&]<class Method>() {
     return options.formulation == Formulation::euler ? run_euler<Method>(scene, run_options)
                                                      : run_lagrangian<Method>(scene, run_options);
   });
+  motion.stats.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   motion.plan.method = method;
   motion.asked = asked;
   if (motion.message.empty()) motion.message = "reached the last time; the error was not estimated";

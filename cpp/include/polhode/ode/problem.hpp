@@ -26,6 +26,7 @@ struct Counts {
   long rejected = 0;
   long derivatives = 0;     ///< right-hand sides
   long events = 0;          ///< evaluations of event functions
+  double seconds = 0.0;     ///< wall time of the whole run
 };
 
 }  // namespace polhode::ode

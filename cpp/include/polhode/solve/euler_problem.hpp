@@ -65,7 +65,7 @@ class EulerProblem {
     static constexpr double identity[4] = {0.0, 0.0, 0.0, 1.0};
     const double *w = y, *q = with_attitude ? y + 3 : identity;
     double tau[3] = {0.0, 0.0, 0.0};
-    torque_.add(TorqueInput{t, w, q, I_}, tau);
+    torque_.add(TorqueInput{t, w, q, I_, diagonal}, tau);
     if constexpr (diagonal) {
       f[0] = (difference_[0] * w[1] * w[2] + tau[0]) * inverse_moment_[0];
       f[1] = (difference_[1] * w[2] * w[0] + tau[1]) * inverse_moment_[1];

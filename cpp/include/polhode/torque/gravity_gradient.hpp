@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "polhode/torque/record.hpp"
-#include "polhode/torque/vertical.hpp"
 
 namespace polhode::torques {
 
@@ -28,8 +27,15 @@ class GravityGradient {
   void add(const TorqueInput& in, double* tau_B) const {
     double u[3], h[3];
     compute_radial(in, u);
-    apply(in.inertia_B, u, h);
     const double s = 3 * mean_motion_ * mean_motion_;
+    const Matrix3d& I = in.inertia_B;
+    if (in.principal) {
+      tau_B[0] += s * (I(2, 2) - I(1, 1)) * (u[1] * u[2]);
+      tau_B[1] += s * (I(0, 0) - I(2, 2)) * (u[2] * u[0]);
+      tau_B[2] += s * (I(1, 1) - I(0, 0)) * (u[0] * u[1]);
+      return;
+    }
+    apply(I, u, h);
     tau_B[0] += s * (u[1] * h[2] - u[2] * h[1]);
     tau_B[1] += s * (u[2] * h[0] - u[0] * h[2]);
     tau_B[2] += s * (u[0] * h[1] - u[1] * h[0]);
@@ -46,8 +52,12 @@ class GravityGradient {
  private:
   void compute_radial(const TorqueInput& in, double* u_B) const {
     const double angle = mean_motion_ * in.t + phase_;
-    const double u_W[3] = {std::cos(angle), std::sin(angle), 0.0};
-    to_body(in.attitude, u_W, u_B);
+    const double c = std::cos(angle), s = std::sin(angle);
+    const double x = in.attitude[0], y = in.attitude[1], z = in.attitude[2], w = in.attitude[3];
+    const double xx = x * x, yy = y * y, zz = z * z, ww = w * w;
+    u_B[0] = c * (ww + xx - yy - zz) + s * (2 * (x * y + w * z));   // rows x and y of R_WB
+    u_B[1] = c * (2 * (x * y - w * z)) + s * (ww - xx + yy - zz);
+    u_B[2] = c * (2 * (x * z + w * y)) + s * (2 * (y * z - w * x));
   }
   static void apply(const Matrix3d& I, const double* u, double* h) {
     for (int i = 0; i < 3; ++i) h[i] = I(i, 0) * u[0] + I(i, 1) * u[1] + I(i, 2) * u[2];

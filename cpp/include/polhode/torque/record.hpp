@@ -27,6 +27,7 @@ struct TorqueInput {
   const double* omega;               ///< w_B, 3 numbers [rad/s]
   const double* attitude;            ///< q_WB, 4 numbers
   const Matrix3d& inertia_B;         ///< [kg m^2]
+  bool principal = false;            ///< inertia_B is diagonal
 };
 
 /// One parameter of a torque, as Python, the scene files and the docs show it.
