@@ -16,15 +16,18 @@ namespace {
 
 constexpr std::size_t block = 64;  // bodies set up together: their constants stay in the cache
 
-bool finite(const double* values, std::size_t n) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < n; ++i) sum += values[i] * 0.0;
-  return sum == 0.0;
+/// Every |value| <= most: no for NaN and, at the default, for infinity.
+bool within(const double* values, std::size_t n, double most = std::numeric_limits<double>::max()) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < n; ++i) count += std::abs(values[i]) <= most;
+  return count == n;
 }
+
+bool finite(const double* values, std::size_t n) { return within(values, n); }
 
 std::string row_name(const char* what, std::size_t body) { return std::string(what) + "[" + std::to_string(body) + "]"; }
 
-/// The door for one body of finite numbers; |omega| comes back.
+/// The door for one body of finite numbers; its largest |omega_i| comes back.
 double check_body(const FreeMotionBatch& b, std::size_t body) {
   const double *I = b.moments + 3 * body, *w = b.omega + 3 * body, *q = b.attitude + 4 * body;
   const double largest = std::max({I[0], I[1], I[2]}), smallest = std::min({I[0], I[1], I[2]});
@@ -42,10 +45,12 @@ double check_body(const FreeMotionBatch& b, std::size_t body) {
     throw InvalidInput(row_name("attitude", body), "a unit quaternion (x, y, z, w)", "norm " + to_text(std::sqrt(norm2)),
                        "normalise it first, if it is meant to be an attitude");
   }
-  return std::hypot(w[0], w[1], w[2]);
+  return std::max({std::abs(w[0]), std::abs(w[1]), std::abs(w[2])});
 }
 
 void check_times(const double* t, std::size_t n, double speed, std::size_t body) {
+  const double most = 1e25 / speed;
+  if (within(t, n, most < 1e308 ? most : 1e308)) return;
   double longest = 0.0;
   for (std::size_t i = 0; i < n; ++i) longest = std::abs(t[i]) > longest && !std::isinf(t[i]) ? std::abs(t[i]) : longest;
   if (longest * speed > 1e25) {

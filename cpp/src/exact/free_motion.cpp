@@ -6,7 +6,7 @@
 #include <string>
 
 #include "polhode/core/error.hpp"
-#include "polhode/exact/free_setup_hyper.hpp"
+#include "polhode/math/double_double.hpp"
 
 namespace polhode {
 namespace {
@@ -101,7 +101,8 @@ void FreeMotion::set_up(const Vector3d& moments, const Matrix3d& R_BP, bool exac
 
   exact::FreeStart<double> start{};
   for (int a = 0; a < 3; ++a) start.I[a] = I[a], start.w[a] = w[a], start.M[a][a] = 1.0;
-  const auto constants = exact::analyse(start);
+  exact::FreeConstants<double> constants;
+  exact::free_kernels().prepare(start, constants, trig_, hyper_);
   twice_T_ = constants.twice_T.hi;
   L_ = constants.L.hi;
   longest_ = most_radians / w.norm();
@@ -117,12 +118,10 @@ void FreeMotion::set_up(const Vector3d& moments, const Matrix3d& R_BP, bool exac
     precession_cycles = std::abs(2.0 * half.hi);
   } else if (constants.k.hi * constants.k.hi > hyper_from) {
     form_ = Form::hyper;
-    hyper_ = exact::set_up_hyper(constants);
     precession_cycles = 2.0 * hyper_.kappa_hi + 0.5 * hyper_.rate_hi;
     if (hyper_.homoclinic > 0.0) precession_cycles = L_ / s.I[1] / (2.0 * std::numbers::pi);
   } else {
     form_ = Form::trig;
-    trig_ = exact::set_up_trig(constants);
     precession_cycles = 2.0 * trig_.kappa_hi + trig_.nu_hi;
   }
   precession_ = 2.0 * std::numbers::pi * precession_cycles;
@@ -195,9 +194,9 @@ State FreeMotion::at(double t) const {
 void FreeMotion::at(const double* t, std::size_t n, double* omega, double* attitude) const {
   const double longest = form_ == Form::rest ? std::numeric_limits<double>::max() : longest_;
   const double scale = form_ == Form::rest ? 1.0 : frame_.time_scale;
-  bool fine = true;
-  for (std::size_t i = 0; i < n; ++i) fine &= std::abs(t[i] * scale) <= longest;
-  if (!fine) {
+  std::size_t fine = 0;
+  for (std::size_t i = 0; i < n; ++i) fine += std::abs(t[i] * scale) <= longest;
+  if (fine != n) {
     for (std::size_t i = 0; i < n; ++i) checked_time(t[i]);
   }
   const exact::FreeKernels& kernels = exact::free_kernels();

@@ -55,6 +55,11 @@ POLHODE_INLINE double power_of_two_below(double a) {
   return p < 0x1p-1022 ? 0x1p-1022 : p;
 }
 
+/// n of a power of two 2^n, -1022 <= n <= 1023.
+POLHODE_INLINE double exponent_of_power(double power) {
+  return static_cast<double>(std::bit_cast<std::uint64_t>(power) >> 52) - 1023.0;
+}
+
 POLHODE_INLINE bool any(bool mask) { return mask; }
 
 template <class N>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "exact/lanes/free_loops.hpp"
-#include "polhode/exact/free_setup.hpp"
+#include "polhode/exact/free_setup_hyper.hpp"
 
 // Many bodies at once: the set-up, too, runs in lanes.
 namespace polhode::POLHODE_ISA {
@@ -35,13 +35,6 @@ POLHODE_INLINE void make_exact(M lost, math::DoubleDouble<T>& distance, T I1, T 
 }
 
 template <class T>
-struct Bodies {
-  FreeTrig<T> trig;
-  FreeFrameOf<T> frame;
-  unsigned left;  ///< one bit a lane: not for this form
-};
-
-template <class T>
 struct Turn {
   T x, y, z, w;
 };
@@ -52,82 +45,127 @@ POLHODE_INLINE Turn<T> product(Turn<T> a, Turn<T> b) {
           madd(a.w, b.z, madd(a.z, b.w, madd(a.x, b.y, -(a.y * b.x)))), madd(a.w, b.w, -madd(a.x, b.x, madd(a.y, b.y, a.z * b.z)))};
 }
 
+/// A block of bodies on their way: what both forms of the series start from.
 template <class T>
-POLHODE_INLINE Bodies<T> set_up_bodies(const T (&moments)[3], const T (&omega)[3], const T (&attitude)[4]) {
-  using math::abs, math::max, math::select, math::sqrt;
-  const T zero(0.0), one(1.0);
-  Bodies<T> bodies;
-  const T fastest = max(abs(omega[0]), max(abs(omega[1]), abs(omega[2])));
-  const T largest = max(moments[0], max(moments[1], moments[2]));
-  const auto usual = (fastest > T(1e-290)) & (fastest < T(1e290)) & (largest > T(1e-290)) & (largest < T(1e290));
-  const T unit = select(usual, power_of_two_below(fastest), one), unit_I = select(usual, power_of_two_below(largest), one);
-  exact::FreeStart<T> start;
-  for (int a = 0; a < 3; ++a) {
-    start.I[a] = select(usual, moments[a] / unit_I, one);
-    start.w[a] = select(usual, omega[a] / unit, one);
-    for (int c = 0; c < 3; ++c) start.M[a][c] = a == c ? one : zero;
-  }
-  const exact::FreeConstants<T> f = exact::analyse(start);
-  const auto& s = f.start;
-  const auto on_unstable_axis = (s.w[0] == zero) & (s.w[2] == zero) & ((s.I[0] < s.I[1]) | (s.I[1] < s.I[0])) &
-                                ((s.I[1] < s.I[2]) | (s.I[2] < s.I[1]));
-  const unsigned all = (1u << T::width) - 1u;
-  bodies.left = bits(on_unstable_axis) | bits(f.k.hi * f.k.hi > T(0.97)) | (bits(usual) ^ all);
+struct Block {
+  exact::FreeConstants<T> constants;
+  T unit, attitude[4];
+  unsigned neither, hyper;  ///< one bit a lane: for FreeMotion itself; for the hyperbolic form
+};
 
-  bodies.trig = exact::set_up_trig(f);
-  bodies.frame.time_scale = unit;
-  const auto first = exact::evaluate(bodies.trig, zero);
-  const T v[3] = {first.x, first.y, first.z};
-  T turned[3];
-  for (int c = 0; c < 3; ++c) turned[c] = madd(s.M[c][0], v[0], madd(s.M[c][1], v[1], s.M[c][2] * v[2]));
-  Turn<T> left = product<T>({attitude[0], attitude[1], attitude[2], attitude[3]}, {-turned[0], -turned[1], -turned[2], first.w});
-  const T scale = one / sqrt(madd(left.x, left.x, madd(left.y, left.y, madd(left.z, left.z, left.w * left.w))));
-  left = {left.x * scale, left.y * scale, left.z * scale, left.w * scale};
-  for (int i = 0; i < 4; ++i) {
-    const Turn<T> q = i == 3 ? left : product<T>(left, {s.M[0][i % 3], s.M[1][i % 3], s.M[2][i % 3], zero});
-    bodies.frame.attitude[i] = q.x;
-    bodies.frame.attitude[4 + i] = q.y;
-    bodies.frame.attitude[8 + i] = q.z;
-    bodies.frame.attitude[12 + i] = q.w;
+/// One column of an array of rows: the rows that `index` names, or those from `first` on; the last one again where
+/// they end.
+struct Pick {
+  const std::size_t* index;
+  std::size_t first, n;
+  POLHODE_INLINE std::size_t operator()(std::size_t i) const {
+    const std::size_t k = first + i < n ? first + i : n - 1;
+    return index ? index[k] : k;
   }
-  for (int c = 0; c < 3; ++c)
-    for (int a = 0; a < 3; ++a) bodies.frame.omega[3 * c + a] = s.M[c][a] * unit;
-  return bodies;
-}
+};
 
-/// One column of an array of rows, T::width rows from the row `first`, the last one repeated where they end.
 template <class T>
-POLHODE_INLINE T column(const double* rows, int width, int which, std::size_t first, std::size_t n) {
+POLHODE_INLINE T column(const double* rows, std::size_t width, std::size_t which, Pick pick) {
   double values[T::width];
-  for (std::size_t i = 0; i < T::width; ++i) {
-    const std::size_t row = first + i < n ? first + i : n - 1;
-    values[i] = rows[row * static_cast<std::size_t>(width) + static_cast<std::size_t>(which)];
-  }
+  for (std::size_t i = 0; i < T::width; ++i) values[i] = rows[pick(i) * width + which];
   return T::load(values);
 }
 
 template <class T>
-Bodies<T> read_bodies(FreeStarts starts, std::size_t first, std::size_t n) {
-  T moments[3], omega[3], attitude[4];
-  for (int a = 0; a < 3; ++a) moments[a] = column<T>(starts.moments, 3, a, first, n), omega[a] = column<T>(starts.omega, 3, a, first, n);
-  for (int a = 0; a < 4; ++a) attitude[a] = column<T>(starts.attitude, 4, a, first, n);
-  return set_up_bodies<T>(moments, omega, attitude);
+POLHODE_INLINE Block<T> read_block(FreeStarts starts, Pick pick) {
+  using math::abs, math::max, math::select;
+  const T zero(0.0), one(1.0);
+  Block<T> block;
+  T moments[3], omega[3];
+  for (std::size_t a = 0; a < 3; ++a) moments[a] = column<T>(starts.moments, 3, a, pick), omega[a] = column<T>(starts.omega, 3, a, pick);
+  for (std::size_t a = 0; a < 4; ++a) block.attitude[a] = column<T>(starts.attitude, 4, a, pick);
+  const T fastest = max(abs(omega[0]), max(abs(omega[1]), abs(omega[2])));
+  const T largest = max(moments[0], max(moments[1], moments[2]));
+  const auto usual = (fastest > T(1e-290)) & (fastest < T(1e290)) & (largest > T(1e-290)) & (largest < T(1e290));
+  block.unit = select(usual, power_of_two_below(fastest), one);
+  const T unit_I = select(usual, power_of_two_below(largest), one);
+  exact::FreeStart<T> start;
+  for (int a = 0; a < 3; ++a) {
+    start.I[a] = select(usual, moments[a] / unit_I, one);
+    start.w[a] = select(usual, omega[a] / block.unit, one);
+    for (int c = 0; c < 3; ++c) start.M[a][c] = a == c ? one : zero;
+  }
+  block.constants = exact::analyse(start);
+  const exact::FreeConstants<T>& f = block.constants;
+  const auto& s = f.start;
+  const auto on_unstable_axis = (s.w[0] == zero) & (s.w[2] == zero) & ((s.I[0] < s.I[1]) | (s.I[1] < s.I[0])) &
+                                ((s.I[1] < s.I[2]) | (s.I[2] < s.I[1]));
+  const unsigned all = (1u << T::width) - 1u;
+  block.neither = bits(on_unstable_axis) | (bits(usual) ^ all) | bits(f.kc.hi < T(1e-140));
+  block.hyper = bits(f.k.hi * f.k.hi > T(0.97)) & ~block.neither;
+  return block;
+}
+
+template <class T>
+POLHODE_INLINE FreeFrameOf<T> make_frame(const Block<T>& block, const exact::FreeState<T>& first) {
+  using math::sqrt;
+  const auto& s = block.constants.start;
+  FreeFrameOf<T> frame;
+  frame.time_scale = block.unit;
+  const T v[3] = {first.x, first.y, first.z};
+  T turned[3];
+  for (int c = 0; c < 3; ++c) turned[c] = madd(s.M[c][0], v[0], madd(s.M[c][1], v[1], s.M[c][2] * v[2]));
+  const T* q0 = block.attitude;
+  Turn<T> left = product<T>({q0[0], q0[1], q0[2], q0[3]}, {-turned[0], -turned[1], -turned[2], first.w});
+  const T scale = T(1.0) / sqrt(madd(left.x, left.x, madd(left.y, left.y, madd(left.z, left.z, left.w * left.w))));
+  left = {left.x * scale, left.y * scale, left.z * scale, left.w * scale};
+  for (int i = 0; i < 4; ++i) {
+    const Turn<T> q = i == 3 ? left : product<T>(left, {s.M[0][i % 3], s.M[1][i % 3], s.M[2][i % 3], T(0.0)});
+    frame.attitude[i] = q.x;
+    frame.attitude[4 + i] = q.y;
+    frame.attitude[8 + i] = q.z;
+    frame.attitude[12 + i] = q.w;
+  }
+  for (int c = 0; c < 3; ++c)
+    for (int a = 0; a < 3; ++a) frame.omega[3 * c + a] = s.M[c][a] * block.unit;
+  return frame;
+}
+
+/// The states of a block, into the rows that `pick` names and `rows_wanted` has a bit for.
+template <class T, class Body>
+POLHODE_INLINE void write_block(const Body& body, const Block<T>& block, const double* t, Pick pick, unsigned rows_wanted,
+                                double* omega, double* attitude) {
+  const FreeFrameOf<T> frame = make_frame(block, exact::evaluate(body, T(0.0)));
+  const Rows<T> rows = rows_at(body, frame, column<T>(t, 1, 0, pick));
+  double w[3 * T::width], q[4 * T::width];
+  store3(w, rows.omega[0], rows.omega[1], rows.omega[2]);
+  store4(q, rows.attitude[0], rows.attitude[1], rows.attitude[2], rows.attitude[3]);
+  for (std::size_t i = 0; i < T::width && pick.first + i < pick.n; ++i) {
+    if ((rows_wanted >> i & 1u) == 0) continue;
+    const std::size_t row = pick(i);
+    if (omega) for (std::size_t k = 0; k < 3; ++k) omega[3 * row + k] = w[3 * i + k];
+    if (attitude) for (std::size_t k = 0; k < 4; ++k) attitude[4 * row + k] = q[4 * i + k];
+  }
+}
+
+inline void once_hyper(FreeStarts starts, const double* t, const std::size_t* which, std::size_t n, double* omega, double* attitude) {
+  for (std::size_t first = 0; first < n; first += Wide::width) {
+    const Pick pick{which, first, n};
+    const Block<Wide> block = read_block<Wide>(starts, pick);
+    write_block(exact::set_up_hyper(block.constants), block, t, pick, ~0u, omega, attitude);
+  }
 }
 
 inline std::size_t once(FreeStarts starts, const double* t, std::size_t n, double* omega, double* attitude, std::size_t* left) {
-  constexpr std::size_t width = Wide::width;
-  std::size_t count = 0;
-  for (std::size_t first = 0; first < n; first += width) {
-    const Bodies<Wide> bodies = read_bodies<Wide>(starts, first, n);
-    const Rows<Wide> rows = rows_at(bodies.trig, bodies.frame, column<Wide>(t, 1, 0, first, n));
-    const std::size_t here = n - first < width ? n - first : width;
-    double w[3 * width], q[4 * width];
-    store3(w, rows.omega[0], rows.omega[1], rows.omega[2]);
-    store4(q, rows.attitude[0], rows.attitude[1], rows.attitude[2], rows.attitude[3]);
-    if (omega) for (std::size_t i = 0; i < 3 * here; ++i) omega[3 * first + i] = w[i];
-    if (attitude) for (std::size_t i = 0; i < 4 * here; ++i) attitude[4 * first + i] = q[i];
-    for (std::size_t i = 0; i < here; ++i)
-      if (bodies.left >> i & 1u) left[count++] = first + i;
+  constexpr std::size_t waiting_room = 64;
+  std::size_t count = 0, hyper[waiting_room], waiting = 0;
+  for (std::size_t first = 0; first < n; first += Wide::width) {
+    const Pick pick{nullptr, first, n};
+    const Block<Wide> block = read_block<Wide>(starts, pick);
+    write_block(exact::set_up_trig(block.constants), block, t, pick, ~(block.neither | block.hyper), omega, attitude);
+    for (std::size_t i = 0; i < Wide::width && first + i < n; ++i) {
+      if (block.neither >> i & 1u) left[count++] = first + i;
+      if (block.hyper >> i & 1u) hyper[waiting++] = first + i;
+    }
+    if (waiting + Wide::width > waiting_room || first + Wide::width >= n) {
+      once_hyper(starts, t, hyper, waiting, omega, attitude);
+      waiting = 0;
+    }
   }
   return count;
 }
@@ -136,22 +174,41 @@ inline std::size_t set_up(FreeStarts starts, std::size_t n, FreeTrig<double>* tr
   constexpr std::size_t width = Wide::width;
   std::size_t count = 0;
   for (std::size_t first = 0; first < n; first += width) {
-    const Bodies<Wide> bodies = read_bodies<Wide>(starts, first, n);
-    const std::size_t here = n - first < width ? n - first : width;
+    const Pick pick{nullptr, first, n};
+    const Block<Wide> block = read_block<Wide>(starts, pick);
+    const FreeTrig<Wide> body = exact::set_up_trig(block.constants);
+    const FreeFrameOf<Wide> frame = make_frame(block, exact::evaluate(body, Wide(0.0)));
     // Both structs are numbers of one type in a row: field by field, lane by lane.
-    const auto* from_trig = reinterpret_cast<const double*>(&bodies.trig);
-    const auto* from_frame = reinterpret_cast<const double*>(&bodies.frame);
-    for (std::size_t i = 0; i < here; ++i) {
+    const auto* from_trig = reinterpret_cast<const double*>(&body);
+    const auto* from_frame = reinterpret_cast<const double*>(&frame);
+    for (std::size_t i = 0; i < width && first + i < n; ++i) {
       auto* to_trig = reinterpret_cast<double*>(trig + first + i);
       auto* to_frame = reinterpret_cast<double*>(frames + first + i);
       for (std::size_t k = 0; k < sizeof(FreeTrig<double>) / sizeof(double); ++k) to_trig[k] = from_trig[k * width + i];
       for (std::size_t k = 0; k < sizeof(FreeFrame) / sizeof(double); ++k) to_frame[k] = from_frame[k * width + i];
-      if (bodies.left >> i & 1u) left[count++] = first + i;
+      if ((block.neither | block.hyper) >> i & 1u) left[count++] = first + i;
     }
   }
   return count;
 }
 
-inline constexpr exact::FreeKernels kernels = {&at_times<FreeTrig<double>>, &at_times<exact::FreeHyper<double>>, &once, &set_up};
+/// One body for FreeMotion: everything, in the one of two forms that it needs.
+inline void prepare(const exact::FreeStart<double>& start, exact::FreeConstants<double>& constants, FreeTrig<double>& trig,
+                    exact::FreeHyper<double>& hyper) {
+  static_assert(sizeof(exact::FreeConstants<One>) == sizeof(exact::FreeConstants<double>));
+  exact::FreeStart<One> s;
+  __builtin_memcpy(static_cast<void*>(&s), &start, sizeof s);
+  const exact::FreeConstants<One> f = exact::analyse(s);
+  __builtin_memcpy(static_cast<void*>(&constants), &f, sizeof f);
+  if (f.k.hi.v * f.k.hi.v > 0.97) {
+    const exact::FreeHyper<One> h = exact::set_up_hyper(f);
+    __builtin_memcpy(static_cast<void*>(&hyper), &h, sizeof h);
+  } else {
+    const FreeTrig<One> g = exact::set_up_trig(f);
+    __builtin_memcpy(static_cast<void*>(&trig), &g, sizeof g);
+  }
+}
+
+inline constexpr exact::FreeKernels kernels = {&at_times<FreeTrig<double>>, &at_times<exact::FreeHyper<double>>, &once, &set_up, &prepare};
 
 }  // namespace polhode::POLHODE_ISA

@@ -51,6 +51,12 @@ POLHODE_INLINE Wide power_of_two_below(Wide a) {
   const __m256d exponent = _mm256_castsi256_pd(_mm256_set1_epi64x(0x7ff0000000000000));
   return _mm256_max_pd(_mm256_and_pd(a.v, exponent), _mm256_set1_pd(0x1p-1022));
 }
+POLHODE_INLINE Wide exponent_of_power(Wide a) {
+  // The exponent field as an integer below 2^52: put into the mantissa of 2^52, then 2^52 taken away.
+  const __m256i field = _mm256_srli_epi64(_mm256_castpd_si256(a.v), 52);
+  const __m256d shifted = _mm256_castsi256_pd(_mm256_or_si256(field, _mm256_set1_epi64x(0x4330000000000000)));
+  return _mm256_sub_pd(shifted, _mm256_set1_pd(0x1p52 + 1023.0));
+}
 
 /// Rows x0 y0 z0 w0 x1 ... of four numbers.
 POLHODE_INLINE void store4(double* p, Wide x, Wide y, Wide z, Wide w) {

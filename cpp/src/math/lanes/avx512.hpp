@@ -51,6 +51,12 @@ POLHODE_INLINE Wide power_of_two_below(Wide a) {
   const __m512d exponent = _mm512_castsi512_pd(_mm512_set1_epi64(0x7ff0000000000000));
   return _mm512_max_pd(_mm512_and_pd(a.v, exponent), _mm512_set1_pd(0x1p-1022));
 }
+POLHODE_INLINE Wide exponent_of_power(Wide a) {
+  // The exponent field as an integer below 2^52: put into the mantissa of 2^52, then 2^52 taken away.
+  const __m512i field = _mm512_srli_epi64(_mm512_castpd_si512(a.v), 52);
+  const __m512d shifted = _mm512_castsi512_pd(_mm512_or_si512(field, _mm512_set1_epi64(0x4330000000000000)));
+  return _mm512_sub_pd(shifted, _mm512_set1_pd(0x1p52 + 1023.0));
+}
 
 /// Rows x0 y0 z0 w0 x1 ... of four numbers.
 POLHODE_INLINE void store4(double* p, Wide x, Wide y, Wide z, Wide w) {

@@ -30,6 +30,7 @@ POLHODE_INLINE One abs(One a) { return __builtin_fabs(a.v); }
 POLHODE_INLINE One copysign(One a, One b) { return __builtin_copysign(a.v, b.v); }
 POLHODE_INLINE One power_of_two(One n) { return math::power_of_two(n.v); }
 POLHODE_INLINE One power_of_two_below(One a) { return math::power_of_two_below(a.v); }
+POLHODE_INLINE One exponent_of_power(One a) { return math::exponent_of_power(a.v); }
 POLHODE_INLINE One madd(One a, One b, One c) { return math::madd(a.v, b.v, c.v); }
 #ifdef __FMA__
 POLHODE_INLINE One fma(One a, One b, One c) { return __builtin_fma(a.v, b.v, c.v); }
