@@ -1,4 +1,5 @@
 #include <pybind11/operators.h>
+#include <pybind11/typing.h>
 
 #include "convert.hpp"
 #include "polhode/core/error.hpp"
@@ -21,7 +22,7 @@ Array result_for(const Array& t, py::ssize_t width) {
   return Array(shape);
 }
 
-py::tuple at(const FreeMotion& motion, py::handle t) {
+py::typing::Tuple<Array, Array> at(const FreeMotion& motion, py::handle t) {
   if (PyFloat_CheckExact(t.ptr())) {
     const State state = motion.at(PyFloat_AS_DOUBLE(t.ptr()));
     return py::make_tuple(from_vector3(state.omega), from_quat(state.attitude));

@@ -1,5 +1,6 @@
 #include <pybind11/operators.h>
 #include <pybind11/stl.h>
+#include <pybind11/typing.h>
 
 #include <optional>
 
@@ -313,7 +314,7 @@ void bind_shapes(py::module_& m) {
       py::arg("name"), py::arg("values"), "The body from all its parameters, in the record's order.");
 }
 
-py::tuple principal_axes(py::handle value) {
+py::typing::Tuple<Array, Array, py::int_> principal_axes(py::handle value) {
   const Array matrices = to_array_with_tail(value, "matrices", {3, 3});
   std::vector<py::ssize_t> shape(matrices.shape(), matrices.shape() + matrices.ndim());
   Array axes(shape);

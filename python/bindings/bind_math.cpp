@@ -1,5 +1,7 @@
 #include <algorithm>
 
+#include <pybind11/typing.h>
+
 #include "convert.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/math/elliptic.hpp"
@@ -24,7 +26,7 @@ void for_each(const double* m, const double* m1, py::ssize_t n, Use use) {
   }
 }
 
-py::tuple jacobi(const Array& u, const Array& m, const Array& m1) {
+py::typing::Tuple<Array, Array, Array> jacobi(const Array& u, const Array& m, const Array& m1) {
   require_equal_sizes(u, m, "m");
   require_equal_sizes(u, m1, "m1");
   const py::ssize_t n = u.size();

@@ -146,7 +146,7 @@ void bind_custom_torque(py::module_& m) {
   type.def(py::init(&make_custom), py::arg("function"), py::kw_only(), py::arg("uses_time") = true,
            py::arg("uses_attitude") = true, py::arg("uses_rates") = true, py::arg("potential") = py::none(),
            py::arg("data") = py::none());
-  type.def_property_readonly("function", [](const Custom& torque) { return get_state(torque)[0]; });
+  type.def_property_readonly("function", [](const Custom& torque) -> py::object { return get_state(torque)[0]; });
   type.def_property_readonly("traits", [](const Custom& torque) {
     const TorqueTraits traits = torque.traits();
     py::dict dict;

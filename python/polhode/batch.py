@@ -110,6 +110,7 @@ def _evaluate(
     n_bodies, n_times = int(np.prod(body_shape)), int(np.prod(time_shape))
     own_times = any(size != 1 for k, size in enumerate((1,) * (len(shape) - t.ndim) + t.shape) if k in bodies)
     spread_t = np.broadcast_to(t, shape).transpose(order)
+    flat_t: Array
     if own_times or n_times == 0 or n_bodies == 0:
         flat_t = np.ascontiguousarray(spread_t).reshape(n_bodies, n_times)
     else:
@@ -204,7 +205,7 @@ def free_motion(
         moments = _numbers(inertia, "inertia", 3)
 
     def kernel(*arguments: Any) -> int:
-        return _core._free_motion(*arguments, threads or 0)
+        return _core._free_motion(*(*arguments, threads or 0))
 
     return _evaluate([(moments, 1), (speeds, 1), (attitudes, 1)], times, out, want, kernel)
 
@@ -226,7 +227,7 @@ def _turned(
 
     names = _wanted(want)
     found = free_motion(inertia.moments, omega @ R_BP, times(attitude, q_BP), t, want=names, threads=threads)
-    back = {"omega": lambda w: w @ R_BP.T, "attitude": lambda q: times(q, q_BP * [-1, -1, -1, 1])}
+    back: dict[str, Callable[[Array], Array]] = {"omega": lambda w: w @ R_BP.T, "attitude": lambda q: times(q, q_BP * [-1, -1, -1, 1])}
     answer = [back[name](values) for name, values in zip(names, found, strict=True)]
     targets = _targets(out, names, answer[0].shape[:-1])
     for k, name in enumerate(names):

@@ -91,12 +91,14 @@ class Motion:
     def energy(self) -> Floats:
         """Kinetic plus potential energy at the samples, shape (n,) [J]."""
         self._need("omega", *(["attitude"] if any(t.traits["has_potential"] for t in self.scene.torques) else []))
+        assert self.omega is not None
         return _core.energy(self.scene, self.t, self.omega, self.attitude)
 
     @property
     def angular_momentum(self) -> Floats:
         """Angular momentum in space axes at the samples, shape (n, 3) [kg m^2/s]."""
         self._need("omega", "attitude")
+        assert self.omega is not None and self.attitude is not None
         return _core.angular_momentum(self.scene, self.omega, self.attitude)
 
     @property

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from . import _core
-from ._core.torques import Constant, Custom, Damping, Gravity, GravityGradient
+from ._core.torques import *  # noqa: F403  the list is the compiled one
 
-__all__ = ["Constant", "Custom", "Damping", "Gravity", "GravityGradient", "records"]
+__all__ = [record["name"] for record in _core.torque_records()] + ["records"]
 
 for _name in __all__[:-1]:
     globals()[_name].__module__ = "polhode.torques"

@@ -18,6 +18,7 @@ def examine(source: str) -> dict[str, Any]:
     if body.shape is not None:
         properties = body_properties(body)
         finding |= {"shape": body.shape, "mass": properties.mass, "com": list(properties.com)}
+    tensor: InertiaTensor | None
     try:
         tensor = body_inertia(body)
     except InvalidInput as error:

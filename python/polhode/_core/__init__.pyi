@@ -1,0 +1,596 @@
+"""
+The compiled core of polhode. Use the names of the package `polhode`, not these.
+"""
+from __future__ import annotations
+import collections.abc
+import numpy
+import numpy.typing
+import polhode
+import typing
+from . import attitude
+from . import torques
+class InvalidInput(ValueError):
+    pass
+class IntegrationFailure(RuntimeError):
+    pass
+class PrincipalAxes:
+    """
+    Principal moments and axes, and which directions are arbitrary.
+
+    Made by :meth:`InertiaTensor.principal`.
+    """
+    def __eq__(self: PrincipalAxes, arg0: object) -> bool:
+        ...
+    def __getstate__(self: PrincipalAxes) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], int]:
+        ...
+    def __hash__(self: PrincipalAxes) -> int:
+        ...
+    def __repr__(self: PrincipalAxes) -> str:
+        ...
+    def __setstate__(self: PrincipalAxes, arg0: tuple[typing.Any, ...]) -> None:
+        ...
+    @property
+    def arbitrary(self) -> str:
+        """
+        'none', 'plane' (every direction across `normal`) or 'sphere' (every direction).
+        """
+    @property
+    def axes(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3, 3) R_BP: the columns are the principal axes in the given axes, right-handed.
+        """
+    @property
+    def moments(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3,) principal moments, ascending [kg m^2].
+        """
+    @property
+    def normal(self) -> numpy.typing.NDArray[numpy.float64] | None:
+        """
+        (3,) the axis across the arbitrary plane, in the given axes; None when there is no such plane.
+        """
+    @property
+    def symmetry(self) -> str:
+        """
+        'spherical', 'oblate' (the largest moment apart), 'prolate' (the smallest) or 'triaxial'.
+        """
+class InertiaTensor:
+    """
+    Inertia tensor of a body about a stated point, in given axes.
+
+    The angular momentum is L = matrix @ omega, so the products of inertia stand in the matrix with their minus sign,
+    I_xy = -sum of m x y. A tensor that no body can have is refused, by relative thresholds. A rod's zero axial moment and a
+    point's zero tensor are valid. Tensors never change, compare and hash by value; arrays read from one are copies.
+
+    Parameters
+    ----------
+    matrix : array_like, shape (3, 3)
+        In axes B [kg m^2]. Entries across the diagonal may differ by 1e-12 of the largest one; their mean is taken.
+    physical : bool
+        False gives up the triangle inequality (no moment above the sum of the two others), for published cases that break
+        it. Symmetry and moments that are not negative are asked for all the same.
+
+    Raises
+    ------
+    InvalidInput
+        Wrong shape, not finite, not symmetric, a negative moment, or a moment above the sum of the two others; with the
+        axis, the deficit in per cent and the likely cause.
+    """
+    @staticmethod
+    def from_moments(moments: typing.Any, *, physical: bool = True) -> InertiaTensor:
+        """
+        The tensor with these moments about the given axes, in their order: unsorted is fine.
+
+        Parameters
+        ----------
+        moments : array_like, shape (3,)
+            About x, y, z [kg m^2].
+        physical : bool
+            As for the class.
+        """
+    def __eq__(self: InertiaTensor, arg0: object) -> bool:
+        ...
+    def __getstate__(self: InertiaTensor) -> tuple[numpy.typing.NDArray[numpy.float64], bool]:
+        ...
+    def __hash__(self: InertiaTensor) -> int:
+        ...
+    def __init__(self: InertiaTensor, matrix: typing.Any, *, physical: bool = True) -> None:
+        ...
+    def __repr__(self: InertiaTensor) -> str:
+        ...
+    def __setstate__(self: InertiaTensor, arg0: tuple[typing.Any, ...]) -> None:
+        ...
+    def about_axis(self: InertiaTensor, direction: typing.Any) -> float:
+        """
+        Moment of inertia about the line through the point of reference along a direction [kg m^2].
+
+        Parameters
+        ----------
+        direction : array_like, shape (3,)
+            In the given axes, of any length but zero.
+        """
+    def principal(self: InertiaTensor, gap: typing.Any = None) -> PrincipalAxes:
+        """
+        Moments, axes, symmetry and which directions are arbitrary, in one object.
+
+        Parameters
+        ----------
+        gap : float, optional
+            Moments closer than this part of the largest count as equal. By default 16 units of rounding, 3.6e-15; data with six
+            digits need 1e-6.
+
+        Returns
+        -------
+        PrincipalAxes
+        """
+    def rotated(self: InertiaTensor, rotation: typing.Any) -> InertiaTensor:
+        """
+        The tensor in axes A, R_AB @ matrix @ R_AB.T.
+
+        Parameters
+        ----------
+        rotation : Rotation or array_like, shape (4,)
+            Takes components in the given axes B to components in A; a quaternion is scalar last.
+        """
+    @property
+    def axes(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3, 3) R_BP: the columns are the principal axes in the given axes, right-handed, in the moments' order; the
+        signs as :func:`polhode.inertia.principal_axes` tells.
+        """
+    @property
+    def matrix(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3, 3) the tensor in the given axes, exactly symmetric [kg m^2].
+        """
+    @property
+    def moments(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3,) principal moments, ascending [kg m^2].
+        """
+    @property
+    def physical(self) -> bool:
+        """
+        The triangle inequality was asked for.
+        """
+    @property
+    def symmetry(self) -> str:
+        """
+        'spherical', 'oblate' (the largest moment apart), 'prolate' (the smallest) or 'triaxial'.
+        """
+class MassProperties:
+    """
+    Mass, centre of mass and inertia of a body.
+
+    Parameters
+    ----------
+    mass : float
+        Positive [kg].
+    com : array_like, shape (3,)
+        Centre of mass, from the origin of the body's axes B [m].
+    inertia : InertiaTensor or array_like, shape (3, 3)
+        About the centre of mass, in axes B [kg m^2].
+
+    Raises
+    ------
+    InvalidInput
+        A mass that is not positive, anything not finite, and what InertiaTensor refuses.
+    """
+    @staticmethod
+    def from_points(masses: typing.Any, positions: typing.Any) -> MassProperties:
+        """
+        A rigid set of point masses.
+
+        Parameters
+        ----------
+        masses : array_like, shape (n,)
+            All positive [kg].
+        positions : array_like, shape (n, 3)
+            In the body's axes [m].
+        """
+    def __add__(self: MassProperties, arg0: MassProperties) -> MassProperties:
+        """
+        Both bodies as one, given in the same axes from the same origin.
+        """
+    def __eq__(self: MassProperties, arg0: object) -> bool:
+        ...
+    def __getstate__(self: MassProperties) -> tuple[float, numpy.typing.NDArray[numpy.float64], InertiaTensor]:
+        ...
+    def __hash__(self: MassProperties) -> int:
+        ...
+    def __init__(self: MassProperties, mass: typing.Any, com: typing.Any, inertia: typing.Any) -> None:
+        ...
+    def __repr__(self: MassProperties) -> str:
+        ...
+    def __setstate__(self: MassProperties, arg0: tuple[typing.Any, ...]) -> None:
+        ...
+    def __sub__(self: MassProperties, arg0: MassProperties) -> MassProperties:
+        """
+        The first body with the second taken out of it; refused when no body is left.
+        """
+    def about(self: MassProperties, point: typing.Any) -> InertiaTensor:
+        """
+        InertiaTensor about another point: the parallel axes theorem.
+
+        Parameters
+        ----------
+        point : array_like, shape (3,)
+            From the origin, in the body's axes [m].
+        """
+    def moved(self: MassProperties, rotation: typing.Any = (0, 0, 0, 1), translation: typing.Any = (0, 0, 0)) -> MassProperties:
+        """
+        The same body placed elsewhere: its point p goes to R_AB p + translation.
+
+        Parameters
+        ----------
+        rotation : Rotation or array_like, shape (4,)
+            Takes components in the body's axes B to components in A; a quaternion is scalar last.
+        translation : array_like, shape (3,)
+            In axes A [m].
+        """
+    @property
+    def com(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3,) centre of mass, from the origin, in the body's axes [m].
+        """
+    @property
+    def inertia(self) -> InertiaTensor:
+        """
+        InertiaTensor about the centre of mass, in the body's axes.
+        """
+    @property
+    def mass(self) -> float:
+        """
+        Mass [kg].
+        """
+class FreeMotion:
+    """
+    Torque-free motion of any rigid body, in closed form at any time.
+
+    One class for the sphere, symmetric and triaxial bodies, steady rotation, rest, needles and the separatrix, exactly and
+    nearly. The error against the exact motion of the same float64 input is a few units of rounding at every time.
+
+    Parameters
+    ----------
+    inertia : InertiaTensor, or array_like of shape (3,)
+        About the centre of mass (or a fixed point), in body axes [kg m^2]; three numbers are principal moments in the given
+        axes, in any order.
+    omega : array_like, shape (3,)
+        Angular velocity at t = 0, in body axes [rad/s].
+    attitude : array_like of shape (4,), or a Rotation
+        Body to space at t = 0, (x, y, z, w).
+
+    Raises
+    ------
+    InvalidInput
+        Not finite, a body no mass makes, one without a moment about some axis, or an attitude that is not unit.
+
+    Notes
+    -----
+    Jacobi (1850), "Sur la rotation d'un corps", J. reine angew. Math. 39, in the Cayley-Klein form; see docs/exact.md.
+    """
+    def __eq__(self: FreeMotion, arg0: object) -> bool:
+        ...
+    def __getstate__(self: FreeMotion) -> tuple[InertiaTensor, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        ...
+    def __hash__(self: FreeMotion) -> int:
+        ...
+    def __init__(self: FreeMotion, inertia: typing.Any, omega: typing.Any, attitude: typing.Any = (0, 0, 0, 1)) -> None:
+        ...
+    def __repr__(self: FreeMotion) -> str:
+        ...
+    def __setstate__(self: FreeMotion, arg0: tuple[typing.Any, ...]) -> None:
+        ...
+    def at(self: FreeMotion, t: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        """
+        Angular velocity and attitude at the given times.
+
+        Parameters
+        ----------
+        t : array_like, any shape
+            Times [s], negative ones too, up to abs(omega t) = 1e25 rad.
+
+        Returns
+        -------
+        omega : ndarray, shape (..., 3)
+            In body axes [rad/s].
+        attitude : ndarray, shape (..., 4)
+            Body to space, unit, (x, y, z, w).
+        """
+    def euler_angles(self: FreeMotion, t: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Angles about the angular momentum.
+
+        Parameters
+        ----------
+        t : array_like, any shape
+            Times [s].
+
+        Returns
+        -------
+        ndarray, shape (..., 3)
+            (phi, theta, psi) [rad], intrinsic z-x-z of the body axes in a space frame whose z axis is the angular momentum
+            (space z turned there the shortest way): precession, nutation and spin. phi and psi in [-pi, pi].
+        """
+    def flip_times(self: FreeMotion, begin: typing.Any, end: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        When the racket flips.
+
+        Parameters
+        ----------
+        begin, end : float
+            The span [s], both ends included.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            Ascending times at which omega's component along the intermediate axis passes through zero. Empty unless the three
+            moments differ and the motion is not steady.
+        """
+    def herpolhode(self: FreeMotion, t: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Poinsot's point of contact in space axes.
+
+        Parameters
+        ----------
+        t : array_like, any shape
+            Times [s].
+
+        Returns
+        -------
+        ndarray, shape (..., 3)
+            The polhode's point turned by the attitude; it stays in the plane L . v = sqrt(2 T) [kg^-1/2 m^-1].
+        """
+    def polhode(self: FreeMotion, t: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Poinsot's point of contact in body axes.
+
+        Parameters
+        ----------
+        t : array_like, any shape
+            Times [s].
+
+        Returns
+        -------
+        ndarray, shape (..., 3)
+            omega / sqrt(2 T), on the inertia ellipsoid [kg^-1/2 m^-1].
+        """
+    @property
+    def angular_momentum(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3,) in space axes, constant [kg m^2/s].
+        """
+    @property
+    def attitude(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (4,) attitude at t = 0.
+        """
+    @property
+    def energy(self) -> float:
+        """
+        Kinetic energy [J].
+        """
+    @property
+    def inertia(self) -> InertiaTensor:
+        """
+        The InertiaTensor.
+        """
+    @property
+    def kind(self) -> str:
+        """
+        'rest', 'spherical', 'steady', 'oblate', 'prolate', 'about_least', 'about_greatest' (the
+        principal axis that omega encircles) or 'separatrix'.
+        """
+    @property
+    def omega(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3,) omega at t = 0, in body axes [rad/s].
+        """
+    @property
+    def period(self) -> float:
+        """
+        Period of omega [s]: infinite on the separatrix, 0 where omega is constant.
+        """
+    @property
+    def precession_rate(self) -> float:
+        """
+        Mean rate of precession about the angular momentum [rad/s].
+        """
+class HeavyTop:
+    """
+    Lagrange's top: a symmetric body held at a point of its axis, under gravity.
+
+    In closed form at any time: looping, cuspidal and monotone precession, both steady precessions, sleeping and hanging tops
+    on both sides of stability, planar and spherical pendulums, next to and on the homoclinic motion. The error against the
+    exact motion of the same float64 input is a few units of rounding at every time.
+
+    Parameters
+    ----------
+    inertia : array_like of shape (3,), InertiaTensor, or array_like of shape (3, 3)
+        About the pivot, in body axes, two moments equal [kg m^2]; three numbers are moments along the body axes. The
+        symmetry axis is body z for (A, A, C); else the axis of the third moment, its largest component positive.
+    weight_arm : float
+        Mass times gravity times the distance of the centre of mass from the pivot, signed along the symmetry axis [N m].
+        Gravity points along -z of space.
+    omega : array_like, shape (3,)
+        Angular velocity at t = 0, in body axes [rad/s].
+    attitude : array_like of shape (4,), or a Rotation
+        Body to space at t = 0, (x, y, z, w).
+
+    Raises
+    ------
+    InvalidInput
+        Not finite, a body no mass makes, no two moments equal, an attitude that is not unit, or rates beyond float64.
+
+    Notes
+    -----
+    F. Klein and A. Sommerfeld, "Ueber die Theorie des Kreisels" (1897-1910); see docs/heavy_top.md.
+    """
+    def __eq__(self: HeavyTop, arg0: object) -> bool:
+        ...
+    def __getstate__(self: HeavyTop) -> tuple[InertiaTensor, float, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        ...
+    def __hash__(self: HeavyTop) -> int:
+        ...
+    def __init__(self: HeavyTop, inertia: typing.Any, weight_arm: typing.Any, omega: typing.Any, attitude: typing.Any = (0, 0, 0, 1)) -> None:
+        ...
+    def __repr__(self: HeavyTop) -> str:
+        ...
+    def __setstate__(self: HeavyTop, arg0: tuple[typing.Any, ...]) -> None:
+        ...
+    def at(self: HeavyTop, t: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        """
+        Angular velocity and attitude at the given times.
+
+        Parameters
+        ----------
+        t : array_like, any shape
+            Times [s], negative ones too, up to abs(omega t) = 1e25 rad.
+
+        Returns
+        -------
+        omega : ndarray, shape (..., 3)
+            In body axes [rad/s].
+        attitude : ndarray, shape (..., 4)
+            Body to space, unit, (x, y, z, w).
+
+        Raises
+        ------
+        InvalidInput
+            A time that is not finite, or too long for its phase to have digits.
+        """
+    @property
+    def attitude(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (4,) attitude at t = 0.
+        """
+    @property
+    def axis(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3,) the symmetry axis in body axes, unit.
+        """
+    @property
+    def energy(self) -> float:
+        """
+        Kinetic energy and weight_arm cos(tilt) [J].
+        """
+    @property
+    def inertia(self) -> InertiaTensor:
+        """
+        The InertiaTensor about the pivot.
+        """
+    @property
+    def kind(self) -> str:
+        """
+        'free' (no weight), 'sleeping', 'hanging', 'steady_precession', 'planar_pendulum',
+        'spherical_pendulum', 'homoclinic', 'looping', 'cuspidal' or 'monotone'.
+        """
+    @property
+    def nutation_period(self) -> float:
+        """
+        Period of the tilt [s]: infinite for 'homoclinic', 0 where the tilt is constant.
+        """
+    @property
+    def omega(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3,) omega at t = 0, in body axes [rad/s].
+        """
+    @property
+    def p_phi(self) -> float:
+        """
+        Angular momentum about space z [kg m^2/s].
+        """
+    @property
+    def p_psi(self) -> float:
+        """
+        Angular momentum about the symmetry axis [kg m^2/s].
+        """
+    @property
+    def precession_rate(self) -> float:
+        """
+        Mean rate at which the axis turns round space z, over a nutation [rad/s]; NaN where there
+        is none to speak of (the axis stays vertical, or 'homoclinic').
+        """
+    @property
+    def tilt_bounds(self) -> tuple[float, float]:
+        """
+        (least, greatest) angle between the symmetry axis and space z [rad].
+        """
+    @property
+    def weight_arm(self) -> float:
+        """
+        Signed along the symmetry axis [N m].
+        """
+class Scene:
+    def __init__(self, inertia: typing.Any, omega: typing.Any, attitude: typing.Any, torques: collections.abc.Iterable[typing.Any], times: typing.Any, want: typing.Any, t0: typing.Any, name: typing.Any) -> None:
+        ...
+    @property
+    def attitude(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def inertia(self) -> InertiaTensor:
+        ...
+    @property
+    def name(self) -> str:
+        ...
+    @property
+    def omega(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def t0(self) -> float:
+        ...
+    @property
+    def times(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def torques(self) -> tuple[typing.Any, ...]:
+        ...
+    @property
+    def want(self) -> tuple[typing.Any, ...]:
+        ...
+class DenseMotion:
+    def __call__(self, arg0: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        ...
+def _complete_K(arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+    ...
+def _free_motion(arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg3: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg4: typing.Any, arg5: typing.Any, arg6: typing.SupportsInt | typing.SupportsIndex) -> int:
+    ...
+def _jacobi(arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+    ...
+def _nome(arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+    ...
+def angular_momentum(arg0: Scene, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+    ...
+def build_info() -> dict[str, str]:
+    """
+    How the installed binary was built.
+    """
+def drift(arg0: Scene, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Any, arg3: typing.Any) -> dict[str, float]:
+    ...
+def energy(arg0: Scene, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg3: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
+    ...
+def generalised_forces(arg0: typing.Any, arg1: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
+    ...
+def make_shape(name: str, values: collections.abc.Sequence[typing.Any]) -> MassProperties:
+    """
+    The body from all its parameters, in the record's order.
+    """
+def method_records() -> list[typing.Any]:
+    """
+    The list of methods, a dict each.
+    """
+def principal_axes(matrices: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], int]:
+    """
+    (moments, axes, number of matrices that are not finite); see polhode.inertia.principal_axes.
+    """
+def shape_records() -> list[typing.Any]:
+    """
+    (name, doc, ((parameter, size, doc), ...)) of every shape.
+    """
+def solve(scene: Scene, accuracy: typing.Any, method: typing.Any, rtol: typing.Any, atol: typing.Any, step: typing.Any, max_steps: typing.SupportsInt | typing.SupportsIndex, dense: bool, formulation: str, events: list[typing.Any], progress: typing.Any) -> dict[str, typing.Any]:
+    ...
+def torque_records() -> list[typing.Any]:
+    """
+    The list of torques: name, scene-file key, doc, source, parameters.
+    """
+__version__: str

@@ -1,0 +1,227 @@
+"""
+The classes of polhode.torques.
+"""
+from __future__ import annotations
+import numpy
+import numpy.typing
+import typing
+class Constant:
+    """
+    Constant(torque, frame="body")
+
+    A torque with constant components, in body axes (a thruster) or in space axes.
+
+    Parameters
+    ----------
+    torque : array_like, shape (3,)
+        its components in the frame named [N m]
+    frame : str
+        the axes in which the components are constant: body|space
+
+    Raises
+    ------
+    InvalidInput
+        For a wrong shape, or numbers that are not finite.
+
+    References
+    ----------
+    Goldstein, Poole, Safko 2002, Classical Mechanics, sec. 5.5
+    """
+    def __eq__(self, arg0: typing.Any) -> bool:
+        ...
+    def __getstate__(self) -> tuple[typing.Any, ...]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, torque: numpy.typing.ArrayLike, frame: str = 'body') -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
+        ...
+    @property
+    def frame(self) -> typing.Any:
+        ...
+    @property
+    def torque(self) -> typing.Any:
+        ...
+    @property
+    def traits(self) -> dict[str, typing.Any]:
+        """
+        dict: uses_time, uses_attitude, uses_rates, has_potential.
+        """
+class Gravity:
+    """
+    Gravity(weight, arm)
+
+    Uniform gravity on a body held at a pivot: tau_B = arm x (-weight R_WB^T e_z).
+
+    Parameters
+    ----------
+    weight : float
+        m g; gravity points along -z of space [N]
+    arm : array_like, shape (3,)
+        from the pivot to the centre of mass, in body axes [m]
+
+    Raises
+    ------
+    InvalidInput
+        For a wrong shape, or numbers that are not finite.
+
+    References
+    ----------
+    Goldstein, Poole, Safko 2002, Classical Mechanics, sec. 5.7
+    """
+    def __eq__(self, arg0: typing.Any) -> bool:
+        ...
+    def __getstate__(self) -> tuple[typing.Any, ...]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, weight: float, arm: numpy.typing.ArrayLike) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
+        ...
+    @property
+    def arm(self) -> typing.Any:
+        ...
+    @property
+    def traits(self) -> dict[str, typing.Any]:
+        """
+        dict: uses_time, uses_attitude, uses_rates, has_potential.
+        """
+    @property
+    def weight(self) -> typing.Any:
+        ...
+class GravityGradient:
+    """
+    GravityGradient(mean_motion, phase=0)
+
+    Gravity gradient on a circular orbit: tau_B = 3 n^2 u x (I u), u = R_WB^T (cos a, sin a, 0), a = n t + phase.
+
+    Parameters
+    ----------
+    mean_motion : float
+        n, the rate of the circular orbit, which lies in the plane z = 0 of space [rad/s]
+    phase : float
+        the orbit angle from space x at t = 0 [rad]
+
+    Raises
+    ------
+    InvalidInput
+        For a wrong shape, or numbers that are not finite.
+
+    References
+    ----------
+    Hughes 1986, Spacecraft Attitude Dynamics, sec. 8.1
+    """
+    def __eq__(self, arg0: typing.Any) -> bool:
+        ...
+    def __getstate__(self) -> tuple[typing.Any, ...]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, mean_motion: float, phase: float = 0.0) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
+        ...
+    @property
+    def mean_motion(self) -> typing.Any:
+        ...
+    @property
+    def phase(self) -> typing.Any:
+        ...
+    @property
+    def traits(self) -> dict[str, typing.Any]:
+        """
+        dict: uses_time, uses_attitude, uses_rates, has_potential.
+        """
+class Damping:
+    """
+    Damping(matrix)
+
+    Linear damping: tau_B = -C w_B.
+
+    Parameters
+    ----------
+    matrix : array_like, shape (3, 3) or (3,)
+        C in body axes; three numbers stand for a diagonal matrix [N m s]
+
+    Raises
+    ------
+    InvalidInput
+        For a wrong shape, or numbers that are not finite.
+
+    References
+    ----------
+    Hughes 1986, Spacecraft Attitude Dynamics, sec. 5.2
+    """
+    def __eq__(self, arg0: typing.Any) -> bool:
+        ...
+    def __getstate__(self) -> tuple[typing.Any, ...]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, matrix: numpy.typing.ArrayLike) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
+        ...
+    @property
+    def matrix(self) -> typing.Any:
+        ...
+    @property
+    def traits(self) -> dict[str, typing.Any]:
+        """
+        dict: uses_time, uses_attitude, uses_rates, has_potential.
+        """
+class Custom:
+    """
+    Custom(function, *, uses_time=True, uses_attitude=True, uses_rates=True, potential=None, data=None)
+
+    A torque of your own.
+
+    Parameters
+    ----------
+    function : callable or compiled function pointer
+        A Python callable ``function(t, omega, attitude)`` that returns the torque in body axes, shape (3,) [N m]; omega is
+        in body axes, shape (3,) [rad/s], attitude is the unit quaternion (x, y, z, w). Or a function with the C signature
+        ``void (double t, const double *omega, const double *attitude, double *torque, void *data)`` as a numba ``cfunc``,
+        a ctypes function or a capsule: it is called with no Python in the loop.
+    uses_time, uses_attitude, uses_rates : bool
+        What the function looks at. A false claim makes answers wrong: claim only what is sure.
+    potential : callable, optional
+        ``potential(t, attitude)`` [J], in the same form as the function
+        (``double (double t, const double *attitude, void *data)``), when the torque is conservative: energy is then watched.
+    data : int, optional
+        The address handed to a compiled function.
+
+    Raises
+    ------
+    InvalidInput
+        For what cannot be called, or an answer that has another shape than (3,) or is not finite. What the function raises
+        comes through as it is.
+    """
+    def __eq__(self, arg0: typing.Any) -> bool:
+        ...
+    def __getstate__(self) -> tuple[typing.Any, ...]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, function: typing.Any, *, uses_time: bool = True, uses_attitude: bool = True, uses_rates: bool = True, potential: typing.Any = None, data: typing.Any = None) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
+        ...
+    @property
+    def function(self) -> typing.Any:
+        ...
+    @property
+    def traits(self) -> dict[str, typing.Any]:
+        ...
