@@ -47,11 +47,12 @@ py::typing::Tuple<Array, Array> at(const HeavyTop& top, py::handle t) {
 }  // namespace
 
 void bind_heavy_top(py::module_& m) {
-  py::class_<HeavyTop> cls(m, "HeavyTop", R"(Lagrange's top: a symmetric body held at a point of its axis, under gravity.
+  py::class_<HeavyTop> cls(m, "HeavyTop",
+                           R"(Lagrange's top: a symmetric body held at a point of its axis, under gravity.
 
-In closed form at any time: looping, cuspidal and monotone precession, both steady precessions, sleeping and hanging tops
-on both sides of stability, planar and spherical pendulums, next to and on the homoclinic motion. The error against the
-exact motion of the same float64 input is a few units of rounding at every time.
+In closed form at any time: looping, cuspidal and monotone precession, both steady precessions, sleeping and hanging
+tops on both sides of stability, planar and spherical pendulums, next to and on the homoclinic motion. The error against
+the exact motion of the same float64 input is a few units of rounding at every time.
 
 Parameters
 ----------
@@ -104,8 +105,8 @@ InvalidInput
                              [](const HeavyTop& top) { return py::make_tuple(top.tilt_min(), top.tilt_max()); },
                              "(least, greatest) angle between the symmetry axis and space z [rad].")
       .def_property_readonly("precession_rate", &HeavyTop::precession_rate,
-                             "Mean rate at which the axis turns round space z, over a nutation [rad/s]; NaN where there\n"
-                             "is none to speak of (the axis stays vertical, or 'homoclinic').")
+                             "Mean rate at which the axis turns round space z, over a nutation [rad/s]; NaN where\n"
+                             "there is none to speak of (the axis stays vertical, or 'homoclinic').")
       .def_property_readonly("energy", &HeavyTop::energy, "Kinetic energy and weight_arm cos(tilt) [J].")
       .def_property_readonly("p_phi", &HeavyTop::p_phi, "Angular momentum about space z [kg m^2/s].")
       .def_property_readonly("p_psi", &HeavyTop::p_psi, "Angular momentum about the symmetry axis [kg m^2/s].")

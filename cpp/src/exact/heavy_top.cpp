@@ -103,8 +103,10 @@ double from_scaled(double x, int e, const char* what) {
 }  // namespace
 
 const char* to_text(TopKind kind) {
-  constexpr const char* names[] = {"free",       "sleeping", "hanging",  "steady_precession", "planar_pendulum", "spherical_pendulum",
-                                   "homoclinic", "looping",  "cuspidal", "monotone"};
+  constexpr const char* names[] = {"free",              "sleeping",        "hanging",
+                                   "steady_precession", "planar_pendulum", "spherical_pendulum",
+                                   "homoclinic",        "looping",         "cuspidal",
+                                   "monotone"};
   return names[static_cast<int>(kind)];
 }
 
@@ -141,25 +143,34 @@ void HeavyTop::set_up() {
   constants_.rate_scale = std::ldexp(1.0, e);
   largest_time_ = std::min(std::ldexp(1e25, -e), std::numeric_limits<double>::max());
 
-  // A mass centre below the middle of the axis: turn the body (not the space) by pi about its x axis.
-  const Quat q_TB = to_working_axes(axis_);
-  const bool below = weight_arm_ < 0.0;
-  DDQuat q = widen(q_TB);
-  const DD norm = math::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-  q = {q.x / norm, q.y / norm, q.z / norm, q.w / norm};
-  if (below) q = {-q.w, q.z, -q.y, q.x};  // (-1, 0, 0; 0) q
-  const DDQuat q_SB = q, q_BS{-q.x, -q.y, -q.z, q.w};
-  const DDQuat start = multiply(widen(attitude_), q_BS);
+  // A centre of mass below: turn the body (not the space) by pi about its x axis.
   const Vector3d w = omega_.unaryExpr([&](double c) { return std::ldexp(c, -e); });
-  const DDQuat omega_S = multiply(multiply(q_SB, {w[0], w[1], w[2], 0.0}), q_BS);
-
+  const bool below = weight_arm_ < 0.0;
   exact::HeavyTopStart s{.A = std::ldexp(body.A, -e_A), .C = std::ldexp(body.C, -e_A),
                          .M = std::ldexp(std::ldexp(std::abs(weight_arm_), -e_A), -2 * e),
-                         .w1 = omega_S.x, .w2 = omega_S.y, .w3 = omega_S.z,
-                         .x = start.x, .y = start.y, .z = start.z, .w = start.w};
+                         .w1 = w[0], .w2 = w[1], .w3 = w[2],
+                         .x = attitude_.x, .y = attitude_.y, .z = attitude_.z, .w = attitude_.w};
+  constants_.framed = below || axis_ != Vector3d::UnitZ();
+  if (axis_ != Vector3d::UnitZ()) {
+    DDQuat q = widen(to_working_axes(axis_));
+    const DD norm = math::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+    q = {q.x / norm, q.y / norm, q.z / norm, q.w / norm};
+    const DDQuat back{-q.x, -q.y, -q.z, q.w};
+    const DDQuat start = multiply(widen(attitude_), back);
+    const DDQuat turned = multiply(multiply(q, {w[0], w[1], w[2], 0.0}), back);
+    s.w1 = turned.x, s.w2 = turned.y, s.w3 = turned.z;
+    s.x = start.x, s.y = start.y, s.z = start.z, s.w = start.w;
+    constants_.q_SB = {q.x.hi, q.y.hi, q.z.hi, q.w.hi};
+  }
+  if (below) {
+    s.w2 = -s.w2, s.w3 = -s.w3;
+    const DD x = s.x, y = s.y;
+    s.x = s.w, s.y = s.z, s.z = -y, s.w = -x;
+    const Quat q = constants_.q_SB;
+    constants_.q_SB = {-q.w, q.z, -q.y, q.x};  // (-1, 0, 0; 0) q
+  }
   const exact::HeavyTopMotion motion = exact::set_up_heavy_top(s, constants_);
 
-  constants_.q_SB = {q_SB.x.hi, q_SB.y.hi, q_SB.z.hi, q_SB.w.hi};
   const Matrix3d R_SB = to_matrix(constants_.q_SB);
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) constants_.R_BS[3 * i + j] = R_SB(j, i);
@@ -194,12 +205,18 @@ void HeavyTop::at(const double* t, std::size_t n, double* omega, double* attitud
   }
   const auto store = [=](std::size_t i, const exact::HeavyTopState<double>& s) {
     if (omega) omega[3 * i] = s.w1, omega[3 * i + 1] = s.w2, omega[3 * i + 2] = s.w3;
-    if (attitude) attitude[4 * i] = s.x, attitude[4 * i + 1] = s.y, attitude[4 * i + 2] = s.z, attitude[4 * i + 3] = s.w;
+    if (attitude) {
+      double* q = attitude + 4 * i;
+      q[0] = s.x, q[1] = s.y, q[2] = s.z, q[3] = s.w;
+    }
+  };
+  const auto all = [&]<bool hyper, bool framed>() {
+    for (std::size_t i = 0; i < n; ++i) store(i, exact::evaluate_heavy_top<hyper, framed>(constants_, t[i]));
   };
   if (constants_.hyper) {
-    for (std::size_t i = 0; i < n; ++i) store(i, exact::evaluate_heavy_top<true>(constants_, t[i]));
+    constants_.framed ? all.operator()<true, true>() : all.operator()<true, false>();
   } else {
-    for (std::size_t i = 0; i < n; ++i) store(i, exact::evaluate_heavy_top<false>(constants_, t[i]));
+    constants_.framed ? all.operator()<false, true>() : all.operator()<false, false>();
   }
 }
 

@@ -24,16 +24,22 @@ inline Complex conj(Complex a) { return {a.re, -a.im}; }
 inline Complex times_i(Complex a) { return {-a.im, a.re}; }
 
 
-/// a / |a|, and 1 for 0; also where the squares would under- or overflow.
-inline Complex unit(Complex a) {
-  const double size = std::max(std::abs(a.re.hi), std::abs(a.im.hi));
-  if (size == 0.0) return {DD(1.0), DD(0.0)};
-  const double scale = std::ldexp(1.0, -std::ilogb(size));
-  a = {math::scaled(a.re, scale), math::scaled(a.im, scale)};
-  const DD n = math::sqrt(squared(a.re) + squared(a.im));
-  return {a.re / n, a.im / n};
+/// a times a power of two, so that its larger part is near 1; 0 stays 0.
+inline Complex balanced(Complex a) {
+  const double scale = 1.0 / math::power_of_two_below(std::max(std::abs(a.re.hi), std::abs(a.im.hi)));
+  return {math::scaled(a.re, scale), math::scaled(a.im, scale)};
 }
 
+/// a / |a|, and 1 for 0.
+inline Complex unit(Complex a) {
+  a = balanced(a);
+  const DD n = squared(a.re) + squared(a.im);
+  if (n.hi == 0.0) return {DD(1.0), DD(0.0)};
+  const DD inverse = DD(1.0) / math::sqrt(n);
+  return {a.re * inverse, a.im * inverse};
+}
+
+inline double size2(Complex a) { return a.re.hi * a.re.hi + a.im.hi * a.im.hi; }
 inline DD norm(Complex a) { return math::sqrt(squared(a.re) + squared(a.im)); }
 
 inline Cycles in_cycles(DD angle) {

@@ -20,7 +20,7 @@ DD hypot(DD a, DD b) {
 }
 
 /// The root of c3 x^3 + c2 x^2 + c1 x + c0 next to `start`, which lies outside all of them: Newton's steps are then
-/// monotone. In double until they turn back, then three in double-double.
+/// monotone. In double until they turn back, then two in double-double.
 DD far_root(DD c3, DD c2, DD c1, DD c0, double start) {
   double x = start;
   for (int i = 0; i < 200; ++i) {

@@ -34,7 +34,8 @@ class Enlargement {
   void undo(HeavyTopConstants& c, HeavyTopMotion& motion) const {
     if (factor_ == 1.0) return;
     double* const small[] = {&c.w12_re, &c.w12_im, upright_ ? &c.cb_re : &c.ca_re, upright_ ? &c.cb_im : &c.ca_im,
-                             upright_ ? &motion.sin_low : &motion.cos_low, upright_ ? &motion.sin_high : &motion.cos_high};
+                             upright_ ? &motion.sin_low : &motion.cos_low,
+                             upright_ ? &motion.sin_high : &motion.cos_high};
     for (double* value : small) *value /= factor_;
   }
 

@@ -9,22 +9,31 @@
 #include "heavy_top_enlargement.hpp"
 #include "polhode/math/landen.hpp"
 
-// Names follow docs/heavy_top.md: a = C w3 / A, b = p_phi / A, bt = 2 M / A, u = cos(tilt), u1 <= u <= u2 <= u3.
+// Names follow docs/heavy_top.md: a = C w3 / A, b = p_phi / A, bt (there mu) = 2 M / A, u = cos(tilt),
+// u1 <= u <= u2 <= u3.
 namespace polhode::exact {
 namespace {
 
 using math::sqrt;
 using Chain = math::LandenChain<DD>;
 
-constexpr int terms = 7;  // of the theta sums in the set-up: q^42 for q <= 0.21
+constexpr int most_terms = 7;  // of the theta sums in the set-up: q^42 for q <= 0.21
+
+/// As many as double-double needs for a nome.
+int terms_for(double q) {
+  int n = 1;
+  for (double left = q; left > 1e-34 && n < most_terms; ++n) left *= std::pow(q, 2 * n + 1);
+  return n;
+}
 DD root_of(DD a) { return a.hi > 0.0 ? sqrt(a) : DD(0.0); }
 double sign(DD a) { return a.hi < 0.0 ? -1.0 : 1.0; }
 const double infinity = std::numeric_limits<double>::infinity();
 
 /// Coefficients q^(n(n+1)) rho^(2n+1) (cosh, sinh)((2n+1) zeta) / rho^(2n) of one theta quotient, from the descent.
 struct Series {
-  DD cosh[terms], sinh[terms];
-  Series(const Chain& chain, DD nome, DD P, DD Q, DD R) {
+  DD cosh[most_terms], sinh[most_terms];
+  int terms;
+  Series(const Chain& chain, DD nome, DD P, DD Q, DD R) : terms(terms_for(nome.hi)) {
     const auto end = math::descend_imaginary(chain, P, Q, R);
     const DD sum = end.P + end.H, rho = end.Q / sum;
     const DD c = end.H / sum, s = end.P / sum, c2 = c * c + s * s, s2 = (c + c) * s;
@@ -52,20 +61,31 @@ struct Series {
   }
 };
 
-/// sum of coefficient[n] (+-1)^n F_n, F_0 = 1, F_1 = 2X + first, F_{n+1} = 2X F_n - F_{n-1}, as monomials in X.
-void to_monomials(const DD (&coefficient)[terms], double alternate, double weight_of_n, double first, double sign_all,
-                  double (&p)[5]) {
-  double F[2][5] = {{1, 0, 0, 0, 0}, {first, 2, 0, 0, 0}};
-  std::fill(p, p + 5, 0.0);
-  double factor = sign_all;
-  for (int n = 0; n < 5; ++n) {
-    for (int i = 0; i < 5; ++i) p[i] += factor * (weight_of_n == 0.0 ? 1.0 : 2.0 * n + 1.0) * coefficient[n].hi * F[0][i];
-    double next[5] = {};
-    for (int i = 0; i < 5; ++i) next[i] = (i > 0 ? 2.0 * F[1][i - 1] : 0.0) - F[0][i];
-    std::copy(F[1], F[1] + 5, F[0]);
-    std::copy(next, next + 5, F[1]);
-    factor *= alternate;
+/// sum of (+-1)^n coefficient[n] F_n, as monomials in X = cos 2z, where cos(2n+1)z = cos z V_n(X) and
+/// sin(2n+1)z = sin z W_n(X). Polynomials V_n; W_n has the same with every coefficient of the other parity's sign:
+/// W_n(X) = (-1)^n V_n(-X).
+struct Monomials {
+  double p[5] = {};
+  enum Kind { V, W };
+  Monomials(const DD (&coefficient)[most_terms], double alternate, bool weighted, Kind kind, double factor) {
+    static constexpr double table[5][5] = {
+        {1, 0, 0, 0, 0}, {-1, 2, 0, 0, 0}, {-1, -2, 4, 0, 0}, {1, -4, -4, 8, 0}, {1, 4, -12, -8, 16}};
+    for (int n = 0; n < 5; ++n, factor *= alternate) {
+      const double c = factor * (weighted ? 2.0 * n + 1.0 : 1.0) * coefficient[n].hi;
+      for (int i = 0; i <= n; ++i) p[i] += (kind == W && (n + i) % 2 ? -c : c) * table[n][i];
+    }
   }
+};
+
+/// sum += factor (shift + slope X) a b, as far as the degree goes.
+void add_product(double (&sum)[degree_12 + 1], double factor, double shift, double slope, const Monomials& a,
+                 const Monomials& b) {
+  for (int i = 0; i < 5; ++i)
+    for (int j = 0; j < 5; ++j) {
+      const double c = factor * a.p[i] * b.p[j];
+      sum[i + j] += shift * c;
+      if (i + j < degree_12) sum[i + j + 1] += slope * c;
+    }
 }
 
 /// What both forms need: the roots, the moduli and the phases' rates where the tilt turns.
@@ -84,14 +104,15 @@ struct Common {
 struct AtStart {
   Complex N1, D1, N2, D2;
   DD theta, d_theta;
+  bool by_slope_1, by_slope_2;  // the values are small beside their greatest: next to the vertical, where they pass 0
 };
 
 /// The direction of the constant c in value = c N, slope = c (i k N + speed (D - N theta' / theta)), from whichever
-/// is not small: next to the vertical, where a value passes 0, from the slope.
-Complex direction(Complex value, Complex slope, Complex N, Complex D, DD k, DD speed, const AtStart& f) {
-  if (norm(N).hi > 0.1 * norm(D).hi) return unit(unit(value) * conj(unit(N)));
+/// is not small.
+Complex direction(bool by_slope, Complex value, Complex slope, Complex N, Complex D, DD k, DD speed, const AtStart& f) {
+  if (!by_slope) return unit(balanced(value) * conj(N));
   const Complex slope_N = k * times_i(N) + speed * (D - (f.d_theta / f.theta) * N);
-  return unit(unit(slope) * conj(unit(slope_N)));
+  return unit(balanced(slope) * conj(balanced(slope_N)));
 }
 
 /// The two factors in front, of given size, so that the attitude at t = 0 is the start's.
@@ -100,8 +121,8 @@ void set_factors(HeavyTopConstants& c, const HeavyTopStart& s, DD ca, DD cb, DD 
   const DD half = DD(0.5);
   const Complex alpha_slope = half * (s.w3 * times_i(alpha) - conj(wp) * beta);
   const Complex beta_slope = half * (wp * alpha - s.w3 * times_i(beta));
-  const Complex a = ca * direction(alpha, alpha_slope, f.N1, f.D1, kA, speed, f);
-  const Complex b = cb * direction(beta, beta_slope, f.N2, f.D2, kB, speed, f), ab = conj(a) * b;
+  const Complex a = ca * direction(f.by_slope_1, alpha, alpha_slope, f.N1, f.D1, kA, speed, f);
+  const Complex b = cb * direction(f.by_slope_2, beta, beta_slope, f.N2, f.D2, kB, speed, f), ab = conj(a) * b;
   c.ca_re = a.re.hi, c.ca_im = a.im.hi, c.cb_re = b.re.hi, c.cb_im = b.im.hi;
   c.w12_re = 2.0 * ab.re.hi, c.w12_im = 2.0 * ab.im.hi;
   c.speed = speed.hi, c.turn = (kA + kB).hi;
@@ -117,10 +138,11 @@ void set_up_trig(HeavyTopConstants& c, HeavyTopMotion& motion, const Common& m) 
   const auto z = math::descend_real(chain, m.sn, m.cn, DD(1.0), m.dn);
   const Complex z0 = unit({z.X, z.Y});
   const Series a(chain, nome, m.A_sn, m.A_cn, m.A_dn), b(chain, nome, m.B_sn, m.B_cn, m.B_dn);
-  const DD kA = m.rate_a - DD(m.sA) * nu * a.rate(), kB = m.rate_b - DD(m.sB) * nu * b.rate();
+  const DD kA = m.rate_a - DD(m.sA) * (nu * a.rate()), kB = m.rate_b - DD(m.sB) * (nu * b.rate());
 
   // theta4 at a quarter period and at 0, for the sizes of the factors
   DD high = DD(1.0), low = DD(1.0), q_n2 = nome, q_odd = nome * nome * nome;
+  const int terms = a.terms;
   for (int n = 1; n < terms; ++n) {
     high = high + q_n2 + q_n2;
     low = low + (n % 2 ? -(q_n2 + q_n2) : q_n2 + q_n2);
@@ -132,36 +154,63 @@ void set_up_trig(HeavyTopConstants& c, HeavyTopMotion& motion, const Common& m) 
 
   // the start, by addition of angles: never from a rounded z0
   AtStart f{};
-  Complex odd = z0, even{DD(1.0), DD(0.0)};  // angles (2n+1) z0 and 2n z0
+  Complex odd = z0;  // the angle (2n+1) z0
   const Complex twice = z0 * z0;
-  DD weight = DD(1.0), q_step = nome;        // (-1)^n q^(n^2), twice that from n = 1 on
-  for (int n = 0; n < terms; ++n) {
-    const DD alternate = DD(n % 2 ? -1.0 : 1.0), m1 = DD(2.0 * n + 1.0);
-    const DD ac = alternate * a.cosh[n], as = DD(m.sA) * alternate * a.sinh[n], bs = DD(m.sB) * b.sinh[n];
+  for (int n = 0; n < terms; ++n, odd = odd * twice) {
+    const double alternate = n % 2 ? -1.0 : 1.0;
+    const DD ac = math::scaled(a.cosh[n], alternate), as = math::scaled(a.sinh[n], m.sA * alternate);
+    const DD bc = b.cosh[n], bs = math::scaled(b.sinh[n], m.sB);
     f.N1 = f.N1 + Complex{ac * odd.im, -as * odd.re};
-    f.D1 = f.D1 + m1 * Complex{ac * odd.re, as * odd.im};
-    f.N2 = f.N2 + Complex{b.cosh[n] * odd.re, bs * odd.im};
-    f.D2 = f.D2 + m1 * Complex{-b.cosh[n] * odd.im, bs * odd.re};
-    f.theta = f.theta + weight * even.re;
-    f.d_theta = f.d_theta - DD(2.0 * n) * weight * even.im;
-    weight = -(n == 0 ? weight + weight : weight) * q_step;
-    q_step = q_step * nome * nome;
-    odd = odd * twice, even = even * twice;
+    f.N2 = f.N2 + Complex{bc * odd.re, bs * odd.im};
+  }
+  const auto small = [](Complex N, DD greatest) { return size2(N) < 0.01 * greatest.hi * greatest.hi; };
+  f.by_slope_1 = small(f.N1, a.sum_cosh()), f.by_slope_2 = small(f.N2, b.sum_cosh());
+  if (f.by_slope_1 || f.by_slope_2) {
+    odd = z0;
+    Complex even{DD(1.0), DD(0.0)};
+    DD weight = DD(1.0), q_step = nome;  // (-1)^n q^(n^2), twice that from n = 1 on
+    for (int n = 0; n < terms; ++n, odd = odd * twice, even = even * twice) {
+      const double alternate = n % 2 ? -1.0 : 1.0;
+      const DD ac = math::scaled(a.cosh[n], alternate), as = math::scaled(a.sinh[n], m.sA * alternate);
+      const DD m1 = DD(2.0 * n + 1.0);
+      f.D1 = f.D1 + m1 * Complex{ac * odd.re, as * odd.im};
+      f.D2 = f.D2 + m1 * Complex{-b.cosh[n] * odd.im, math::scaled(b.sinh[n], m.sB) * odd.re};
+      f.theta = f.theta + weight * even.re;
+      f.d_theta = f.d_theta - DD(2.0 * n) * weight * even.im;
+      weight = -(n == 0 ? weight + weight : weight) * q_step;
+      q_step = q_step * nome * nome;
+    }
   }
   set_factors(c, m.start, ca, cb, kA, kB, nu, f);
 
   c.hyper = false;
   c.rate_z = in_cycles(nu), c.rate_a = in_cycles(kA), c.rate_b = in_cycles(kB);
-  c.start_z = in_cycles(math::atan2(z0.im, z0.re)).hi;
-  const double V = -1.0, W = 1.0;  // cos(2n+1)z = cos z V_n(cos 2z), sin(2n+1)z = sin z W_n(cos 2z)
-  to_monomials(a.cosh, -1, 0, W, 1, c.p[0]);
-  to_monomials(a.sinh, -1, 0, V, -m.sA, c.p[1]);
-  to_monomials(a.cosh, -1, 1, V, 1, c.p[2]);
-  to_monomials(a.sinh, -1, 1, W, m.sA, c.p[3]);
-  to_monomials(b.cosh, 1, 0, V, 1, c.p[4]);
-  to_monomials(b.sinh, 1, 0, W, m.sB, c.p[5]);
-  to_monomials(b.cosh, 1, 1, W, -1, c.p[6]);
-  to_monomials(b.sinh, 1, 1, V, m.sB, c.p[7]);
+  // within an eighth of a cycle of a quadrant, so that the rounding is that of a small angle
+  const bool along = std::abs(z0.re.hi) >= std::abs(z0.im.hi);
+  const double quadrant = along ? (z0.re.hi > 0 ? 0.0 : 0.5) : (z0.im.hi > 0 ? 0.25 : -0.25);
+  const double ratio = along ? (z0.im / z0.re).hi : -(z0.re / z0.im).hi;
+  c.start_z = quadrant + std::atan(ratio) * 0.15915494309189535;
+  using M = Monomials;
+  const M N1r(a.cosh, -1, false, M::W, 1), N1i(a.sinh, -1, false, M::V, -m.sA);  // times sin z, cos z
+  const M D1r(a.cosh, -1, true, M::V, 1), D1i(a.sinh, -1, true, M::W, m.sA);     // cos z, sin z
+  const M N2r(b.cosh, 1, false, M::V, 1), N2i(b.sinh, 1, false, M::W, m.sB);     // cos z, sin z
+  const M D2r(b.cosh, 1, true, M::W, -1), D2i(b.sinh, 1, true, M::V, m.sB);      // sin z, cos z
+  const M* const parts[] = {&N1r, &N1i, &N2r, &N2i};
+  for (int i = 0; i < 4; ++i) std::copy(parts[i]->p, parts[i]->p + 5, c.p[i]);
+  // speed (conj(N1) D2 - N2 conj(D1)) + i turn conj(N1) N2, with sin^2 z, cos^2 z = (1 -+ X)/2
+  const double half = 0.5 * c.speed;
+  add_product(c.even, half, 1, -1, N1r, D2r);
+  add_product(c.even, -half, 1, -1, N2i, D1i);
+  add_product(c.even, half, 1, 1, N1i, D2i);
+  add_product(c.even, -half, 1, 1, N2r, D1r);
+  add_product(c.even, -0.5 * c.turn, 1, -1, N1r, N2i);
+  add_product(c.even, 0.5 * c.turn, 1, 1, N1i, N2r);
+  add_product(c.odd, c.speed, 1, 0, N1r, D2i);
+  add_product(c.odd, -c.speed, 1, 0, N1i, D2r);
+  add_product(c.odd, c.speed, 1, 0, N2r, D1i);
+  add_product(c.odd, -c.speed, 1, 0, N2i, D1r);
+  add_product(c.odd, c.turn, 1, 0, N1r, N2r);
+  add_product(c.odd, c.turn, 1, 0, N1i, N2i);
 
   motion.period = (math::pi<DD>() / nu).hi;
   motion.precession = (kA + kB + nu * DD(turns_of_a(m) + turns_of_b(m))).hi;
@@ -210,7 +259,8 @@ void set_up_hyper(HeavyTopConstants& c, HeavyTopMotion& motion, const Common& m)
   const Complex slope1 = Complex{high.d1_re, high.d1_im} * conj(high1);
   const DD kA = m.rate_a - speed * slope1.im / (squared(high1.re) + squared(high1.im));
   const DD kB = m.rate_b - speed * low.d2_im / low.n2_re;
-  const DD ca = sqrt(math::scaled(m.cubic.mu2, 0.5)) * theta(E_high, DD(closed ? 1.0 : 0.0), 1.0, &unused) / norm(high1);
+  const DD theta_high = theta(E_high, DD(closed ? 1.0 : 0.0), 1.0, &unused);
+  const DD ca = sqrt(math::scaled(m.cubic.mu2, 0.5)) * theta_high / norm(high1);
   const DD cb = sqrt(math::scaled(m.cubic.e1, 0.5)) * theta(DD(1.0), nome, 1.0, &unused) / abs(low.n2_re);
 
   const auto end = math::descend_imaginary(chain, m.sn.hi < 0.0 ? -m.sn : m.sn, m.cn, m.dn);
@@ -219,7 +269,8 @@ void set_up_hyper(HeavyTopConstants& c, HeavyTopMotion& motion, const Common& m)
   const DD g0 = nome.hi > 1e-290 ? nome / (E0 * E0) : DD(0.0);
   const auto first = sums(side, E0, g0);
   AtStart f{{first.n1_re, first.n1_im}, {first.d1_re, first.d1_im}, {first.n2_re, first.n2_im},
-            {first.d2_re, first.d2_im}, DD(0.0), DD(0.0)};
+            {first.d2_re, first.d2_im}, DD(0.0), DD(0.0), false, false};
+  f.by_slope_1 = size2(f.N1) < 0.01 * size2(f.D1), f.by_slope_2 = size2(f.N2) < 0.01 * size2(f.D2);
   f.theta = theta(E0, g0, side, &f.d_theta);
   set_factors(c, m.start, ca, cb, kA, kB, speed, f);
 
@@ -257,7 +308,8 @@ void set_up_steady(HeavyTopConstants& c, HeavyTopMotion& motion, const HeavyTopS
   c.hyper = false;
   c.rate_a = in_cycles(kA), c.rate_b = in_cycles(kB);
   c.start_z = 0.25;
-  c.p[0][0] = 1.0, c.p[5][0] = 1.0;  // N1 = 1, N2 = i
+  c.p[0][0] = 1.0, c.p[3][0] = 1.0;  // N1 = 1, N2 = i
+  c.even[0] = -(kA + kB).hi;         // i turn conj(N1) N2
   const Complex a{s.w, s.z}, b{s.y, -s.x}, ab = conj(a) * b;
   c.ca_re = a.re.hi, c.ca_im = a.im.hi, c.cb_re = b.re.hi, c.cb_im = b.im.hi;
   c.w12_re = 2.0 * ab.re.hi, c.w12_im = 2.0 * ab.im.hi;

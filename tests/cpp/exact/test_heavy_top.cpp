@@ -60,7 +60,8 @@ void check_invariants(const Vector3d& moments, double arm, const Vector3d& omega
 
 TEST_CASE("energy and the two momenta stay the start's, in every regime of the top") {
   const Vector3d bodies[] = {{1, 1, 0.5}, {1, 1, 1}, {1, 1, 1.9}, {1, 1, 1e-9}};
-  const Vector3d starts[] = {{0, 0, 5}, {0.1, 0.2, 5}, {1, -2, 3}, {2, 0, 0}, {1e-8, 0, 1}, {0, 1e-4, 3.9}, {0, 0, 0}, {1e-60, 0, 8}};
+  const Vector3d starts[] = {{0, 0, 5},    {0.1, 0.2, 5},  {1, -2, 3}, {2, 0, 0},
+                             {1e-8, 0, 1}, {0, 1e-4, 3.9}, {0, 0, 0},  {1e-60, 0, 8}};
   for (const Vector3d& moments : bodies)
     for (const Vector3d& omega : starts)
       for (const double arm : {1.0, -1.0, 0.0, 1e-12, 30.0})
@@ -105,7 +106,8 @@ TEST_CASE("the two forms of the series agree where one takes over from the other
   for (const double spin : {0.0, 0.4, 1.5, 3.0}) {
     for (const double side : {1.0, -1.0}) {
       const auto make = [&](double w1) {
-        return HeavyTop(Vector3d(1, 1, 1), 12.5 * side, {w1, spin * side, spin * side}, {side * level.x, 0, 0, level.w});
+        const Vector3d omega{w1, spin * side, spin * side};
+        return HeavyTop(Vector3d(1, 1, 1), 12.5 * side, omega, {side * level.x, 0, 0, level.w});
       };
       double low = 1.0, high = std::sqrt(25 - spin * spin);
       CHECK(make(high).constants().hyper);
@@ -125,7 +127,9 @@ TEST_CASE("the two forms of the series agree where one takes over from the other
 }
 
 TEST_CASE("the kind is decided at construction") {
-  const auto kind = [](double arm, Vector3d omega, Quat q) { return HeavyTop(Vector3d(1, 1, 0.5), arm, omega, q).kind(); };
+  const auto kind = [](double arm, Vector3d omega, Quat q) {
+    return HeavyTop(Vector3d(1, 1, 0.5), arm, omega, q).kind();
+  };
   CHECK(kind(0, {1, 2, 3}, tilted) == TopKind::free);
   CHECK(kind(1, {0, 0, 9}, up) == TopKind::sleeping);
   CHECK(kind(1, {0, 0, 1}, up) == TopKind::sleeping);
@@ -153,7 +157,8 @@ TEST_CASE("period, bounds of the tilt and mean precession are those of the motio
   CHECK(std::abs(pendulum.precession_rate()) <= 1e-30);
 
   for (const double arm : {1.0, -1.0, 0.2}) {
-    for (const Vector3d& omega : {Vector3d(0.4, -0.3, 5), Vector3d(0.1, 0.02, 0.3), Vector3d(1, 2, 0), Vector3d(0.2, 0.1, 4.0)}) {
+    for (const Vector3d& omega :
+         {Vector3d(0.4, -0.3, 5), Vector3d(0.1, 0.02, 0.3), Vector3d(1, 2, 0), Vector3d(0.2, 0.1, 4.0)}) {
       const HeavyTop top(Vector3d(1, 1, 0.5), arm, omega, tilted);
       const int steps = 40000;
       double least = 10, most = -10, turned = 0, last = 0;

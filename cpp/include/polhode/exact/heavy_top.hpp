@@ -45,7 +45,8 @@ class HeavyTop {
   void at(const double* t, std::size_t n, double* omega, double* attitude) const;
 
   TopKind kind() const noexcept { return kind_; }
-  double nutation_period() const noexcept { return period_; }  ///< of the tilt [s]; inf for homoclinic, 0 for a constant tilt
+  /// Of the tilt [s] (a planar pendulum's is half its swing); inf for homoclinic, 0 where the tilt is constant.
+  double nutation_period() const noexcept { return period_; }
   double tilt_min() const noexcept { return tilt_min_; }       ///< between body axis and space z [rad]
   double tilt_max() const noexcept { return tilt_max_; }
   /// Mean rate of turn of the axis round space z, over a nutation [rad/s]; NaN where there is none to speak of

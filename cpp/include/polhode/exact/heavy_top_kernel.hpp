@@ -10,13 +10,16 @@
 // sum is which: docs/heavy_top.md. Templates over a lane type V as in polhode/math/number.hpp.
 namespace polhode::exact {
 
+inline constexpr int degree_12 = 8;  ///< of the polynomials of omega: their terms fall as q^(n^2 / 2), q <= 0.21
+
 /// A rate or an angle in cycles, as a double-double.
 struct Cycles {
   double hi = 0.0, lo = 0.0;
 };
 
 /// The constants of one top. Time is in units of 1 / rate_scale, the phases in cycles.
-/// The pair (alpha, beta) = (w + i z, x + i y) of the attitude q_WS = common factor times (c_a e^{i a} N1, c_b e^{i b} N2).
+/// The pair (alpha, beta) = (w + i z, x + i y) of the attitude q_WS is a common factor times
+/// (c_a e^{i a} N1, c_b e^{i b} N2).
 struct HeavyTopConstants {
   bool hyper = false;        ///< which of the two forms below is filled
   double rate_scale = 1.0;   ///< a power of two [1/s]
@@ -28,12 +31,15 @@ struct HeavyTopConstants {
   double ca_re = 0.0, ca_im = 0.0, cb_re = 0.0, cb_im = 0.0;
   double w12_re = 0.0, w12_im = 0.0;  ///< 2 conj(c_a) c_b, times rate_scale
   double w3 = 0.0;                    ///< constant spin about the axis, scaled back
-  Quat q_SB;                          ///< from body axes to the working axes (symmetry axis third, centre of mass up it)
+  Quat q_SB;                          ///< from body to working axes (symmetry axis third, centre of mass up it)
   double R_BS[9] = {};                ///< the same as a row-major matrix, for omega
 
-  // Trig: with X = cos 2z, N1 = sin z p1(X) + i cos z p2(X) and its derivative cos z p3(X) + i sin z p4(X),
-  // N2 = cos z p5(X) + i sin z p6(X) and sin z p7(X) + i cos z p8(X); monomials.
-  double p[8][5] = {};
+  bool framed = false;                ///< whether they are not the identity
+
+  // Trig: with X = cos 2z, N1 = sin z p0(X) + i cos z p1(X), N2 = cos z p2(X) + i sin z p3(X), and the rotating part of
+  // omega, speed (conj(N1) N2' - N2 conj(N1')) + i turn conj(N1) N2 = even(X) + i sin z cos z odd(X); monomials.
+  double p[4][5] = {};
+  double even[degree_12 + 1] = {}, odd[degree_12 + 1] = {};
 
   // Hyper: N1 and N2 in powers of e^{-|v|}; eta as cosines and sines of (2n+1) eta_A and 2n eta_B.
   double v_rate_hi = 0.0, v_rate_lo = 0.0, v_start_hi = 0.0, v_start_lo = 0.0, v_passage_hi = 0.0, v_passage_lo = 0.0;
@@ -53,17 +59,6 @@ template <class V>
 struct HeavyTopSums {
   V n1_re, n1_im, n2_re, n2_im, d1_re, d1_im, d2_re, d2_im;
 };
-
-/// The trigonometric series, for k^2 <= 0.97.
-template <class V>
-POLHODE_INLINE HeavyTopSums<V> heavy_top_trig(const HeavyTopConstants& c, V s) {
-  V sz, cz;
-  math::sincos_cycles(math::cycle_fraction(s, V(c.rate_z.hi), V(c.rate_z.lo), V(c.start_z)), sz, cz);
-  const V X = (cz + sz) * (cz - sz);
-  return {sz * math::polynomial(c.p[0], X), cz * math::polynomial(c.p[1], X), cz * math::polynomial(c.p[4], X),
-          sz * math::polynomial(c.p[5], X), cz * math::polynomial(c.p[2], X), sz * math::polynomial(c.p[3], X),
-          sz * math::polynomial(c.p[6], X), cz * math::polynomial(c.p[7], X)};
-}
 
 /// The same functions in the exponentials of the complementary modulus: E = e^{-|v|}, g = q' / E^2 <= 1, everything
 /// times E. `sign` is that of v. N is double-double in the set-up.
@@ -109,18 +104,50 @@ POLHODE_INLINE HeavyTopSums<V> heavy_top_hyper(const HeavyTopConstants& c, V s, 
   // Where q' is 0 or nearly, e^{-|v|} may be far smaller: nothing grows then.
   const V g = math::select(nome > V(1e-290), nome / (E * E), V(0.0));
   V ca[4], sa[4], cb[4], sb[4];
-  for (int n = 0; n < 4; ++n) ca[n] = V(c.cos_a[n]), sa[n] = V(c.sin_a[n]), cb[n] = V(c.cos_b[n]), sb[n] = V(c.sin_b[n]);
+  for (int n = 0; n < 4; ++n) {
+    ca[n] = V(c.cos_a[n]), sa[n] = V(c.sin_a[n]);
+    cb[n] = V(c.cos_b[n]), sb[n] = V(c.sin_b[n]);
+  }
   return heavy_top_hyper_sums<V>(ca, sa, cb, sb, nome, math::copysign(V(1.0), v), E, g);
 }
 
-/// The state at time t. `hyper` must be c.hyper: a template argument, so that lanes share one form.
-template <bool hyper, class V>
+/// N1, N2 and the rotating part of omega: what the two forms give to the state.
+template <class V>
+struct HeavyTopParts {
+  V n1_re, n1_im, n2_re, n2_im, s_re, s_im;
+};
+
+/// The trigonometric series, for k^2 <= 0.97.
+template <class V>
+POLHODE_INLINE HeavyTopParts<V> heavy_top_trig(const HeavyTopConstants& c, V s) {
+  V sz, cz;
+  math::sincos_cycles(math::cycle_fraction(s, V(c.rate_z.hi), V(c.rate_z.lo), V(c.start_z)), sz, cz);
+  const V X = (cz + sz) * (cz - sz);
+  return {sz * math::polynomial(c.p[0], X), cz * math::polynomial(c.p[1], X),
+          cz * math::polynomial(c.p[2], X), sz * math::polynomial(c.p[3], X),
+          math::polynomial(c.even, X),      (sz * cz) * math::polynomial(c.odd, X)};
+}
+
+/// The hyperbolic sums made parts.
+template <class V>
+POLHODE_INLINE HeavyTopParts<V> heavy_top_parts(const HeavyTopConstants& c, const HeavyTopSums<V>& f) {
+  const V t_re = f.n1_re * f.d2_re + f.n1_im * f.d2_im - (f.n2_re * f.d1_re + f.n2_im * f.d1_im);
+  const V t_im = f.n1_re * f.d2_im - f.n1_im * f.d2_re + (f.n2_re * f.d1_im - f.n2_im * f.d1_re);
+  const V q_re = f.n1_re * f.n2_re + f.n1_im * f.n2_im, q_im = f.n1_re * f.n2_im - f.n1_im * f.n2_re;
+  return {f.n1_re, f.n1_im, f.n2_re, f.n2_im,
+          V(c.speed) * t_re - V(c.turn) * q_im, V(c.speed) * t_im + V(c.turn) * q_re};
+}
+
+/// The state at time t. `hyper` must be c.hyper, and `framed` may only be false where c.framed is: template arguments,
+/// so that lanes share one form.
+template <bool hyper, bool framed, class V>
 POLHODE_INLINE HeavyTopState<V> evaluate_heavy_top(const HeavyTopConstants& c, V t) {
   const V s = t * V(c.rate_scale);
-  V passages = V(0.0), phase_a = V(0.0), phase_b = V(0.0);
-  HeavyTopSums<V> f;
+  V phase_a = V(0.0), phase_b = V(0.0);
+  HeavyTopParts<V> f;
   if constexpr (hyper) {
-    f = heavy_top_hyper(c, s, passages);
+    V passages;
+    f = heavy_top_parts(c, heavy_top_hyper(c, s, passages));
     phase_a = math::cycle_fraction(passages, V(c.passage_a.hi), V(c.passage_a.lo), V(0.0));
     phase_b = math::cycle_fraction(passages, V(c.passage_b.hi), V(c.passage_b.lo), V(0.0));
   } else {
@@ -139,14 +166,11 @@ POLHODE_INLINE HeavyTopState<V> evaluate_heavy_top(const HeavyTopConstants& c, V
   const V qx = inverse * (fb_re * eb_re - fb_im * eb_im), qy = inverse * (fb_re * eb_im + fb_im * eb_re);
 
   // w1 + i w2 = 2 (conj(alpha) beta' - beta conj(alpha')): the derivative of the common factor drops out
-  const V t_re = f.n1_re * f.d2_re + f.n1_im * f.d2_im - (f.n2_re * f.d1_re + f.n2_im * f.d1_im);
-  const V t_im = f.n1_re * f.d2_im - f.n1_im * f.d2_re + (f.n2_re * f.d1_im - f.n2_im * f.d1_re);
-  const V q_re = f.n1_re * f.n2_re + f.n1_im * f.n2_im, q_im = f.n1_re * f.n2_im - f.n1_im * f.n2_re;
-  const V s_re = inverse2 * (V(c.speed) * t_re - V(c.turn) * q_im);
-  const V s_im = inverse2 * (V(c.speed) * t_im + V(c.turn) * q_re);
+  const V s_re = inverse2 * f.s_re, s_im = inverse2 * f.s_im;
   const V r_re = ea_re * eb_re + ea_im * eb_im, r_im = ea_re * eb_im - ea_im * eb_re;
   const V h_re = V(c.w12_re) * r_re - V(c.w12_im) * r_im, h_im = V(c.w12_re) * r_im + V(c.w12_im) * r_re;
   const V w1 = h_re * s_re - h_im * s_im, w2 = h_re * s_im + h_im * s_re, w3 = V(c.w3);
+  if constexpr (!framed) return {w1, w2, w3, qx, qy, qz, qw};
 
   const double* R = c.R_BS;
   const Quat& b = c.q_SB;
