@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import pathlib
+import os.path
 
 from . import _core
 from ._core import build_info as build_info
@@ -17,4 +17,4 @@ def cmake_prefix() -> str:
         For ``cmake -DCMAKE_PREFIX_PATH=...``; ``find_package(polhode)`` then gives ``polhode::polhode``.
     """
     # Not from __file__: in an editable install only the compiled module stands beside include and lib.
-    return str(pathlib.Path(_core.__file__).parent)
+    return os.path.dirname(os.path.abspath(_core.__file__))

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import os
-import pathlib
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
+
+if TYPE_CHECKING:
+    import pathlib
 
 
 class Scene(_core.Scene):
@@ -116,4 +118,6 @@ def _restore(cls: type[Scene], parts: dict[str, Any]) -> Scene:
 
 def scene_folder() -> pathlib.Path:
     """Return the folder of the scenes that are installed with polhode."""
+    import pathlib   # not needed by those who only compute, and slow to import
+
     return pathlib.Path(_core.__file__).parent / "scenes"
