@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._core import InvalidInput
 from ._core import attitude as _kernels
+from .kinematics import body_rates, euler_rates
 
 __all__ = ["Rotation", "body_rates", "euler_rates"]
 
@@ -368,50 +369,3 @@ def _shape_of(num: int | None, shape: int | tuple[int, ...] | None) -> tuple[int
     if not all(isinstance(size, (int, np.integer)) and size >= 0 for size in sizes):
         raise InvalidInput(f"{'shape' if num is None else 'num'}: must be whole numbers >= 0, got {sizes}")
     return sizes
-
-
-def body_rates(sequence: str, angles: ArrayLike, angle_rates: ArrayLike) -> FloatArray:
-    """Angular velocity in body axes of Euler angles and their rates.
-
-    Parameters
-    ----------
-    sequence : str
-        Three axes, as in `Rotation.from_euler`; any of the 24.
-    angles, angle_rates : array_like, shape (..., 3)
-        [rad] and [rad/s], both in the order of the letters; their leading dimensions broadcast.
-
-    Returns
-    -------
-    omega : ndarray, shape (..., 3)
-        w_B [rad/s].
-
-    Raises
-    ------
-    InvalidInput
-        Unknown sequence, NaN, inf, or shapes that do not fit.
-    """
-    return _kernels.body_rates(sequence, angles, angle_rates)
-
-
-def euler_rates(sequence: str, angles: ArrayLike, omega: ArrayLike) -> FloatArray:
-    """Rates of Euler angles of an angular velocity in body axes; the inverse of `body_rates`.
-
-    Parameters
-    ----------
-    sequence : str
-        Three axes, as in `Rotation.from_euler`; any of the 24.
-    angles, omega : array_like, shape (..., 3)
-        [rad] in the order of the letters, and w_B [rad/s]; their leading dimensions broadcast.
-
-    Returns
-    -------
-    angle_rates : ndarray, shape (..., 3)
-        [rad/s], in the order of the letters. They grow as one over the distance to the pole.
-
-    Raises
-    ------
-    InvalidInput
-        At gimbal lock, that is where the middle angle is the double nearest to a pole: no rates of the angles give a
-        general omega there. Also unknown sequence, NaN, inf, or shapes that do not fit.
-    """
-    return _kernels.euler_rates(sequence, angles, omega)
