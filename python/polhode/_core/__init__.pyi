@@ -400,9 +400,9 @@ class HeavyTop:
     """
     Lagrange's top: a symmetric body held at a point of its axis, under gravity.
 
-    In closed form at any time: looping, cuspidal and monotone precession, both steady precessions, sleeping and hanging tops
-    on both sides of stability, planar and spherical pendulums, next to and on the homoclinic motion. The error against the
-    exact motion of the same float64 input is a few units of rounding at every time.
+    In closed form at any time: looping, cuspidal and monotone precession, both steady precessions, sleeping and hanging
+    tops on both sides of stability, planar and spherical pendulums, next to and on the homoclinic motion. The error against
+    the exact motion of the same float64 input is a few units of rounding at every time.
 
     Parameters
     ----------
@@ -508,8 +508,8 @@ class HeavyTop:
     @property
     def precession_rate(self) -> float:
         """
-        Mean rate at which the axis turns round space z, over a nutation [rad/s]; NaN where there
-        is none to speak of (the axis stays vertical, or 'homoclinic').
+        Mean rate at which the axis turns round space z, over a nutation [rad/s]; NaN where
+        there is none to speak of (the axis stays vertical, or 'homoclinic').
         """
     @property
     def tilt_bounds(self) -> tuple[float, float]:
