@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import warnings
 from collections.abc import Callable, Sequence
@@ -42,10 +43,10 @@ def _wanted(want: str | Sequence[str]) -> tuple[str, ...]:
 
 
 def _require_memory(shape: tuple[int, ...], names: tuple[str, ...]) -> None:
-    states = 1
-    for size in shape:
-        states *= size
+    states = math.prod(shape)
     needed = states * sum(8 * WIDTHS[name] for name in names)
+    if needed < 2**28:
+        return
     try:
         there = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (ValueError, OSError, AttributeError):
@@ -77,6 +78,35 @@ def _targets(out: Any, names: tuple[str, ...], shape: tuple[int, ...]) -> dict[s
     return targets
 
 
+def _warn(poisoned: int, level: int) -> None:
+    warnings.warn(f"{poisoned} rows are NaN because their input is not finite", RuntimeWarning, stacklevel=level)
+
+
+def _evaluate_one(
+    parameters: Sequence[Array],
+    t: Array,
+    targets: dict[str, Any],
+    names: tuple[str, ...],
+    want: str | Sequence[str],
+    kernel: Callable[..., int],
+) -> Any:
+    """One body at all the times: nothing to broadcast, and a short call for short arrays."""
+    _require_memory(t.shape, names)
+    results: dict[str, Any] = {}
+    for name in names:
+        target = targets.get(name)
+        fits = target is not None and target.flags.c_contiguous
+        results[name] = target if fits else np.empty((*t.shape, WIDTHS[name]))
+    poisoned = kernel(*(array[None] for array in parameters), t.reshape(-1), results.get("omega"), results.get("attitude"))
+    if poisoned:
+        _warn(poisoned, 5)
+    for name, target in targets.items():
+        if results[name] is not target:
+            target[...] = results[name]
+            results[name] = target
+    return results[want] if isinstance(want, str) else tuple(results[name] for name in names)
+
+
 def _evaluate(
     parameters: Sequence[tuple[Array, int]],
     t: Array,
@@ -90,6 +120,8 @@ def _evaluate(
     """
     names = _wanted(want)
     loops = [array.shape[: array.ndim - core] for array, core in parameters]
+    if all(loop == () for loop in loops) and t.size:
+        return _evaluate_one([array for array, _ in parameters], t, _targets(out, names, t.shape), names, want, kernel)
     try:
         shape = np.broadcast_shapes(*loops, t.shape)
     except ValueError:
@@ -107,7 +139,7 @@ def _evaluate(
         spread = spread.transpose(*order, *range(len(shape), len(shape) + core))
         spread = spread[(slice(None),) * len(bodies) + (0,) * len(times)] if all(time_shape) else spread.reshape(0, *tail)
         flat.append(np.ascontiguousarray(spread).reshape(-1, *tail))
-    n_bodies, n_times = int(np.prod(body_shape)), int(np.prod(time_shape))
+    n_bodies, n_times = math.prod(body_shape), math.prod(time_shape)
     own_times = any(size != 1 for k, size in enumerate((1,) * (len(shape) - t.ndim) + t.shape) if k in bodies)
     spread_t = np.broadcast_to(t, shape).transpose(order)
     flat_t: Array
@@ -126,7 +158,7 @@ def _evaluate(
             results[name] = np.empty((*body_shape, *time_shape, WIDTHS[name]))
     poisoned = kernel(*flat, flat_t, results.get("omega"), results.get("attitude")) if n_bodies and n_times else 0
     if poisoned:
-        warnings.warn(f"{poisoned} rows are NaN because their input is not finite", RuntimeWarning, stacklevel=3)
+        _warn(poisoned, 4)
 
     inverse = [*np.argsort(order), len(shape)]
     for name in names:
