@@ -35,3 +35,18 @@ def test_the_bibliography_names_each_work_once():
 def test_the_examples_of_the_homework_run():
     for block in re.findall(r"```python\n(.*?)```", (ROOT / "docs/seed.md").read_text(), flags=re.S):
         exec(compile(block, "docs/seed.md", "exec"), {})
+
+
+def blocks(page, language):
+    return re.findall(rf"```{language}\n(.*?)```", (ROOT / page).read_text(), flags=re.S)
+
+
+def test_the_readmes_python_example_prints_what_it_says(capsys):
+    (block,) = blocks("README.md", "python")
+    exec(compile(block, "README.md", "exec"), {})
+    expected = re.findall(r"^print\(.*\) +# (.*)$", block, flags=re.M)
+    assert capsys.readouterr().out.splitlines() == expected and len(expected) == 2
+
+
+def test_the_readme_is_short():
+    assert len([line for line in (ROOT / "README.md").read_text().splitlines() if line.strip()]) <= 40

@@ -2,6 +2,7 @@
 
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import sysconfig
@@ -60,11 +61,18 @@ def installed(tmp_path_factory):
 
 @pytest.mark.parametrize("source", ["cmake --install", "pip install"])
 def test_cpp_example_links_and_prints_what_its_twin_prints(source, request, tmp_path):
+    project = shutil.copytree(ROOT / "examples/cpp", tmp_path / "project")
+    (readme,) = re.findall(r"```cpp\n(.*?)```", (ROOT / "README.md").read_text(), flags=re.S)
+    (project / "readme.cpp").write_text(readme)
+    with (project / "CMakeLists.txt").open("a") as file:
+        file.write("add_executable(readme readme.cpp)\ntarget_link_libraries(readme PRIVATE polhode::polhode)\n")
     prefix = request.getfixturevalue("installed") if source == "cmake --install" else ph.cmake_prefix()
     cmeel = pathlib.Path(sysconfig.get_paths()["purelib"]) / "cmeel.prefix"   # Eigen, where Debian's is not installed
-    configured = run("cmake", "-S", ROOT / "examples/cpp", "-B", tmp_path, f"-DCMAKE_PREFIX_PATH={prefix};{cmeel}",
+    configured = run("cmake", "-S", project, "-B", tmp_path, f"-DCMAKE_PREFIX_PATH={prefix};{cmeel}",
                      "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Wconversion -Werror", "-DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF")
     assert "Configuring done" in configured
     assert f"polhode_DIR:PATH={prefix}/lib" in (tmp_path / "CMakeCache.txt").read_text()
-    run("cmake", "--build", tmp_path)
+    run("cmake", "--build", tmp_path, *(["--target", "racket"] if source == "pip install" else []))   # one is enough
     assert run(tmp_path / "racket") == run_example(ROOT / "examples/python/racket.py")
+    if source == "cmake --install":
+        assert [float(line) for line in run(tmp_path / "readme").split()] == [3.68344, 10.1341]
