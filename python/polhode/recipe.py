@@ -89,12 +89,13 @@ def recipe_model() -> Any:
 
     kind = kinds()
     half_sides = model("HalfSides", _positive, uniform=(kind.pair, ...))
-    body = model("RecipeBody", shape=(Literal["box"], ...), mass=(Annotated[float, Field(gt=0, allow_inf_nan=False)], ...),
-                 half_sides=(half_sides, ...))
+    mass: Any = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+    count, seed = (Annotated[int, Field(ge=least)] for least in (1, 0))
+    body = model("RecipeBody", shape=(Literal["box"], ...), mass=(mass, ...), half_sides=(half_sides, ...))
     start = model("RecipeStart", omega=(model("Rates", _deviation, normal=(kind.pair, ...)), ...))
     times = model("RecipeTimes", _ordered("uniform"), uniform=(kind.pair, ...))
-    return model("RecipeFile", name=(str, ""), title=(str, ""), about=(str, ""), count=(Annotated[int, Field(ge=1)], ...),
-                 seed=(Annotated[int, Field(ge=0)], ...), body=(body, ...), start=(start, ...), times=(times, ...))
+    return model("RecipeFile", name=(str, ""), title=(str, ""), about=(str, ""), count=(count, ...), seed=(seed, ...),
+                 body=(body, ...), start=(start, ...), times=(times, ...))
 
 
 def load_recipe(source: str | os.PathLike[str]) -> Recipe:
@@ -116,5 +117,5 @@ def load_recipe(source: str | os.PathLike[str]) -> Recipe:
     data = read_toml(path)
     data.setdefault("name", path.stem)
     entry = validate(recipe_model(), data, path.name)
-    return Recipe(entry.name, entry.title, entry.count, entry.seed, entry.body.mass, tuple(entry.body.half_sides.uniform),
-                  tuple(entry.start.omega.normal), tuple(entry.times.uniform))
+    return Recipe(entry.name, entry.title, entry.count, entry.seed, entry.body.mass,
+                  tuple(entry.body.half_sides.uniform), tuple(entry.start.omega.normal), tuple(entry.times.uniform))

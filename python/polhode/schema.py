@@ -183,7 +183,8 @@ def _explain(table: Any, error: Any) -> str:
         return f"{where}.kind: must be one of {error['ctx']['expected_tags']}; got {error['ctx']['tag']!r}"
     found = repr(error["input"])
     text = re.sub(r"^Input should|^List should", "must", error["msg"]).replace(" after validation", "")
-    text = re.sub(r"a valid dictionary or instance of \w+", "a table", text).replace("a valid integer", "an integer").replace("a valid ", "a ")
+    text = re.sub(r"a valid dictionary or instance of \w+", "a table", text)
+    text = text.replace("a valid integer", "an integer").replace("a valid ", "a ")
     return f"{where}: {text}; got {found if len(found) < 60 else found[:57] + '...'}"
 
 

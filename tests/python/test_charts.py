@@ -48,7 +48,8 @@ def test_the_angle_is_right_at_every_size(angle):
     axis = rng.normal(size=(20, 3))
     axis *= np.sin(angle / 2) / np.linalg.norm(axis, axis=1)[:, None]
     x, w = r[:, :3], r[:, 3:]
-    turned = np.hstack([w * axis + np.cos(angle / 2) * x + np.cross(x, axis), w * np.cos(angle / 2) - np.sum(x * axis, axis=1)[:, None]])
+    c = np.cos(angle / 2)
+    turned = np.hstack([w * axis + c * x + np.cross(x, axis), c * w - np.sum(x * axis, axis=1)[:, None]])
     turned *= rng.choice([-1.0, 1.0], (20, 1))   # q and -q are one attitude
     for one, other in zip(turned, r, strict=True):
         truth = Truth(np.ones((1, 3)), other[None], "made", "", 0.0, None)
@@ -86,8 +87,7 @@ def test_a_made_truth_is_as_good_as_it_says():
 
 
 def test_every_adaptive_method_takes_part():
-    names = [c.name for c in candidates()]
-    assert [m["name"] for m in ph.methods() if m["adaptive"]] == [n for n in names if n in {m["name"] for m in ph.methods()}]
+    assert [m["name"] for m in ph.methods() if m["adaptive"]] == [c.name for c in candidates() if c.family == "method"]
     assert {c.family for c in candidates(with_peers=False)} == {"method", "exact"}
 
 
@@ -117,12 +117,14 @@ def test_scipys_right_hand_side_is_the_derivative_of_the_truth(name):
     middle = np.concatenate([scene.omega, scene.attitude]) if name != "S7b" else y.mean(axis=0)
     rate = np.linalg.norm(scene.omega)
     scale = np.array([rate**2] * 3 + [rate] * 4)
-    np.testing.assert_allclose(np.array(right_hand_side(scene)(0.0, middle)) / scale, slope / scale, atol=2e-8 if name != "S7b" else 2e-3)
+    found = np.array(right_hand_side(scene)(0.0, middle))
+    np.testing.assert_allclose(found / scale, slope / scale, atol=2e-8 if name != "S7b" else 2e-3)
 
 
 def test_scipys_right_hand_side_for_a_full_tensor_and_a_torque_fixed_in_space():
     turn = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]])
-    scene = ph.Scene(inertia=turn @ np.diag([1.0, 2.0, 2.5]) @ turn.T, omega=(1.0, 2.0, 3.0), attitude=(0.1, 0.7, 0.1, 0.7),
+    tensor = turn @ np.diag([1.0, 2.0, 2.5]) @ turn.T
+    scene = ph.Scene(inertia=tensor, omega=(1.0, 2.0, 3.0), attitude=(0.1, 0.7, 0.1, 0.7),
                      torques=[ph.torques.Constant((0.3, -0.2, 0.1), "space")], times=[-1e-5, 1e-5])
     motion = ph.solve(scene, method="rk45", rtol=1e-14)
     y = np.hstack([motion.omega, motion.attitude])
@@ -162,9 +164,10 @@ def test_crashes_nan_and_lateness_are_points_and_the_others_go_on():
     whys = {name: [p.why for p in result.points if p.candidate == name] for name in runs}
     assert whys["crash"] == ["ZeroDivisionError: of zero"] * 4
     assert whys["nothing"] == ["returned NaN or infinity"] * 4
-    assert whys["late"][0].startswith("not done within") and set(whys["late"][1:]) == {"a looser setting was not done in time"}
+    assert whys["late"][0].startswith("not done within")
+    assert set(whys["late"][1:]) == {"a looser setting was not done in time"}
     assert whys["exact"] == [""] * 4 and all(p.repeats == 5 and p.error < 1e-12 for p in result.of("exact"))
-    assert without_answer(result) == {"crash": "ZeroDivisionError: of zero", "nothing": "returned NaN or infinity", "late": whys["late"][0]}
+    assert without_answer(result) == {name: whys[name][0] for name in ("crash", "nothing", "late")}
 
 
 def test_what_does_not_fit_the_budget_is_left_out_and_says_so():
@@ -195,7 +198,8 @@ def test_time_to_reach_is_a_power_law_along_the_front():
     points = curve("a", "method", [1e-2, 1e-4, 1e-5], [1e-2, 1e-6, 1e-4], [1.0, 100.0, 1000.0])
     assert [p.seconds for p in front(points)] == [1.0, 100.0]
     assert time_to_reach(points, 1e-4) == pytest.approx(10.0)
-    assert time_to_reach(points, 1e-2) == 1 and np.isnan(time_to_reach(points, 1e-7)) and np.isnan(time_to_reach(points, 1.0))
+    assert time_to_reach(points, 1e-2) == 1
+    assert np.isnan(time_to_reach(points, 1e-7)) and np.isnan(time_to_reach(points, 1.0))
 
 
 def test_stalling_and_stability_are_told_from_plain_convergence():
@@ -253,7 +257,8 @@ def test_results_json(charted):
     folder, results, content, _ = charted
     assert json.loads((folder / "results.json").read_text()) == json.loads(json.dumps(content, allow_nan=False))
     assert set(content) == {"format", "measure", "seconds", "polhode", "machine", "versions", "files", "scenes"}
-    assert content["polhode"]["version"] == ph.__version__ and content["machine"]["cores"] >= 1 and "numpy" in content["versions"]
+    assert content["polhode"]["version"] == ph.__version__
+    assert content["machine"]["cores"] >= 1 and "numpy" in content["versions"]
     scene = content["scenes"][0]
     assert scene["name"] == "S5" and scene["reference"]["kind"] == "stored" and scene["finding"] == headline(results[0])
     assert content["scenes"][1]["reference"]["kind"] == "made"

@@ -183,4 +183,5 @@ def test_the_package_alone_imports_no_extra():
 
 def test_scenes_of_the_tree_and_names_are_the_same():
     file = Path(__file__).parents[2] / "scenes/S1.toml"
-    assert json.loads(call("run", file, "--json").stdout)["omega"] == json.loads(call("run", "S1", "--json").stdout)["omega"]
+    by_path, by_name = (json.loads(call("run", scene, "--json").stdout) for scene in (file, "S1"))
+    assert by_path["omega"] == by_name["omega"]

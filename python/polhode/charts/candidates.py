@@ -1,7 +1,7 @@
 """Who takes part: every adaptive method, the closed forms that apply, and other programs where they are installed.
 
-A candidate is a record with a function that answers a scene at one setting; the charts go through `candidates()`. To add
-one: a `Candidate` in `_families`, or a method in the compiled list.
+A candidate is a record with a function that answers a scene at one setting; the charts go through `candidates()`. A
+method joins by the compiled list, a closed form or another program by a line in `_exact` or `candidates`.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ class Candidate(NamedTuple):
     """One way to answer a scene.
 
     `settings`: what is swept, from loose to tight, as (label, value). `run(scene, value, limit)` answers the scene, or
-    raises `Failure`; it watches `limit` seconds when that is given, and no clock otherwise, so that runs that are timed pay for
-    none. `refuses(scene)`: why it does not take part, or "".
+    raises `Failure`; it ends after `limit` seconds when that is given, and otherwise looks at no clock, so that timed runs
+    pay for none. `refuses(scene)`: why it does not take part, or "".
     """
 
     name: str

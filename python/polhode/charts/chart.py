@@ -49,7 +49,8 @@ def chart(
     scenes : iterable of Scene, paths or names
         With omega and attitude wanted.
     folder : path
-        Made when it is not there. Gets ``<scene>.png`` and ``.svg``, ``overview``, ``limits`` (where a stepper fails) and ``results.json``.
+        Made when it is not there. Gets, as .png and .svg, one picture a scene, ``overview`` and ``limits`` (where
+        steppers fail, if one does), and ``results.json``.
     budget : float
         About how long the whole may take [s]. What does not fit is left out, slow programs first, and listed.
     peers : bool
@@ -79,10 +80,12 @@ def chart(
         raise InvalidInput("scenes: none given")
     for scene, _ in loaded:
         if set(scene.want) != {"omega", "attitude"}:
-            raise InvalidInput(f"{scene.name or 'scene'}: want: must be omega and attitude for a chart, got {', '.join(scene.want)}")
+            wanted = ", ".join(scene.want)
+            raise InvalidInput(f"{scene.name or 'scene'}: want: must be omega and attitude for a chart, got {wanted}")
     names = [scene.name for scene, _ in loaded]
     if len(set(names)) < len(names):
-        raise InvalidInput(f"scenes: {max(names, key=names.count)!r} is given twice; each needs a name of its own for its picture")
+        twice = max(names, key=names.count)
+        raise InvalidInput(f"scenes: {twice!r} is given twice; each needs a name of its own for its picture")
     output = pathlib.Path(folder)
     _check_folder(output)
 

@@ -73,14 +73,14 @@ def held_by_stability(result: SceneResult, name: str) -> bool:
 
 
 def _time_ratios(result: SceneResult, name: str, peer: str) -> list[float]:
-    """Times of a peer over those of a method at equal error, at each error of the peer below 0.1 that the method reaches."""
+    """Times of a peer over a method's at equal error, at each error of the peer below 0.1 that the method reaches."""
     points = result.of(name)
     ratios = [p.seconds / time_to_reach(points, p.error) for p in result.of(peer) if p.error < 0.1]
     return [ratio for ratio in ratios if ratio == ratio]
 
 
 def all_ratios(results: list[SceneResult], peer: str) -> list[float]:
-    """Time ratios of a peer to the first method at equal error, over the scenes where tighter tolerances still help it."""
+    """Times of a peer over those of the first method at equal error, on all scenes where tolerances help that one."""
     found = []
     for result in results:
         names = result.names("method")
@@ -90,7 +90,7 @@ def all_ratios(results: list[SceneResult], peer: str) -> list[float]:
 
 
 def fastest(result: SceneResult) -> tuple[str, float, float] | None:
-    """The stepping method that is first at the tightest of 1e-12, 1e-9, 1e-6, 1e-3 any reaches: name, error, seconds."""
+    """Who is first at the tightest of 1e-12, 1e-9, 1e-6, 1e-3 that any stepping method reaches: name, error, seconds."""
     for error in (1e-12, 1e-9, 1e-6, 1e-3):
         times = {}
         for name in result.names("method"):
@@ -121,7 +121,9 @@ def headline(result: SceneResult) -> str:
         return (f"Stability holds {held[0]} to {to_count(min(p.stats['steps'] for p in points))} steps and "
                 f"{to_time(min(p.seconds for p in points))} at every tolerance")
     first = fastest(result)
-    stepping = f"{first[0]} reaches {to_error(first[1])} in {to_time(first[2])}" if first else f"{steppers[0]} never reaches 1e-3"
+    stepping = f"{steppers[0]} never reaches 1e-3"
+    if first:
+        stepping = f"{first[0]} reaches {to_error(first[1])} in {to_time(first[2])}"
     if closed:
         return f"{closed[:1].upper()}{closed[1:]}; {stepping}"
     ratios = [r for peer in result.names("peer") for r in _time_ratios(result, first[0], peer)] if first else []
@@ -143,7 +145,8 @@ def to_range(ratios: list[float]) -> str:
 def under_headline(result: SceneResult) -> str:
     """What was measured, each peer's time at equal error, and who never answered."""
     scene = result.scene
-    text = f"{scene.name or 'scene'} {result.title}: {scene.times.size} samples over {abs(scene.times[-1] - scene.t0):g} s"
+    span = abs(scene.times[-1] - scene.t0)
+    text = f"{scene.name or 'scene'} {result.title}: {scene.times.size} samples over {span:g} s"
     first = fastest(result)
     parts = []
     for peer in result.names("peer"):

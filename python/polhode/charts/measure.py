@@ -19,7 +19,7 @@ from .truth import Truth, compute_errors, find_truth
 
 ROUNDS = 5
 SHORTEST = 2e-3   # seconds of calls behind one reading of the clock
-SHARES = {"method": 0.3, "exact": 0.3, "peer": 0.7}   # of the budget, by when a family must have ended; the rest is for repeats
+SHARES = {"method": 0.3, "exact": 0.3, "peer": 0.7}   # of the budget: when a family must have ended; then come repeats
 LEAST = 0.1   # of the budget, for a candidate whose family has used its time up
 
 Report = Callable[[str], object]
@@ -113,7 +113,7 @@ def _prediction(done: list[Point], value: float) -> float:
 
 
 def _sweep(candidate: Candidate, scene: Scene, truth: Truth, deadline: float) -> Iterable[Point]:
-    """Run a candidate from its loosest setting to its tightest; what would not end in time is left out, with the reason."""
+    """Run a candidate from its loosest setting to its tightest; what would not end in time is left out, and says so."""
     done: list[Point] = []
     late = ""
     for setting, value in candidate.settings:

@@ -72,7 +72,8 @@ def _floor(axes: Any, result: SceneResult, text: bool) -> None:
     if text:
         word = "input rounding" if result.truth.floor is not None else "reference's own uncertainty"
         axes.annotate(f"{word} {to_error(known)}", (known, 0.015), xycoords=("data", "axes fraction"), xytext=(-4, 0),
-                      textcoords="offset points", rotation=90, ha="right", va="bottom", fontsize=8, color=style.QUIET, zorder=6, bbox=style.HALO)
+                      textcoords="offset points", rotation=90, ha="right", va="bottom", fontsize=8, color=style.QUIET,
+                      zorder=6, bbox=style.HALO)
 
 
 def _spread(axes: Any, ends: list[tuple[float, float, str, str]], gap: float = 13.0) -> None:
@@ -132,15 +133,18 @@ def overview(results: list[SceneResult], folder: pathlib.Path) -> list[pathlib.P
                 axes.text(0.04, 0.05, text, transform=axes.transAxes, fontsize=7.5, color=style.QUIET, linespacing=1.4)
             names |= {p.candidate: p.family for p in result.points if p.answered}
             axes.set_title(f"{result.scene.name} {result.title}", fontsize=9)
-        handles = [plt.Line2D([], [], label=name, **style.line(name, family)) for name, family in names.items()]
+        closed = [name for name, family in names.items() if family == "exact"]
+        labels = {name: name for name in names if name not in closed[1:]}   # closed forms share one line here
+        labels |= {name: f"closed form ({', '.join(closed)})" for name in closed[:1]}
+        handles = [plt.Line2D([], [], label=text, **style.line(name, names[name])) for name, text in labels.items()]
         handles.append(plt.Line2D([], [], color=style.FLOOR, linestyle=(0, (1, 2)), label="rounding of the input"))
-        figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.6 / width, 1 - 0.98 / height), ncols=len(handles),
-                      frameon=False, fontsize=9, borderaxespad=0, handlelength=2.2, columnspacing=1.6)
+        figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.6 / width, 1 - 0.98 / height), fontsize=9,
+                      ncols=len(handles), frameon=False, borderaxespad=0, handlelength=2.2, columnspacing=1.6)
         figure.supxlabel("largest error over all samples (more accurate to the right)", fontsize=9.5, color=style.QUIET,
                          y=0.1 / height)
         figure.supylabel("time for all samples", fontsize=9.5, color=style.QUIET, x=0.06 / width)
-        style.heading(figure, _wrap(_overview_title(results), 22 * columns), "one thread; ratios are medians over all scenes; lower and further right is better",
-                      0.72 / width)
+        style.heading(figure, _wrap(_overview_title(results), 22 * columns),
+                      "one thread; ratios are medians over all scenes; lower and further right is better", 0.72 / width)
         paths = style.save(figure, folder, "overview")
         plt.close(figure)
     return paths
@@ -159,8 +163,8 @@ def _overview_title(results: list[SceneResult]) -> str:
         if ratios:
             medians[peer] = statistics.median(ratios)
     if medians:
-        listed = " and ".join(f"{peer} {to_ratio(ratio)}" for peer, ratio in medians.items())
-        parts.append(f"at equal error, {listed} times the time of {first}")
+        listed = " and ".join(f"{to_ratio(ratio)} times that of {peer}" for peer, ratio in medians.items())
+        parts.append(f"at equal error {first}'s speed is {listed}")
     text = "; ".join(parts) or "Time against error"
     return text[:1].upper() + text[1:]
 
@@ -178,8 +182,8 @@ def limits(results: list[SceneResult], folder: pathlib.Path) -> list[pathlib.Pat
         figure.subplots_adjust(left=0.85 / width, right=1 - 0.95 / width, bottom=0.13, top=0.72, wspace=0.5)
         for axes, (draw, result) in zip(grid.flat, panels):
             draw(axes, result, results)
-        style.heading(figure, "Where steppers fail, and no tolerance helps", "from loose tolerances on the left to tight ones on the right",
-                      0.3 / width)
+        style.heading(figure, "Where steppers fail, and no tolerance helps",
+                      "from loose tolerances on the left to tight ones on the right", 0.3 / width)
         paths = style.save(figure, folder, "limits")
         plt.close(figure)
     return paths
@@ -208,13 +212,14 @@ def _stalling(axes: Any, result: SceneResult, results: list[SceneResult]) -> Non
     for name in result.names("exact"):
         exact = result.of(name)[0]
         axes.axhline(exact.error, color=style.colour(name), linewidth=2)
-        axes.annotate(f"closed form: {to_error(exact.error)} in {to_time(exact.seconds)}", (tolerances[-1], exact.error), xytext=(0, 6),
-                      textcoords="offset points", fontsize=9, fontweight="bold", color=style.colour(name))
+        style.label(axes, tolerances[-1], exact.error, f"closed form: {to_error(exact.error)} in {to_time(exact.seconds)}",
+                    style.colour(name), xytext=(0, 6), va="bottom")
     axes.set_ylim(min(1e-16, tolerances[0]), 10)
     _error_ticks(axes, "y")
     axes.set_ylabel("largest error")
     best = min(p.error for n in result.names("method") for p in result.of(n))
-    axes.set_title(f"{result.scene.name} {result.title}: rounding keeps the error\nabove {to_error(best)}, whatever the tolerance")
+    axes.set_title(f"{result.scene.name} {result.title}: rounding keeps the error\n"
+                   f"above {to_error(best)}, whatever the tolerance")
     axes.legend(loc="upper right", frameon=False, fontsize=9)
 
 
@@ -225,15 +230,15 @@ def _stiff(axes: Any, result: SceneResult, results: list[SceneResult]) -> None:
     name, ends = held[0], []
     rest = [r.of(name) for r in results if r is not result and r.of(name) and not held_by_stability(r, name)]
     for points in rest:
-        axes.plot([p.value for p in points], [p.stats["steps"] for p in points], color=style.FLOOR, linewidth=1.1, zorder=2)
+        axes.plot([p.value for p in points], [p.stats["steps"] for p in points], color=style.FLOOR, linewidth=1.1)
     if rest:
-        lowest = min(rest, key=lambda points: points[-1].stats["steps"])[-1]
-        axes.annotate(f"the other scenes, {name}", (lowest.value, lowest.stats["steps"]), xytext=(0, -14),
-                      textcoords="offset points", ha="right", va="top", fontsize=9, color=style.QUIET)
+        axes.text(0.98, 0.05, f"the other scenes, {name}", transform=axes.transAxes, ha="right", fontsize=9,
+                  color=style.QUIET)
     for one in held:
         points = result.of(one)
         axes.plot([p.value for p in points], [p.stats["steps"] for p in points], **style.line(one, "method"))
-        ends.append((points[-1].value, float(points[-1].stats["steps"]), f"{result.scene.name} {one}", style.colour(one)))
+        end = points[-1]
+        ends.append((end.value, float(end.stats["steps"]), f"{result.scene.name} {one}", style.colour(one)))
     points = result.of(name)
     steps = [p.stats["steps"] for p in points]
     axes.set_ylabel("steps")

@@ -14,9 +14,9 @@ from .measure import Point, SceneResult
 from .truth import to_json
 
 FORMAT = "polhode chart 1"
-MEASURE = ("error: over all samples, the larger of |omega - truth| / max |truth| and the angle of the rotation between the "
-           "attitudes [rad]; seconds: CPU time of the thread for all samples, median of the repeats, taken in turn with all others; "
-           "drift: largest move of each invariant from its start, relative")
+MEASURE = ("error: over all samples, the larger of |omega - truth| / max |truth| and the angle of the rotation between "
+           "the attitudes [rad]; seconds: CPU time of the thread for all samples, median of the repeats, taken in turn "
+           "with all others; drift: largest move of each invariant from its start, relative")
 
 
 def machine() -> dict[str, Any]:

@@ -126,7 +126,7 @@ def right_hand_side(scene: Scene) -> Callable[[float, Floats], list[float]]:
 def run(scene: Scene, method: str, rtol: float, limit: float | None) -> tuple[Floats, Floats, dict[str, int]]:
     """Answer a scene: omega, attitude and counts.
 
-    atol is rtol times the size of the initial rates, and rtol for the quaternion, as a user would choose who knows the scales.
+    atol is rtol times the size of the initial rates, and rtol for the quaternion: as one does who knows the scales.
 
     Raises
     ------
@@ -158,4 +158,4 @@ def run(scene: Scene, method: str, rtol: float, limit: float | None) -> tuple[Fl
                            rtol=rtol, atol=rtol * np.array([size] * 3 + [1.0] * 4))
     if not result.success:
         raise Stopped(str(result.message))
-    return result.y[:3].T.copy(), result.y[3:].T.copy(), {"derivatives": int(result.nfev), "steps": -1}
+    return result.y[:3].T.copy(), result.y[3:].T.copy(), {"derivatives": int(result.nfev)}

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 INK, QUIET, GRID, PAPER = "#1d2733", "#66717d", "#e4e8ec", "#ffffff"
 FLOOR = "#9aa4ae"
 
-# Okabe and Ito's colours, distinguishable with every kind of colour vision; each candidate keeps its own on every picture.
+# Okabe and Ito's colours, distinguishable with every kind of colour vision; a candidate keeps its own on every picture.
 _COLOURS = {
     "rk45": "#0072b2", "dop853": "#009e73", "taylor": "#cc79a7",
     "FreeMotion": "#d55e00", "HeavyTop": "#d55e00",
@@ -46,7 +46,8 @@ def used() -> Iterator[Any]:
     import matplotlib.pyplot as plt
 
     settings: Any = {
-        "figure.facecolor": PAPER, "figure.dpi": 100, "savefig.dpi": 160, "font.family": "DejaVu Sans", "font.size": 9.5,
+        "figure.facecolor": PAPER, "figure.dpi": 100, "savefig.dpi": 160, "font.family": "DejaVu Sans",
+        "font.size": 9.5,
         "text.color": INK, "axes.labelcolor": QUIET, "axes.edgecolor": FLOOR, "axes.linewidth": 0.8,
         "axes.titlesize": 10.5, "axes.titleweight": "bold", "axes.titlelocation": "left", "axes.titlepad": 8,
         "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "axes.axisbelow": True,
@@ -63,7 +64,8 @@ def heading(figure: Figure, title: str, under: str, left: float) -> None:
     height = figure.get_figheight()
     figure.text(left, 1 - 0.2 / height, title, ha="left", va="top", fontsize=13, fontweight="bold", linespacing=1.25)
     lines = title.count("\n") + 1
-    figure.text(left, 1 - (0.27 + 0.25 * lines) / height, under, ha="left", va="top", fontsize=9, color=QUIET, linespacing=1.35)
+    figure.text(left, 1 - (0.27 + 0.25 * lines) / height, under, ha="left", va="top", fontsize=9, color=QUIET,
+                linespacing=1.35)
 
 
 HALO: dict[str, Any] = {"boxstyle": "square,pad=0.08", "facecolor": PAPER, "edgecolor": "none", "alpha": 0.8}
@@ -72,8 +74,8 @@ HALO: dict[str, Any] = {"boxstyle": "square,pad=0.08", "facecolor": PAPER, "edge
 def label(axes: Axes, x: float, y: float, text: str, colour_: str, **changes: Any) -> Any:
     """Write a curve's name beside a point of it."""
     options: dict[str, Any] = {"xytext": (7, 0), "ha": "left", "va": "center"} | changes
-    return axes.annotate(text, (x, y), textcoords="offset points", color=colour_, fontsize=9, fontweight="bold", zorder=6,
-                         bbox=HALO, **options)
+    return axes.annotate(text, (x, y), textcoords="offset points", color=colour_, fontsize=9, fontweight="bold",
+                         zorder=6, bbox=HALO, **options)
 
 
 def save(figure: Figure, folder: pathlib.Path, name: str) -> list[pathlib.Path]:

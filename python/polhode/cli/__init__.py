@@ -1,6 +1,7 @@
 """The command line: `polhode run`, `chart`, `methods` and `inertia`.
 
-Exit status: 0 fine, 1 a finding (an invariant that moved, a body that cannot be), 2 bad input, with one line that says what.
+Exit status: 0 fine, 1 a finding (an invariant that moved, a body that cannot be), 2 bad input, with one line that says
+what.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ def _run(arguments: Sequence[str] | None) -> int:
             raise
         return _say(f"the command line needs {error.name}: pip install 'polhode[cli]'", 2)
     except BrokenPipeError:   # the reader has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())   # or Python complains when it flushes at the end
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())   # Python flushes once more at the end
         return 0
     except KeyboardInterrupt:
         return _say("interrupted", 130)

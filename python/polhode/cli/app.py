@@ -65,7 +65,8 @@ def run(
     atol: Annotated[float | None, typer.Option(help="Absolute tolerance of a step.")] = None,
     step: Annotated[float | None, typer.Option(help="Of methods with a fixed step [s].")] = None,
     max_steps: Annotated[int, typer.Option(help="Give up after so many.")] = 10_000_000,
-    output: Annotated[pathlib.Path | None, typer.Option("-o", "--output", help="Write all samples: .csv, .npz or .json.")] = None,
+    output: Annotated[
+        pathlib.Path | None, typer.Option("-o", "--output", help="Write all samples: .csv, .npz or .json.")] = None,
     as_json: Json = False,
 ) -> int:
     """Turn the body of a scene, and show the ends, the invariants and the cost."""
@@ -116,8 +117,10 @@ def inertia(
 @_command
 def chart(
     scenes: Annotated[list[str], typer.Argument(help="Scene files, or names such as S1.")],
-    output: Annotated[pathlib.Path, typer.Option("-o", "--output", help="The folder for pictures and results.")] = pathlib.Path("charts"),
-    budget: Annotated[float, typer.Option(help="About how long the whole may take [s]; what does not fit is left out and listed.")] = 150.0,
+    output: Annotated[
+        pathlib.Path, typer.Option("-o", "--output", help="The folder for all files.")] = pathlib.Path("charts"),
+    budget: Annotated[
+        float, typer.Option(help="About how long it may take [s]; what does not fit is left out and listed.")] = 150.0,
     peers: Annotated[bool, typer.Option(help="Run SciPy beside, where it is installed.")] = True,
     as_json: Json = False,
 ) -> int:

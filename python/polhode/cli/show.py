@@ -27,7 +27,7 @@ def console(stderr: bool = False) -> Console:
 
 
 class Bar:
-    """Progress on stderr: a bar on a terminal, else a line whenever something new begins, and none for what ends at once."""
+    """Progress on stderr: a bar on a terminal, else a line when something new begins; what ends at once has none."""
 
     def __init__(self, title: str, total: float = 1.0) -> None:
         self._console = console(stderr=True)
@@ -88,7 +88,8 @@ def motion(result: Motion, seconds: float) -> None:
     """First and last samples, the invariants' drift, counts, message."""
     out = console()
     plan, n = result.plan, len(result)
-    out.print(Text(f"{result.scene.name or 'scene'}: {n} samples by {plan.method}, model {plan.model}, state {plan.state}"))
+    name = result.scene.name or "scene"
+    out.print(Text(f"{name}: {n} samples by {plan.method}, model {plan.model}, state {plan.state}"))
     names = ["t [s]"] + (["omega x", "y", "z [rad/s]"] if result.omega is not None else [])
     names += ["attitude x", "y", "z", "w"] if result.attitude is not None else []
     table = _table(*names, left=0)
@@ -149,18 +150,20 @@ def scene(result: SceneResult) -> None:
     known = f"input rounding {truth.floor:.0e}" if truth.floor is not None else f"uncertain by {truth.uncertainty:.0e}"
     out.print(Text(f"\n{result.scene.name} {result.title}: {headline(result)}"))
     out.print(Text(f"reference: {truth.kind} ({truth.source}), {known}"))
-    table = _table("method", "setting", "error", "time", "repeats", "steps", "derivatives", "drift of energy", "of momentum", left=2)
+    table = _table("method", "setting", "error", "time", "repeats", "steps", "derivatives", "drift of energy",
+                   "of momentum", left=2)
     for point in result.points:
         if not point.answered:
             continue
-        counts = [f"{point.stats[key]:,}" if point.stats.get(key, -1) >= 0 else "-" for key in ("steps", "derivatives")]
+        counts = [f"{point.stats[key]:,}" if key in point.stats else "-" for key in ("steps", "derivatives")]
         table.add_row(point.candidate, point.setting, f"{point.error:.1e}", to_time(point.seconds), str(point.repeats),
                       *counts, *_drifts(point))
     out.print(table)
     missing: dict[tuple[str, str], list[str]] = {}
     for point in result.points:
         if not point.answered:
-            missing.setdefault((point.candidate, ("left out: " if point.left_out else "failed: ") + point.why), []).append(point.setting)
+            why = f"{'left out' if point.left_out else 'failed'}: {point.why}"
+            missing.setdefault((point.candidate, why), []).append(point.setting)
     for (name, why), settings in missing.items():
         out.print(Text(f"{name} {', '.join(settings)}: {why}"))
     for note in result.notes:
