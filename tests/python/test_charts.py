@@ -16,7 +16,8 @@ from polhode.charts.findings import (
 )  # fmt: skip
 from polhode.charts.measure import Point, SceneResult, measure
 from polhode.charts.results import document
-from polhode.charts.scipy_peer import refuses, right_hand_side
+from polhode.charts.right_hand_sides import in_floats, in_numpy
+from polhode.charts.scipy_peer import refuses
 from polhode.charts.truth import Truth, compute_errors, find_truth
 
 TINY = ph.Scene(inertia=(1.0, 2.0, 2.5), omega=(1.0, 2.0, 3.0), times=np.linspace(0, 1, 5), name="tiny")
@@ -102,7 +103,8 @@ def test_closed_forms_take_part_where_they_apply(name, exact):
 
 
 @pytest.mark.parametrize("name", ["S1", "S4", "S5", "S6", "S7", "S7b", "S9"])
-def test_scipys_right_hand_side_is_the_derivative_of_the_truth(name):
+@pytest.mark.parametrize("right_hand_side", [in_floats, in_numpy])
+def test_right_hand_sides_are_the_derivative_of_the_motion(name, right_hand_side):
     """Against difference quotients of a solution one step of 1e-4 of the span's scale either way."""
     scene = ph.Scene.load(name)
     if name == "S7b":   # start on the slow motion, where differences can be taken
@@ -121,7 +123,8 @@ def test_scipys_right_hand_side_is_the_derivative_of_the_truth(name):
     np.testing.assert_allclose(found / scale, slope / scale, atol=2e-8 if name != "S7b" else 2e-3)
 
 
-def test_scipys_right_hand_side_for_a_full_tensor_and_a_torque_fixed_in_space():
+@pytest.mark.parametrize("right_hand_side", [in_floats, in_numpy])
+def test_right_hand_sides_for_a_full_tensor_and_a_torque_fixed_in_space(right_hand_side):
     turn = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]])
     tensor = turn @ np.diag([1.0, 2.0, 2.5]) @ turn.T
     scene = ph.Scene(inertia=tensor, omega=(1.0, 2.0, 3.0), attitude=(0.1, 0.7, 0.1, 0.7),

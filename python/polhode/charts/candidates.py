@@ -18,6 +18,7 @@ from ..motion import Floats
 from ..scene import Scene
 from ..solver import methods, solve
 from . import scipy_peer
+from .right_hand_sides import in_floats, in_numpy
 
 
 class Answer(NamedTuple):
@@ -36,8 +37,8 @@ class Candidate(NamedTuple):
     """One way to answer a scene.
 
     `settings`: what is swept, from loose to tight, as (label, value). `run(scene, value, limit)` answers the scene, or
-    raises `Failure`; it ends after `limit` seconds when that is given, and otherwise looks at no clock, so that timed runs
-    pay for none. `refuses(scene)`: why it does not take part, or "".
+    raises `Failure`; it ends after `limit` seconds when that is given, and otherwise looks at no clock, so that runs which
+    are timed pay for none. `refuses(scene)`: why it does not take part, or "".
     """
 
     name: str
@@ -109,20 +110,21 @@ def _exact() -> list[Candidate]:
     ]
 
 
-def _peer(name: str, method: str, last: int) -> Candidate:
+def _scipy(name: str, method: str, make: Callable[[Scene], Any], last: int) -> Candidate:
     def run(scene: Scene, rtol: float, limit: float | None) -> Answer:
         try:
-            return Answer(*scipy_peer.run(scene, method, rtol, limit))
+            return Answer(*scipy_peer.run(scene, make, method, rtol, limit))
         except (scipy_peer.Stopped, FloatingPointError) as error:
             raise Failure(str(error)) from None
 
     # A run takes up to seconds, so every third decade is what there is time for.
-    return Candidate(name, "peer", "scipy.integrate.solve_ivp with a NumPy right-hand side",
+    return Candidate(name, "peer", f"scipy.integrate.solve_ivp, right-hand side {make.__name__.replace('_', ' ')}",
                      tolerances(3, last, 3), run, scipy_peer.refuses)
 
 
 def candidates(with_peers: bool = True) -> list[Candidate]:
     """Return everyone who takes part, polhode's own first."""
     own = [_adaptive(record) for record in methods() if record["adaptive"]]
-    peers = [_peer("SciPy RK45", "RK45", 12), _peer("SciPy DOP853", "DOP853", 12)]
+    peers = [_scipy("SciPy RK45", "RK45", in_floats, 12), _scipy("SciPy DOP853", "DOP853", in_floats, 12),
+             _scipy("SciPy RK45, NumPy", "RK45", in_numpy, 9)]
     return [*own, *_exact(), *(peers if with_peers else [])]

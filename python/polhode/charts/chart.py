@@ -17,7 +17,8 @@ from .candidates import candidates
 from .measure import SceneResult, measure
 from .results import document
 
-DRAWING = 1.5   # seconds a scene's picture takes, about
+DRAWING = 1.5    # seconds a scene's picture takes, about
+GENEROUS = 1.5   # times an equal share of the time left is what a scene may use
 
 
 def _title(source: Any) -> str:
@@ -93,7 +94,8 @@ def chart(
     results: list[SceneResult] = []
     for index, (scene, title) in enumerate(loaded):
         left = budget - (time.perf_counter() - start) - DRAWING * (len(loaded) + 2)
-        share = max(left, 0.1 * budget) / (len(loaded) - index)
+        # Most scenes need less than an equal share, and what they leave goes to those after them.
+        share = max(left, 0.1 * budget) * min(1.0, GENEROUS / (len(loaded) - index))
         label = scene.name or "scene"
         results.append(measure(scene, title, taking_part, share, lambda text: progress(index, f"{label}: {text}")))
         show(results[-1])

@@ -90,7 +90,7 @@ def all_ratios(results: list[SceneResult], peer: str) -> list[float]:
 
 
 def fastest(result: SceneResult) -> tuple[str, float, float] | None:
-    """Who is first at the tightest of 1e-12, 1e-9, 1e-6, 1e-3 that any stepping method reaches: name, error, seconds."""
+    """Who is first at the tightest of 1e-12, 1e-9, 1e-6, 1e-3 any stepping method reaches: name, error, seconds."""
     for error in (1e-12, 1e-9, 1e-6, 1e-3):
         times = {}
         for name in result.names("method"):

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 import pathlib
+import re
 import statistics
+import textwrap
 from typing import Any
 
 from . import style
 from .findings import (
-    all_ratios, headline, held_by_stability, stalls, to_error, to_ratio, to_time, under_headline, without_answer,
+    all_ratios, headline, held_by_stability, stalls, to_error, to_range, to_time, under_headline, without_answer,
 )  # fmt: skip
 from .measure import SceneResult
 
@@ -17,9 +19,11 @@ LOST = 4.0   # an attitude is never further off than pi
 
 
 def _wrap(text: str, width: int) -> str:
-    import textwrap
-
-    return "\n".join(textwrap.wrap(text, width))
+    """Wrap to lines of about the same length, keeping a number and its unit together."""
+    text = re.sub(r"(\d) ([µm]?s)\b", "\\1\u00a0\\2", text)
+    count = len(textwrap.wrap(text, width))
+    least = next(w for w in range(width // 2, width + 1) if len(textwrap.wrap(text, w)) == count)
+    return textwrap.fill(text, least)
 
 
 def _time_ticks(axes: Any, which: str = "y") -> None:
@@ -47,7 +51,8 @@ def _curves(axes: Any, result: SceneResult) -> list[tuple[float, float, str, str
         family = points[0].family
         x = [min(max(p.error, 1e-17), LOST) for p in points]
         axes.plot(x, [p.seconds for p in points], **style.line(name, family))
-        ends.append((x[-1], points[-1].seconds, name, style.colour(name)))
+        best = min(range(len(points)), key=lambda i: x[i])
+        ends.append((x[best], points[best].seconds, name, style.colour(name)))
     return ends
 
 
@@ -92,7 +97,7 @@ def _spread(axes: Any, ends: list[tuple[float, float, str, str]], gap: float = 1
 def work_precision(result: SceneResult, folder: pathlib.Path) -> list[pathlib.Path]:
     """One scene: time against error."""
     with style.used() as plt:
-        title, under = _wrap(headline(result), 70), _wrap(under_headline(result), 125)
+        title, under = _wrap(headline(result), 72), _wrap(under_headline(result), 125)
         below = 5.2 - 0.62 - 0.25 * title.count("\n") - 0.18 * under.count("\n")
         figure = plt.figure(figsize=(8.2, 5.2))
         axes = figure.add_axes((0.105, 0.62 / 5.2, 0.74, (below - 0.9) / 5.2))
@@ -114,9 +119,11 @@ def overview(results: list[SceneResult], folder: pathlib.Path) -> list[pathlib.P
     columns = min(len(results), 5 if len(results) > 8 else 4 if len(results) > 3 else 3)
     rows = -(-len(results) // columns)
     with style.used() as plt:
-        width, height = 1.0 + 2.35 * columns, 2.0 + 2.3 * rows
+        title = _wrap(_overview_title(results), 22 * columns)
+        top = 1.43 + 0.25 * title.count("\n")
+        width, height = 1.0 + 2.35 * columns, 0.32 + top + 2.3 * rows
         figure, grid = plt.subplots(rows, columns, figsize=(width, height), sharex=True, sharey=True, squeeze=False)
-        figure.subplots_adjust(left=0.72 / width, right=1 - 0.15 / width, bottom=0.62 / height, top=1 - 1.68 / height,
+        figure.subplots_adjust(left=0.72 / width, right=1 - 0.15 / width, bottom=0.62 / height, top=1 - top / height,
                                wspace=0.09, hspace=0.28)
         for axes in grid.flat[len(results):]:
             axes.set_visible(False)
@@ -138,13 +145,13 @@ def overview(results: list[SceneResult], folder: pathlib.Path) -> list[pathlib.P
         labels |= {name: f"closed form ({', '.join(closed)})" for name in closed[:1]}
         handles = [plt.Line2D([], [], label=text, **style.line(name, names[name])) for name, text in labels.items()]
         handles.append(plt.Line2D([], [], color=style.FLOOR, linestyle=(0, (1, 2)), label="rounding of the input"))
-        figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.6 / width, 1 - 0.98 / height), fontsize=9,
+        figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.6 / width, 1 - (top - 0.7) / height), fontsize=9,
                       ncols=len(handles), frameon=False, borderaxespad=0, handlelength=2.2, columnspacing=1.6)
         figure.supxlabel("largest error over all samples (more accurate to the right)", fontsize=9.5, color=style.QUIET,
                          y=0.1 / height)
         figure.supylabel("time for all samples", fontsize=9.5, color=style.QUIET, x=0.06 / width)
-        style.heading(figure, _wrap(_overview_title(results), 22 * columns),
-                      "one thread; ratios are medians over all scenes; lower and further right is better", 0.72 / width)
+        style.heading(figure, title,
+                      "one thread; ratios are each peer's median over all scenes; lower and further right is better", 0.72 / width)
         paths = style.save(figure, folder, "overview")
         plt.close(figure)
     return paths
@@ -157,14 +164,10 @@ def _overview_title(results: list[SceneResult]) -> str:
     if exact:
         worst, longest = max(p.error for p in exact), max(p.seconds for p in exact)
         parts.append(f"closed forms are right to {to_error(worst)} within {to_time(longest)}")
-    medians = {}
-    for peer in dict.fromkeys(n for r in results for n in r.names("peer")):
-        ratios = all_ratios(results, peer)
-        if ratios:
-            medians[peer] = statistics.median(ratios)
+    peers = dict.fromkeys(n for r in results for n in r.names("peer"))
+    medians = [statistics.median(ratios) for ratios in (all_ratios(results, peer) for peer in peers) if ratios]
     if medians:
-        listed = " and ".join(f"{to_ratio(ratio)} times that of {peer}" for peer, ratio in medians.items())
-        parts.append(f"at equal error {first}'s speed is {listed}")
+        parts.append(f"at equal error {first} is {to_range(medians)} times as fast as SciPy")
     text = "; ".join(parts) or "Time against error"
     return text[:1].upper() + text[1:]
 
@@ -212,8 +215,8 @@ def _stalling(axes: Any, result: SceneResult, results: list[SceneResult]) -> Non
     for name in result.names("exact"):
         exact = result.of(name)[0]
         axes.axhline(exact.error, color=style.colour(name), linewidth=2)
-        style.label(axes, tolerances[-1], exact.error, f"closed form: {to_error(exact.error)} in {to_time(exact.seconds)}",
-                    style.colour(name), xytext=(0, 6), va="bottom")
+        text = f"closed form: {to_error(exact.error)} in {to_time(exact.seconds)}"
+        style.label(axes, tolerances[-1], exact.error, text, style.colour(name), xytext=(0, 6), va="bottom")
     axes.set_ylim(min(1e-16, tolerances[0]), 10)
     _error_ticks(axes, "y")
     axes.set_ylabel("largest error")

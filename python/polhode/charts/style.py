@@ -18,7 +18,7 @@ FLOOR = "#9aa4ae"
 _COLOURS = {
     "rk45": "#0072b2", "dop853": "#009e73", "taylor": "#cc79a7",
     "FreeMotion": "#d55e00", "HeavyTop": "#d55e00",
-    "SciPy RK45": "#7a8794", "SciPy DOP853": "#3f4a55",
+    "SciPy RK45": "#7a8794", "SciPy DOP853": "#3f4a55", "SciPy RK45, NumPy": "#b3a08c",
 }
 _SPARE = ["#e69f00", "#56b4e9", "#8c6bb1", "#a6761d", "#1b7837"]
 _MARKERS = {"method": "o", "exact": "D", "peer": "s"}
