@@ -273,7 +273,8 @@ def test_results_json(charted):
         assert set(point["drift"]) == {"energy", "vertical_momentum"}
     assert points["1e-06"]["error"] < 1e-4 and points["1e-12"]["error"] < 1e-10
     motion = ph.solve(ph.Scene.load("S5"), method="rk45", rtol=1e-6)
-    assert points["1e-06"]["drift"] == pytest.approx(motion.drift) and points["1e-06"]["counts"] == motion.stats
+    assert points["1e-06"]["drift"] == pytest.approx(motion.drift)
+    assert all(points["1e-06"]["counts"][key] == motion.stats[key] for key in ("steps", "rejected", "derivatives"))
 
 
 def test_numbers_that_are_none_are_null():

@@ -21,6 +21,9 @@ from . import scipy_peer
 from .right_hand_sides import in_floats, in_numpy
 
 
+COUNTS = ("steps", "rejected", "derivatives")
+
+
 class Answer(NamedTuple):
     """What a candidate returns: the states at the scene's times, and what they cost."""
 
@@ -70,7 +73,7 @@ def _adaptive(record: dict[str, Any]) -> Candidate:
             raise Failure(motion.message)
         if motion.omega is None or motion.attitude is None:
             raise Failure("the scene does not want both omega and attitude")
-        return Answer(motion.omega, motion.attitude, motion.stats)
+        return Answer(motion.omega, motion.attitude, {key: int(motion.stats[key]) for key in COUNTS})
 
     return Candidate(record["name"], "method", record["source"], tolerances(3, 14), run, lambda scene: "")
 

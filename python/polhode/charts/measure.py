@@ -19,7 +19,7 @@ from .truth import Truth, compute_errors, find_truth
 
 ROUNDS = 5
 SHORTEST = 2e-3   # seconds of calls behind one reading of the clock
-SHARES = {"method": 0.3, "exact": 0.3, "peer": 0.7}   # of the budget: when a family must have ended; then come repeats
+SHARES = {"method": 0.8, "exact": 0.8, "peer": 0.7}   # of the budget: when a family must have ended; then come repeats
 LEAST = 0.1   # of the budget, for a candidate whose family has used its time up
 
 Report = Callable[[str], object]

@@ -9,6 +9,9 @@ import statistics
 import textwrap
 from typing import Any
 
+import numpy as np
+
+from ..motion import Floats
 from . import style
 from .findings import (
     all_ratios, headline, held_by_stability, stalls, to_error, to_range, to_time, under_headline, without_answer,
@@ -81,17 +84,32 @@ def _floor(axes: Any, result: SceneResult, text: bool) -> None:
                       zorder=6, bbox=style.HALO)
 
 
-def _spread(axes: Any, ends: list[tuple[float, float, str, str]], gap: float = 13.0) -> None:
-    """Write the names at the right end of the curves, pushed apart where they would lie on each other."""
-    height = axes.transData
-    placed: list[tuple[float, float]] = []
-    for x, y, name, ink in sorted(ends, key=lambda end: end[1]):
-        px, py = height.transform((x, y))
-        width, dy = 7.0 * len(name), 0.0
-        while any(abs(py + dy - qy) < gap and abs(px - qx) < width + 20 for qx, qy in placed):
-            dy += 2.0
-        placed.append((px, py + dy))
-        style.label(axes, x, y, name, ink, xytext=(8, dy * 72 / axes.figure.dpi))
+def _obstacles(axes: Any) -> Floats:
+    """Points on all curves, in pixels, four pixels apart."""
+    found = [np.empty((0, 2))]
+    for line in axes.get_lines():
+        if line.get_zorder() < 2:   # floors and guides may be crossed
+            continue
+        corners = line.get_transform().transform(np.column_stack(line.get_data()))
+        for start, end in zip(corners, corners[1:]):
+            count = int(np.hypot(*(end - start)) / 4) + 2
+            found.append(start + np.linspace(0, 1, count)[:, None] * (end - start))
+        found.append(corners)
+    return np.vstack(found)
+
+
+def _spread(axes: Any, ends: list[tuple[float, float, str, str]]) -> None:
+    """Write the names beside the ends of the curves, moved up or down to where they cover neither a curve nor a name."""
+    taken = _obstacles(axes)
+    for x, y, name, ink in sorted(ends, key=lambda end: -end[1]):
+        px, py = axes.transData.transform((x, y))
+        left, right = px + 7, px + 12 + 7.4 * len(name)
+        near = taken[(taken[:, 0] > left) & (taken[:, 0] < right)][:, 1]
+        shifts = sorted(range(-40, 41, 2), key=abs)
+        shift = next((dy for dy in shifts if not (np.abs(near - py - dy) < 9).any()), 0)
+        style.label(axes, x, y, name, ink, xytext=(8, shift * 72 / axes.figure.dpi))
+        own = np.column_stack([np.linspace(left, right, 12), np.full(12, py + shift)])
+        taken = np.vstack([taken, own + (0, 5), own, own - (0, 5)])
 
 
 def work_precision(result: SceneResult, folder: pathlib.Path) -> list[pathlib.Path]:
@@ -217,13 +235,13 @@ def _stalling(axes: Any, result: SceneResult, results: list[SceneResult]) -> Non
         axes.axhline(exact.error, color=style.colour(name), linewidth=2)
         text = f"closed form: {to_error(exact.error)} in {to_time(exact.seconds)}"
         style.label(axes, tolerances[-1], exact.error, text, style.colour(name), xytext=(0, 6), va="bottom")
-    axes.set_ylim(min(1e-16, tolerances[0]), 10)
+    axes.set_ylim(min(1e-16, tolerances[0]), 1e4)   # room for the legend
     _error_ticks(axes, "y")
     axes.set_ylabel("largest error")
     best = min(p.error for n in result.names("method") for p in result.of(n))
     axes.set_title(f"{result.scene.name} {result.title}: rounding keeps the error\n"
                    f"above {to_error(best)}, whatever the tolerance")
-    axes.legend(loc="upper right", frameon=False, fontsize=9)
+    axes.legend(loc="upper right", frameon=False, fontsize=9, ncols=2, borderaxespad=0.2)
 
 
 def _stiff(axes: Any, result: SceneResult, results: list[SceneResult]) -> None:
@@ -249,4 +267,4 @@ def _stiff(axes: Any, result: SceneResult, results: list[SceneResult]) -> None:
     axes.set_title(f"{result.scene.name} {result.title}: stability asks for {min(steps):,} steps\n"
                    f"({to_time(min(p.seconds for p in points))}), whatever the tolerance")
     axes.set_ylim(None, max(e[1] for e in ends) * 2.5)
-    _spread(axes, ends, gap=11)
+    _spread(axes, ends)
