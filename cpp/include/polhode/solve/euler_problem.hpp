@@ -100,8 +100,7 @@ class EulerProblem {
     }
   }
 
-  /// |q| = 1 again. The derivative of q is linear in q and scales with it; what the torques make of so small a change is
-  /// of higher order than the step's error.
+  /// |q| = 1 again. The derivative of q is linear in q and the torques see only its direction, so both scale alike.
   void restore(double* y, double* f) const {
     if constexpr (with_attitude) {
       const double s = compute_unit_scale(y + 3);

@@ -52,9 +52,10 @@ class GravityGradient {
  private:
   void compute_radial(const TorqueInput& in, double* u_B) const {
     const double angle = mean_motion_ * in.t + phase_;
-    const double c = std::cos(angle), s = std::sin(angle);
     const double x = in.attitude[0], y = in.attitude[1], z = in.attitude[2], w = in.attitude[3];
     const double xx = x * x, yy = y * y, zz = z * z, ww = w * w;
+    const double unit = 1.0 / (xx + yy + zz + ww);
+    const double c = std::cos(angle) * unit, s = std::sin(angle) * unit;
     u_B[0] = c * (ww + xx - yy - zz) + s * (2 * (x * y + w * z));   // rows x and y of R_WB
     u_B[1] = c * (2 * (x * y - w * z)) + s * (ww - xx + yy - zz);
     u_B[2] = c * (2 * (x * z + w * y)) + s * (2 * (y * z - w * x));

@@ -21,7 +21,7 @@ struct TorqueTraits {
   double pattern_rate = 0.0;         ///< the potential turns about space z at this rate [rad/s]; 0: it stands still
 };
 
-/// All that a torque may look at. Within a step `attitude` is unit up to the error of the step.
+/// All that a torque may look at. `attitude` is any positive multiple of a unit quaternion (x, y, z, w).
 struct TorqueInput {
   double t;                          ///< [s]
   const double* omega;               ///< w_B, 3 numbers [rad/s]
