@@ -94,7 +94,8 @@ Array normalize(py::handle value, bool scalar_first) {
   require_finite(q, "quat");
   const double* p = in + 4 * refused;
   const double size = norm({p[0], p[1], p[2], p[3]});
-  throw InvalidInput(at_row("quat", refused, q, 1), "a unit quaternion (x, y, z, w) within 1e-6", "norm " + to_text(size),
+  throw InvalidInput(at_row("quat", refused, q, 1), "a unit quaternion (x, y, z, w) within 1e-6",
+                     "norm " + to_text(size),
                      size == 0.0 ? "no attitude has norm 0" : "normalise it first, if it is meant to be an attitude");
 }
 
@@ -143,10 +144,9 @@ Array from_euler(py::handle seq, py::handle value, bool degrees) {
 }
 
 /// Rows (..., 4) to rows (..., tail) by a kernel that refuses nothing.
-template <class Out, class Kernel>
-py::array_t<Out, py::array::c_style | py::array::forcecast> convert(const Array& q, std::initializer_list<py::ssize_t> tail,
-                                                                    const Kernel& kernel) {
-  py::array_t<Out, py::array::c_style | py::array::forcecast> result(with_tail(q, 1, tail));
+template <class Out, class Kernel, class Result = py::array_t<Out, py::array::c_style | py::array::forcecast>>
+Result convert(const Array& q, std::initializer_list<py::ssize_t> tail, const Kernel& kernel) {
+  Result result(with_tail(q, 1, tail));
   const std::size_t n = rows(q, 4);
   const double* in = q.data();
   Out* out = result.mutable_data();

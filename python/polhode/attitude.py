@@ -79,8 +79,8 @@ class Rotation:
         Parameters
         ----------
         matrix : array_like, shape (..., 3, 3)
-            Orthogonal within 1e-6 (largest entry of R^T R - 1), then replaced by the nearest rotation, its polar
-            factor. SciPy takes the polar factor of any matrix of positive determinant.
+            Orthogonal within 1e-6 (largest entry of R^T R - 1), then replaced by the nearest rotation. SciPy takes
+            the nearest rotation of any matrix of positive determinant.
 
         Raises
         ------
@@ -101,7 +101,6 @@ class Rotation:
         ----------
         rotvec : array_like, shape (..., 3)
             [rad], or degrees when asked for; of any length.
-        degrees : bool
 
         Raises
         ------
@@ -121,7 +120,6 @@ class Rotation:
             lower case about the fixed axes (extrinsic). The textbook's (phi, theta, psi) are "ZXZ".
         angles : array_like, shape (..., len(seq)); also a number for one axis
             [rad], or degrees when asked for, in the order of the letters.
-        degrees : bool
 
         Raises
         ------
@@ -139,20 +137,15 @@ class Rotation:
 
     @staticmethod
     def random(
-        num: int | None = None,
-        rng: np.random.Generator | int | None = None,
-        *,
+        num: int | None = None, rng: np.random.Generator | int | None = None, *,
         shape: int | tuple[int, ...] | None = None,
     ) -> Rotation:
         """Uniform over all rotations: one, `num` of them, or an array of the shape.
 
         Parameters
         ----------
-        num : int, optional
         rng : numpy.random.Generator or a seed for one, optional
             The same generator gives the same rotations as SciPy's.
-        shape : tuple of int, optional
-            Instead of `num`.
         """
         quat = np.random.default_rng(rng).normal(size=(*_shape_of(num, shape), 4))
         return Rotation(quat / np.linalg.norm(quat, axis=-1, keepdims=True))
@@ -203,7 +196,6 @@ class Rotation:
         ----------
         seq : str
             Three axes, as in `from_euler`.
-        degrees : bool
 
         Returns
         -------
@@ -247,7 +239,6 @@ class Rotation:
         ----------
         vectors : array_like, shape (..., 3)
             Its leading dimensions broadcast with those of the rotations.
-        inverse : bool
 
         Raises
         ------
@@ -281,14 +272,9 @@ class Rotation:
             return self
         return self.inv() if n == -1.0 else Rotation.from_rotvec(n * self.as_rotvec())
 
-    def approx_equal(
-        self, other: Any, atol: float | None = None, degrees: bool = False
-    ) -> NDArray[np.bool_] | bool:
-        """Whether the angle between the two rotations is below `atol` [rad], 1e-8 unless given."""
-        if atol is None:
-            limit = 1e-8
-        else:
-            limit = float(np.deg2rad(atol)) if degrees else atol
+    def approx_equal(self, other: Any, atol: float | None = None, degrees: bool = False) -> NDArray[np.bool_] | bool:
+        """Whether the angle between the two rotations is below `atol`, 1e-8 rad unless given."""
+        limit = 1e-8 if atol is None else float(np.deg2rad(atol)) if degrees else atol
         return (Rotation(other) * self.inv()).magnitude() < limit
 
     # ---- as a container
@@ -324,7 +310,7 @@ class Rotation:
             raise TypeError(f"a single Rotation {what}")
 
     def __eq__(self, other: object) -> bool:
-        """Whether both are the same rotations, bit by bit up to the sign of each quaternion (see `approx_equal`)."""
+        """Whether both are the same, bit by bit up to the sign of each quaternion (see `approx_equal`)."""
         if not isinstance(other, Rotation):
             return NotImplemented
         return np.array_equal(self.as_quat(canonical=True), other.as_quat(canonical=True))
@@ -336,8 +322,8 @@ class Rotation:
         return _wrap, (self._quat,)
 
     def __repr__(self) -> str:
-        quat = np.array2string(self._quat, separator=", ", threshold=40, floatmode="unique", prefix="Rotation.from_quat(")
-        return f"Rotation.from_quat({quat})"
+        head = "Rotation.from_quat("
+        return head + np.array2string(self._quat, separator=", ", threshold=40, floatmode="unique", prefix=head) + ")"
 
 
 def _set(rotation: Rotation, quat: FloatArray) -> None:

@@ -19,7 +19,9 @@ def refused(call, match):
     assert isinstance(caught.value, ValueError)
 
 
-@pytest.mark.parametrize("bad", ["", "ZXZX", "ZZX", "XYY", "zXz", "ABC", "12", "Q", "XX", "xY", 5, None, ["z", "x"], b"ZXZ"])
+@pytest.mark.parametrize(
+    "bad", ["", "ZXZX", "ZZX", "XYY", "zXz", "ABC", "12", "Q", "XX", "xY", 5, None, ["z", "x"], b"ZXZ"]
+)
 def test_unknown_sequences(bad):
     refused(lambda: R.from_euler(bad, [0.1, 0.2, 0.3]), "sequence: must be")
     for call in (one.as_euler, one.gimbal_lock):
@@ -71,7 +73,7 @@ def test_nan_and_inf(name, value):
 
 
 def test_quaternions_far_from_unit():
-    refused(lambda: R.from_quat([0, 0, 0, 0]), r"quat: must be a unit quaternion \(x, y, z, w\) within 1e-6, got norm 0")
+    refused(lambda: R.from_quat([0, 0, 0, 0]), r"quat: must be a unit quaternion .* within 1e-6, got norm 0")
     refused(lambda: R.from_quat([0, 0, 0, 2]), "norm 2")
     refused(lambda: R.from_quat([0, 0, 0, 1 + 1.1e-6]), "norm 1.0000011")
     refused(lambda: R.from_quat([1e-200, 0, 0, 0]), "norm 1e-200")

@@ -54,7 +54,9 @@ std::size_t quat_from_euler(const EulerSequence& sequence, std::size_t n, const 
 }
 
 void to_euler(const EulerSequence& sequence, std::size_t n, const double* q, double unit, double* angles) {
-  for (std::size_t i = 0; i < n; ++i) store(Vector3d(polhode::to_euler(sequence, load(q + 4 * i)) / unit), angles + 3 * i);
+  for (std::size_t i = 0; i < n; ++i) {
+    store(Vector3d(polhode::to_euler(sequence, load(q + 4 * i)) / unit), angles + 3 * i);
+  }
 }
 
 void gimbal_lock(const EulerSequence& sequence, std::size_t n, const double* q, bool* locked) {

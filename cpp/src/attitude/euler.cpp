@@ -113,7 +113,7 @@ Vector3d to_euler(const EulerSequence& sequence, const Quat& q_WB) {
     if (sequence.proper()) {
       middle = 2.0 * std::atan2(p.r_difference, p.r_sum);
     } else {
-      // sin and cos of the middle angle: (r_sum^2 - r_difference^2)/2, without the cancellation, and r_sum r_difference.
+      // Its sine and cosine: (r_sum^2 - r_difference^2)/2, without the cancellation, and r_sum r_difference.
       const double v[3] = {q_WB.x, q_WB.y, q_WB.z};
       const double sine = 2.0 * (q_WB.w * v[sequence.second()] +
                                  sequence.sign() * v[sequence.first()] * v[sequence.other()]);

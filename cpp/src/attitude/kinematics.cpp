@@ -38,7 +38,8 @@ Vector3d body_rates(const EulerSequence& sequence, const Vector3d& angles, const
   return turned(w_F, sequence.last(), -angles[2 - out]);
 }
 
-bool try_euler_rates(const EulerSequence& sequence, const Vector3d& angles, const Vector3d& w_B, Vector3d& angle_rates) {
+bool try_euler_rates(const EulerSequence& sequence, const Vector3d& angles, const Vector3d& w_B,
+                     Vector3d& angle_rates) {
   const int out = sequence.extrinsic() ? 2 : 0;
   const double s = std::sin(angles[1]), c = std::cos(angles[1]);
   // The double nearest to a pole is within half an ulp of it; theta = 0 is a pole only when it is 0.
@@ -65,7 +66,7 @@ Vector3d euler_rates(const EulerSequence& sequence, const Vector3d& angles, cons
   Vector3d angle_rates;
   if (try_euler_rates(sequence, angles, w_B, angle_rates)) return angle_rates;
   throw InvalidInput(where,
-                     std::string("away from gimbal lock, which for '") + sequence.letters() + "' is a middle angle of " +
+                     "away from gimbal lock, which for '" + sequence.letters() + "' is a middle angle of " +
                          (sequence.proper() ? "0 or pi" : "+-pi/2"),
                      to_text(angles[1]),
                      "the first and the third turn have one axis there; use another sequence or quaternions");

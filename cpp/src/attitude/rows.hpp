@@ -21,8 +21,8 @@ inline double back_to_unit_if_off(double square) {
   return std::abs(square - 1.0) <= 0x1p-51 ? 1.0 : back_to_unit(square);
 }
 
-/// The quaternion of sines s and cosines c of the half angles, in intrinsic order (first, second, last); out is x y z w.
-/// Products of q = (c0 + s0 e_first)(c1 + s1 e_second)(c2 + s2 e_last) with e_first e_second = sign e_other.
+/// The quaternion x y z w of sines s and cosines c of the half angles, in intrinsic order (first, second, last):
+/// products of q = (c0 + s0 e_first)(c1 + s1 e_second)(c2 + s2 e_last) with e_first e_second = sign e_other.
 inline void compose(const EulerSequence& sequence, const double* s, const double* c, double* out) {
   const int i = sequence.first(), j = sequence.second(), k = sequence.other();
   const double cc = c[0] * c[2], ss = s[0] * s[2], sc = s[0] * c[2], cs = c[0] * s[2], e = sequence.sign();

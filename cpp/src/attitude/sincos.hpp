@@ -30,15 +30,21 @@ inline void sincos(std::size_t count, const double* __restrict x, double* __rest
     const double r = r0 + rest, tail = (r0 - r) + rest;
 
     const double z = r * r;
-    const double sine_sum =
-        z * (-1.0 / 6 +
-             z * (1.0 / 120 +
-                  z * (-1.0 / 5040 +
-                       z * (1.0 / 362880 + z * (-1.0 / 39916800 + z * (1.0 / 6227020800.0 + z * (-1.0 / 1307674368000.0 + z * (1.0 / 355687428096000.0))))))));
-    const double cosine_sum =
-        z * z *
-        (1.0 / 24 +
-         z * (-1.0 / 720 + z * (1.0 / 40320 + z * (-1.0 / 3628800 + z * (1.0 / 479001600 + z * (-1.0 / 87178291200.0 + z * (1.0 / 20922789888000.0)))))));
+    double sine_sum = 1.0 / 355687428096000.0;  // 1/17!, then down to 1/3!
+    sine_sum = -1.0 / 1307674368000.0 + z * sine_sum;
+    sine_sum = 1.0 / 6227020800.0 + z * sine_sum;
+    sine_sum = -1.0 / 39916800 + z * sine_sum;
+    sine_sum = 1.0 / 362880 + z * sine_sum;
+    sine_sum = -1.0 / 5040 + z * sine_sum;
+    sine_sum = 1.0 / 120 + z * sine_sum;
+    sine_sum = z * (-1.0 / 6 + z * sine_sum);
+    double cosine_sum = 1.0 / 20922789888000.0;  // 1/16!, then down to 1/4!
+    cosine_sum = -1.0 / 87178291200.0 + z * cosine_sum;
+    cosine_sum = 1.0 / 479001600 + z * cosine_sum;
+    cosine_sum = -1.0 / 3628800 + z * cosine_sum;
+    cosine_sum = 1.0 / 40320 + z * cosine_sum;
+    cosine_sum = -1.0 / 720 + z * cosine_sum;
+    cosine_sum = z * z * (1.0 / 24 + z * cosine_sum);
     const double sine = r + (r * sine_sum + tail);
     const double half = 0.5 * z, top = 1.0 - half;
     const double cosine = top + (((1.0 - top) - half) + (cosine_sum - r * tail));
