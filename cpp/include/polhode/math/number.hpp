@@ -76,12 +76,20 @@ POLHODE_INLINE N max(N a, N b) {
 template <class N>
 using Mask = decltype(N{} < N{});
 
-/// c[0] + c[1] x + c[2] x^2 + ..., by Horner's rule.
+/// c[0] + c[1] x + c[2] x^2 + ..., by Estrin's rule: in pairs, so that the steps need not wait for one another.
 template <class C, class N, int n>
 POLHODE_INLINE N polynomial(const C (&c)[n], N x) {
-  N sum = N(c[n - 1]);
-  for (int i = n - 2; i >= 0; --i) sum = madd(sum, x, N(c[i]));
-  return sum;
+  N term[(n + 1) / 2];
+  int count = 0;
+  for (int i = 0; i + 1 < n; i += 2) term[count++] = madd(N(c[i + 1]), x, N(c[i]));
+  if (n % 2 == 1) term[count++] = N(c[n - 1]);
+  for (N power = x * x; count > 1; power = power * power) {
+    int kept = 0;
+    for (int i = 0; i + 1 < count; i += 2) term[kept++] = madd(term[i + 1], power, term[i]);
+    if (count % 2 == 1) term[kept++] = term[count - 1];
+    count = kept;
+  }
+  return term[0];
 }
 
 }  // namespace polhode::math
