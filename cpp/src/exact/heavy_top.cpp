@@ -9,6 +9,7 @@
 
 #include "heavy_top_setup.hpp"
 #include "polhode/core/error.hpp"
+#include "polhode/exact/heavy_top_kernels.hpp"
 
 namespace polhode {
 namespace {
@@ -203,21 +204,7 @@ void HeavyTop::at(const double* t, std::size_t n, double* omega, double* attitud
                          "beyond it the phase has fewer than 7 digits");
     }
   }
-  const auto store = [=](std::size_t i, const exact::HeavyTopState<double>& s) {
-    if (omega) omega[3 * i] = s.w1, omega[3 * i + 1] = s.w2, omega[3 * i + 2] = s.w3;
-    if (attitude) {
-      double* q = attitude + 4 * i;
-      q[0] = s.x, q[1] = s.y, q[2] = s.z, q[3] = s.w;
-    }
-  };
-  const auto all = [&]<bool hyper, bool framed>() {
-    for (std::size_t i = 0; i < n; ++i) store(i, exact::evaluate_heavy_top<hyper, framed>(constants_, t[i]));
-  };
-  if (constants_.hyper) {
-    constants_.framed ? all.operator()<true, true>() : all.operator()<true, false>();
-  } else {
-    constants_.framed ? all.operator()<false, true>() : all.operator()<false, false>();
-  }
+  exact::heavy_top_loop()(constants_, t, n, omega, attitude);
 }
 
 State HeavyTop::at(double t) const {

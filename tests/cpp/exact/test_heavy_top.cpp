@@ -10,6 +10,7 @@
 #include "polhode/core/error.hpp"
 #include "polhode/exact/free_motion.hpp"
 #include "polhode/exact/heavy_top.hpp"
+#include "polhode/exact/heavy_top_kernels.hpp"
 
 using namespace polhode;
 
@@ -122,6 +123,36 @@ TEST_CASE("the two forms of the series agree where one takes over from the other
       CHECK(jump <= 20 * (step + 4 * e));
       CHECK(std::abs(a.nutation_period() - b.nutation_period()) <= 1e-13 * a.nutation_period());
       CHECK(std::abs(a.precession_rate() - b.precession_rate()) <= 1e-13 * (1 + std::abs(a.precession_rate())));
+    }
+  }
+}
+
+TEST_CASE("every compiled level answers alike: avx2 and avx512 to the bit, a row wherever it stands") {
+  std::vector<double> times;
+  for (int i = 0; i < 37; ++i) times.push_back(0.37 * i - 3);
+  const std::size_t n = times.size();
+  const HeavyTop tops[] = {{Vector3d(1, 1, 0.5), 1.3, {0.1, 0.2, 5}, tilted},
+                           {Vector3d(1, 0.5, 1), -1.3, {0.1, 0.2, 5}, tilted},
+                           {Vector3d(1, 1, 1), 12.5, {4.000004, 3, 3}, level},
+                           {Vector3d(1, 1, 1), -12.5, {4, -3, -3}, {-level.x, 0, 0, level.w}}};
+  for (const HeavyTop& top : tops) {
+    std::vector<std::vector<double>> answers;
+    for (int of = 0; of <= static_cast<int>(simd_level()); ++of) {
+      std::vector<double> rows(7 * n), alone(7);
+      const auto loop = exact::heavy_top_loop(static_cast<SimdLevel>(of));
+      loop(top.constants(), times.data(), n, rows.data(), rows.data() + 3 * n);
+      for (const std::size_t i : {std::size_t{0}, std::size_t{5}, n - 1}) {
+        loop(top.constants(), &times[i], 1, alone.data(), alone.data() + 3);
+        CHECK(std::equal(alone.begin(), alone.begin() + 3, rows.begin() + static_cast<std::ptrdiff_t>(3 * i)));
+        CHECK(std::equal(alone.begin() + 3, alone.end(), rows.begin() + static_cast<std::ptrdiff_t>(3 * n + 4 * i)));
+        loop(top.constants(), &times[i], 1, nullptr, alone.data());
+        CHECK(std::equal(alone.begin(), alone.begin() + 4, rows.begin() + static_cast<std::ptrdiff_t>(3 * n + 4 * i)));
+      }
+      answers.push_back(rows);
+    }
+    if (answers.size() == 3) CHECK(answers[1] == answers[2]);
+    for (std::size_t i = 0; i < 7 * n; ++i) {
+      CHECK(std::abs(answers[0][i] - answers.back()[i]) <= 20 * e * (i < 3 * n ? 5 : 1));
     }
   }
 }

@@ -10,6 +10,21 @@
 // sum is which: docs/heavy_top.md. Templates over a lane type V as in polhode/math/number.hpp.
 namespace polhode::exact {
 
+// Named here so that the C library's own names of the global namespace are never meant, and lanes find their own.
+using math::abs, math::copysign, math::madd, math::rint, math::select, math::sqrt;
+using math::cycle_fraction, math::exp_minus, math::polynomial, math::sincos_cycles;
+using math::two_diff, math::two_prod, math::two_sum;
+
+/// a b + c d and a b - c d.
+template <class V>
+POLHODE_INLINE V plus(V a, V b, V c, V d) {
+  return madd(a, b, c * d);
+}
+template <class V>
+POLHODE_INLINE V less(V a, V b, V c, V d) {
+  return madd(a, b, -(c * d));
+}
+
 inline constexpr int degree_12 = 8;  ///< of the polynomials of omega: their terms fall as q^(n^2 / 2), q <= 0.21
 
 /// A rate or an angle in cycles, as a double-double.
@@ -95,20 +110,20 @@ POLHODE_INLINE HeavyTopSums<N> heavy_top_hyper_sums(const N (&cos_a)[4], const N
 /// The hyperbolic form, for k^2 > 0.97 up to the homoclinic motion; passages counts the nutations done.
 template <class V>
 POLHODE_INLINE HeavyTopSums<V> heavy_top_hyper(const HeavyTopConstants& c, V s, V& passages) {
-  passages = math::rint(math::madd(s, V(c.rate_z.hi), V(c.start_z)));
-  const auto moved = math::two_prod(s, V(c.v_rate_hi)), done = math::two_prod(passages, V(c.v_passage_hi));
-  const auto left = math::two_diff(moved.hi, done.hi), sum = math::two_sum(left.hi, V(c.v_start_hi));
-  const V rest = math::madd(s, V(c.v_rate_lo), moved.lo) - math::madd(passages, V(c.v_passage_lo), done.lo);
+  passages = rint(madd(s, V(c.rate_z.hi), V(c.start_z)));
+  const auto moved = two_prod(s, V(c.v_rate_hi)), done = two_prod(passages, V(c.v_passage_hi));
+  const auto left = two_diff(moved.hi, done.hi), sum = two_sum(left.hi, V(c.v_start_hi));
+  const V rest = madd(s, V(c.v_rate_lo), moved.lo) - madd(passages, V(c.v_passage_lo), done.lo);
   const V v = sum.hi + (sum.lo + (left.lo + (rest + V(c.v_start_lo))));
-  const V E = math::exp_minus(math::abs(v)), nome = V(c.nome);
+  const V E = exp_minus(abs(v)), nome = V(c.nome);
   // Where q' is 0 or nearly, e^{-|v|} may be far smaller: nothing grows then.
-  const V g = math::select(nome > V(1e-290), nome / (E * E), V(0.0));
+  const V g = select(nome > V(1e-290), nome / (E * E), V(0.0));
   V ca[4], sa[4], cb[4], sb[4];
   for (int n = 0; n < 4; ++n) {
     ca[n] = V(c.cos_a[n]), sa[n] = V(c.sin_a[n]);
     cb[n] = V(c.cos_b[n]), sb[n] = V(c.sin_b[n]);
   }
-  return heavy_top_hyper_sums<V>(ca, sa, cb, sb, nome, math::copysign(V(1.0), v), E, g);
+  return heavy_top_hyper_sums<V>(ca, sa, cb, sb, nome, copysign(V(1.0), v), E, g);
 }
 
 /// N1, N2 and the rotating part of omega: what the two forms give to the state.
@@ -121,21 +136,21 @@ struct HeavyTopParts {
 template <class V>
 POLHODE_INLINE HeavyTopParts<V> heavy_top_trig(const HeavyTopConstants& c, V s) {
   V sz, cz;
-  math::sincos_cycles(math::cycle_fraction(s, V(c.rate_z.hi), V(c.rate_z.lo), V(c.start_z)), sz, cz);
+  sincos_cycles(cycle_fraction(s, V(c.rate_z.hi), V(c.rate_z.lo), V(c.start_z)), sz, cz);
   const V X = (cz + sz) * (cz - sz);
-  return {sz * math::polynomial(c.p[0], X), cz * math::polynomial(c.p[1], X),
-          cz * math::polynomial(c.p[2], X), sz * math::polynomial(c.p[3], X),
-          math::polynomial(c.even, X),      (sz * cz) * math::polynomial(c.odd, X)};
+  return {sz * polynomial(c.p[0], X), cz * polynomial(c.p[1], X),
+          cz * polynomial(c.p[2], X), sz * polynomial(c.p[3], X),
+          polynomial(c.even, X),      (sz * cz) * polynomial(c.odd, X)};
 }
 
 /// The hyperbolic sums made parts.
 template <class V>
 POLHODE_INLINE HeavyTopParts<V> heavy_top_parts(const HeavyTopConstants& c, const HeavyTopSums<V>& f) {
-  const V t_re = f.n1_re * f.d2_re + f.n1_im * f.d2_im - (f.n2_re * f.d1_re + f.n2_im * f.d1_im);
-  const V t_im = f.n1_re * f.d2_im - f.n1_im * f.d2_re + (f.n2_re * f.d1_im - f.n2_im * f.d1_re);
-  const V q_re = f.n1_re * f.n2_re + f.n1_im * f.n2_im, q_im = f.n1_re * f.n2_im - f.n1_im * f.n2_re;
-  return {f.n1_re, f.n1_im, f.n2_re, f.n2_im,
-          V(c.speed) * t_re - V(c.turn) * q_im, V(c.speed) * t_im + V(c.turn) * q_re};
+  const V t_re = plus(f.n1_re, f.d2_re, f.n1_im, f.d2_im) - plus(f.n2_re, f.d1_re, f.n2_im, f.d1_im);
+  const V t_im = less(f.n1_re, f.d2_im, f.n1_im, f.d2_re) + less(f.n2_re, f.d1_im, f.n2_im, f.d1_re);
+  const V q_re = plus(f.n1_re, f.n2_re, f.n1_im, f.n2_im), q_im = less(f.n1_re, f.n2_im, f.n1_im, f.n2_re);
+  const V speed = V(c.speed), turn = V(c.turn);
+  return {f.n1_re, f.n1_im, f.n2_re, f.n2_im, less(speed, t_re, turn, q_im), plus(speed, t_im, turn, q_re)};
 }
 
 /// The state at time t. `hyper` must be c.hyper, and `framed` may only be false where c.framed is: template arguments,
@@ -148,39 +163,40 @@ POLHODE_INLINE HeavyTopState<V> evaluate_heavy_top(const HeavyTopConstants& c, V
   if constexpr (hyper) {
     V passages;
     f = heavy_top_parts(c, heavy_top_hyper(c, s, passages));
-    phase_a = math::cycle_fraction(passages, V(c.passage_a.hi), V(c.passage_a.lo), V(0.0));
-    phase_b = math::cycle_fraction(passages, V(c.passage_b.hi), V(c.passage_b.lo), V(0.0));
+    phase_a = cycle_fraction(passages, V(c.passage_a.hi), V(c.passage_a.lo), V(0.0));
+    phase_b = cycle_fraction(passages, V(c.passage_b.hi), V(c.passage_b.lo), V(0.0));
   } else {
     f = heavy_top_trig(c, s);
   }
   V ea_re, ea_im, eb_re, eb_im;
-  math::sincos_cycles(math::cycle_fraction(s, V(c.rate_a.hi), V(c.rate_a.lo), phase_a), ea_im, ea_re);
-  math::sincos_cycles(math::cycle_fraction(s, V(c.rate_b.hi), V(c.rate_b.lo), phase_b), eb_im, eb_re);
+  sincos_cycles(cycle_fraction(s, V(c.rate_a.hi), V(c.rate_a.lo), phase_a), ea_im, ea_re);
+  sincos_cycles(cycle_fraction(s, V(c.rate_b.hi), V(c.rate_b.lo), phase_b), eb_im, eb_re);
 
   // alpha and beta in the working axes, not yet normalised
-  const V fa_re = V(c.ca_re) * f.n1_re - V(c.ca_im) * f.n1_im, fa_im = V(c.ca_re) * f.n1_im + V(c.ca_im) * f.n1_re;
-  const V fb_re = V(c.cb_re) * f.n2_re - V(c.cb_im) * f.n2_im, fb_im = V(c.cb_re) * f.n2_im + V(c.cb_im) * f.n2_re;
-  const V inverse2 = V(1.0) / (fa_re * fa_re + fa_im * fa_im + (fb_re * fb_re + fb_im * fb_im));
-  const V inverse = math::sqrt(inverse2);
-  const V qw = inverse * (fa_re * ea_re - fa_im * ea_im), qz = inverse * (fa_re * ea_im + fa_im * ea_re);
-  const V qx = inverse * (fb_re * eb_re - fb_im * eb_im), qy = inverse * (fb_re * eb_im + fb_im * eb_re);
+  const V ca_re = V(c.ca_re), ca_im = V(c.ca_im), cb_re = V(c.cb_re), cb_im = V(c.cb_im);
+  const V fa_re = less(ca_re, f.n1_re, ca_im, f.n1_im), fa_im = plus(ca_re, f.n1_im, ca_im, f.n1_re);
+  const V fb_re = less(cb_re, f.n2_re, cb_im, f.n2_im), fb_im = plus(cb_re, f.n2_im, cb_im, f.n2_re);
+  const V inverse2 = V(1.0) / (plus(fa_re, fa_re, fa_im, fa_im) + plus(fb_re, fb_re, fb_im, fb_im));
+  const V inverse = sqrt(inverse2);
+  const V qw = inverse * less(fa_re, ea_re, fa_im, ea_im), qz = inverse * plus(fa_re, ea_im, fa_im, ea_re);
+  const V qx = inverse * less(fb_re, eb_re, fb_im, eb_im), qy = inverse * plus(fb_re, eb_im, fb_im, eb_re);
 
   // w1 + i w2 = 2 (conj(alpha) beta' - beta conj(alpha')): the derivative of the common factor drops out
   const V s_re = inverse2 * f.s_re, s_im = inverse2 * f.s_im;
-  const V r_re = ea_re * eb_re + ea_im * eb_im, r_im = ea_re * eb_im - ea_im * eb_re;
-  const V h_re = V(c.w12_re) * r_re - V(c.w12_im) * r_im, h_im = V(c.w12_re) * r_im + V(c.w12_im) * r_re;
-  const V w1 = h_re * s_re - h_im * s_im, w2 = h_re * s_im + h_im * s_re, w3 = V(c.w3);
+  const V r_re = plus(ea_re, eb_re, ea_im, eb_im), r_im = less(ea_re, eb_im, ea_im, eb_re);
+  const V h_re = less(V(c.w12_re), r_re, V(c.w12_im), r_im), h_im = plus(V(c.w12_re), r_im, V(c.w12_im), r_re);
+  const V w1 = less(h_re, s_re, h_im, s_im), w2 = plus(h_re, s_im, h_im, s_re), w3 = V(c.w3);
   if constexpr (!framed) return {w1, w2, w3, qx, qy, qz, qw};
 
   const double* R = c.R_BS;
   const Quat& b = c.q_SB;
-  return {V(R[0]) * w1 + V(R[1]) * w2 + V(R[2]) * w3,
-          V(R[3]) * w1 + V(R[4]) * w2 + V(R[5]) * w3,
-          V(R[6]) * w1 + V(R[7]) * w2 + V(R[8]) * w3,
-          qw * V(b.x) + qx * V(b.w) + (qy * V(b.z) - qz * V(b.y)),
-          qw * V(b.y) + qy * V(b.w) + (qz * V(b.x) - qx * V(b.z)),
-          qw * V(b.z) + qz * V(b.w) + (qx * V(b.y) - qy * V(b.x)),
-          qw * V(b.w) - qx * V(b.x) - (qy * V(b.y) + qz * V(b.z))};
+  return {madd(V(R[2]), w3, plus(V(R[0]), w1, V(R[1]), w2)),
+          madd(V(R[5]), w3, plus(V(R[3]), w1, V(R[4]), w2)),
+          madd(V(R[8]), w3, plus(V(R[6]), w1, V(R[7]), w2)),
+          plus(qw, V(b.x), qx, V(b.w)) + less(qy, V(b.z), qz, V(b.y)),
+          plus(qw, V(b.y), qy, V(b.w)) + less(qz, V(b.x), qx, V(b.z)),
+          plus(qw, V(b.z), qz, V(b.w)) + less(qx, V(b.y), qy, V(b.x)),
+          less(qw, V(b.w), qx, V(b.x)) - plus(qy, V(b.y), qz, V(b.z))};
 }
 
 }  // namespace polhode::exact

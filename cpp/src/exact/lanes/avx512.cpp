@@ -6,12 +6,15 @@
 #include "math/lanes/avx512.hpp"
 // The loops need `Wide`, which the line above defines.
 #include "exact/lanes/free_bodies.hpp"
+#include "exact/lanes/heavy_top_loops.hpp"
 
 namespace polhode::exact {
 const FreeKernels* avx512_free_kernels() { return &POLHODE_ISA::kernels; }
+HeavyTopLoop avx512_heavy_top_loop() { return &POLHODE_ISA::heavy_top; }
 }  // namespace polhode::exact
 #else
 namespace polhode::exact {
 const FreeKernels* avx512_free_kernels() { return nullptr; }
+HeavyTopLoop avx512_heavy_top_loop() { return nullptr; }
 }  // namespace polhode::exact
 #endif

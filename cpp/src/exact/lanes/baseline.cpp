@@ -7,10 +7,12 @@ using Wide = One;
 }
 
 #include "exact/lanes/free_bodies.hpp"
+#include "exact/lanes/heavy_top_loops.hpp"
 #include "exact/lanes/levels.hpp"
 
 namespace polhode::exact {
 
 const FreeKernels* baseline_free_kernels() { return &POLHODE_ISA::kernels; }
+HeavyTopLoop baseline_heavy_top_loop() { return &POLHODE_ISA::heavy_top; }
 
 }  // namespace polhode::exact

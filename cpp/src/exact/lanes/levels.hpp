@@ -1,6 +1,7 @@
 #pragma once
 
 #include "polhode/exact/free_kernels.hpp"
+#include "polhode/exact/heavy_top_kernels.hpp"
 
 namespace polhode::exact {
 
@@ -8,5 +9,8 @@ namespace polhode::exact {
 const FreeKernels* baseline_free_kernels();
 const FreeKernels* avx2_free_kernels();
 const FreeKernels* avx512_free_kernels();
+HeavyTopLoop baseline_heavy_top_loop();
+HeavyTopLoop avx2_heavy_top_loop();
+HeavyTopLoop avx512_heavy_top_loop();
 
 }  // namespace polhode::exact
