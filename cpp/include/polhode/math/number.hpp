@@ -76,9 +76,15 @@ POLHODE_INLINE N max(N a, N b) {
 template <class N>
 using Mask = decltype(N{} < N{});
 
-/// c[0] + c[1] x + c[2] x^2 + ..., by Estrin's rule: in pairs, so that the steps need not wait for one another.
+/// c[0] + c[1] x + c[2] x^2 + ... With fused steps by Estrin's rule, in pairs that need not wait for one another; else
+/// by Horner's, which the compiler turns into SSE2 vectors.
 template <class C, class N, int n>
 POLHODE_INLINE N polynomial(const C (&c)[n], N x) {
+#ifndef __FMA__
+  N sum = N(c[n - 1]);
+  for (int i = n - 2; i >= 0; --i) sum = madd(sum, x, N(c[i]));
+  return sum;
+#else
   N term[(n + 1) / 2];
   int count = 0;
   for (int i = 0; i + 1 < n; i += 2) term[count++] = madd(N(c[i + 1]), x, N(c[i]));
@@ -90,6 +96,7 @@ POLHODE_INLINE N polynomial(const C (&c)[n], N x) {
     count = kept;
   }
   return term[0];
+#endif
 }
 
 }  // namespace polhode::math
