@@ -40,8 +40,8 @@ class Candidate(NamedTuple):
     """One way to answer a scene.
 
     `settings`: what is swept, from loose to tight, as (label, value). `run(scene, value, limit)` answers the scene, or
-    raises `Failure`; it ends after `limit` seconds when that is given, and otherwise looks at no clock, so that runs which
-    are timed pay for none. `refuses(scene)`: why it does not take part, or "".
+    raises `Failure`; it ends after `limit` seconds when that is given, and otherwise looks at no clock, so that timed
+    runs pay for none. `refuses(scene)`: why it does not take part, or "".
     """
 
     name: str

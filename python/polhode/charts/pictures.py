@@ -99,7 +99,7 @@ def _obstacles(axes: Any) -> Floats:
 
 
 def _spread(axes: Any, ends: list[tuple[float, float, str, str]]) -> None:
-    """Write the names beside the ends of the curves, moved up or down to where they cover neither a curve nor a name."""
+    """Write the names beside the ends of the curves, where they cover neither a curve nor a name."""
     taken = _obstacles(axes)
     for x, y, name, ink in sorted(ends, key=lambda end: -end[1]):
         px, py = axes.transData.transform((x, y))
@@ -163,13 +163,14 @@ def overview(results: list[SceneResult], folder: pathlib.Path) -> list[pathlib.P
         labels |= {name: f"closed form ({', '.join(closed)})" for name in closed[:1]}
         handles = [plt.Line2D([], [], label=text, **style.line(name, names[name])) for name, text in labels.items()]
         handles.append(plt.Line2D([], [], color=style.FLOOR, linestyle=(0, (1, 2)), label="rounding of the input"))
-        figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.6 / width, 1 - (top - 0.7) / height), fontsize=9,
-                      ncols=len(handles), frameon=False, borderaxespad=0, handlelength=2.2, columnspacing=1.6)
+        figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.6 / width, 1 - (top - 0.7) / height),
+                      fontsize=9, ncols=len(handles), frameon=False, borderaxespad=0, handlelength=2.2, columnspacing=1.6)
         figure.supxlabel("largest error over all samples (more accurate to the right)", fontsize=9.5, color=style.QUIET,
                          y=0.1 / height)
         figure.supylabel("time for all samples", fontsize=9.5, color=style.QUIET, x=0.06 / width)
         style.heading(figure, title,
-                      "one thread; ratios are each peer's median over all scenes; lower and further right is better", 0.72 / width)
+                      "one thread; ratios are each peer's median over all scenes; lower and further right is better",
+                      0.72 / width)
         paths = style.save(figure, folder, "overview")
         plt.close(figure)
     return paths
