@@ -38,7 +38,7 @@ def chart(
     scenes: Iterable[Any],
     folder: str | os.PathLike[str],
     *,
-    budget: float = 140.0,
+    budget: float = 130.0,
     peers: bool = True,
     progress: Callable[[int, str], object] = lambda done, text: None,
     show: Callable[[SceneResult], object] = lambda result: None,

@@ -20,7 +20,7 @@ from .truth import Truth, compute_errors, find_truth
 ROUNDS = 5
 SHORTEST = 2e-3   # seconds of calls behind one reading of the clock
 SHARES = {"method": 0.8, "exact": 0.8, "peer": 0.7}   # of the budget: when a family must have ended; then come repeats
-LEAST = 0.1   # of the budget, for a candidate whose family has used its time up
+LEAST = 0.1   # of the budget, for a candidate whose family has used its time up, and for the repeats
 
 Report = Callable[[str], object]
 
@@ -141,6 +141,7 @@ def _repeat(points: list[tuple[Point, Candidate]], scene: Scene, deadline: float
     for index, (point, candidate) in enumerate(points):
         calls = max(1, min(1000, int(SHORTEST / max(point.seconds, 1e-7))))
         plans.append((index, point, candidate, calls))
+    plans.sort(key=lambda plan: plan[1].seconds)   # where time is short, the many quick ones are served
     for _ in range(ROUNDS):
         for index, point, candidate, calls in plans:
             if time.perf_counter() + point.seconds * calls > deadline:
@@ -184,5 +185,6 @@ def measure(scene: Scene, title: str, candidates: list[Candidate], budget: float
         points += _sweep(candidate, scene, truth, now + max(own, LEAST * budget))
     report("repeats")
     by_name = {candidate.name: candidate for candidate in candidates}
-    _repeat([(p, by_name[p.candidate]) for p in points if p.answered], scene, start + budget)
+    deadline = max(start + budget, time.perf_counter() + LEAST * budget)
+    _repeat([(p, by_name[p.candidate]) for p in points if p.answered], scene, deadline)
     return SceneResult(scene, title, truth, points, notes, time.perf_counter() - start)

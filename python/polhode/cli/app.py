@@ -120,7 +120,7 @@ def chart(
     output: Annotated[
         pathlib.Path, typer.Option("-o", "--output", help="The folder for all files.")] = pathlib.Path("charts"),
     budget: Annotated[
-        float, typer.Option(help="About how long it may take [s]; what does not fit is left out and listed.")] = 140.0,
+        float, typer.Option(help="About how long it may take [s]; what does not fit is left out and listed.")] = 130.0,
     peers: Annotated[bool, typer.Option(help="Run SciPy beside, where it is installed.")] = True,
     as_json: Json = False,
 ) -> int:
