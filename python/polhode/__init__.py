@@ -13,6 +13,7 @@ from .attitude import Rotation as Rotation
 from .attitude import body_rates as body_rates
 from .attitude import euler_rates as euler_rates
 from .batch import free_motion as free_motion
+from .batch import heavy_top as heavy_top
 from .build import build_info as build_info
 from .build import cmake_prefix as cmake_prefix
 from .inertia import InertiaTensor as InertiaTensor

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from . import _core
 from ._core import InertiaTensor, InvalidInput
 
-__all__ = ["free_motion"]
+__all__ = ["free_motion", "heavy_top"]
 
 Array = npt.NDArray[np.float64]
 WIDTHS = {"omega": 3, "attitude": 4}
@@ -172,6 +172,20 @@ def _evaluate(
     return answer[0] if isinstance(want, str) else answer
 
 
+def _threads(threads: int | None) -> int:
+    if threads is not None and (isinstance(threads, bool) or not isinstance(threads, int) or threads < 1):
+        raise InvalidInput(f"threads: must be a positive whole number, got {threads!r}")
+    return threads or 0
+
+
+def _product(p: Array, q: Array) -> Array:
+    """Hamilton's product of arrays of quaternions, which need not be unit to the last bit."""
+    x, y, z, w = np.moveaxis(p, -1, 0)
+    a, b, c, d = np.moveaxis(q, -1, 0)
+    return np.stack([w * a + x * d + y * c - z * b, w * b - x * c + y * d + z * a,
+                     w * c + x * b - y * a + z * d, w * d - x * a - y * b - z * c], axis=-1)
+
+
 def free_motion(
     inertia: InertiaTensor | npt.ArrayLike,
     omega: npt.ArrayLike,
@@ -225,41 +239,124 @@ def free_motion(
     -----
     The formulas of :class:`FreeMotion`; see docs/exact.md.
     """
-    if threads is not None and (isinstance(threads, bool) or not isinstance(threads, int) or threads < 1):
-        raise InvalidInput(f"threads: must be a positive whole number, got {threads!r}")
+    team = _threads(threads)
     speeds, attitudes, times = _numbers(omega, "omega", 3), _numbers(attitude, "attitude", 4), _numbers(t, "t", None)
     if isinstance(inertia, InertiaTensor):
         matrix = inertia.matrix
         if np.count_nonzero(matrix - np.diag(np.diag(matrix))):
-            return _turned(inertia, speeds, attitudes, times, out, want, threads)
+            from .attitude import Rotation
+
+            def principal(w: Array, q: Array, names: tuple[str, ...]) -> Any:
+                return free_motion(inertia.moments, w, q, times, want=names, threads=threads)
+
+            return _turned(inertia.axes, Rotation.from_matrix(inertia.axes).as_quat(), speeds, attitudes, out, want, principal)
         moments = np.diag(matrix).copy()
     else:
         moments = _numbers(inertia, "inertia", 3)
 
     def kernel(*arguments: Any) -> int:
-        return _core._free_motion(*(*arguments, threads or 0))
+        return _core._free_motion(*(*arguments, team))
 
     return _evaluate([(moments, 1), (speeds, 1), (attitudes, 1)], times, out, want, kernel)
 
 
-def _turned(
-    inertia: InertiaTensor, omega: Array, attitude: Array, t: Array, out: Any, want: str | Sequence[str], threads: int | None
+def heavy_top(
+    inertia: InertiaTensor | npt.ArrayLike,
+    weight_arm: npt.ArrayLike,
+    omega: npt.ArrayLike,
+    attitude: Any,
+    t: npt.ArrayLike,
+    *,
+    out: Any = None,
+    want: str | Sequence[str] = ("omega", "attitude"),
+    threads: int | None = None,
 ) -> Any:
-    """A tensor with products of inertia: the motion of its principal axes P, R_BP turning it back."""
+    """Lagrange's tops, many at many times; everything broadcasts as in a NumPy gufunc.
+
+    Parameters
+    ----------
+    inertia : array_like, shape (..., 3), or InertiaTensor
+        Moments about the pivot in the body axes, two of them equal [kg m^2]; or one tensor for all. The axis is the
+        body's z whenever the first two are equal.
+    weight_arm : array_like, shape (...)
+        Weight times the distance of the centre of mass from the pivot, signed along the axis [N m].
+    omega : array_like, shape (..., 3)
+        Angular velocity at t = 0, in body axes [rad/s].
+    attitude : array_like, shape (..., 4), or Rotation
+        Attitude at t = 0, body to space, unit, (x, y, z, w).
+    t : array_like, shape (...)
+        Times [s]. Tops (B, 1) and times (T,) give the full grid (B, T), each top set up once.
+    out, want, threads
+        As for :func:`free_motion`.
+
+    Returns
+    -------
+    omega : ndarray, shape (..., 3)
+        In body axes [rad/s].
+    attitude : ndarray, shape (..., 4)
+        Body to space, unit, (x, y, z, w).
+
+    Raises
+    ------
+    InvalidInput
+        Shapes that do not broadcast, and what :class:`HeavyTop` refuses, with the number of the body.
+    MemoryError
+        The result would not fit into this machine: before anything is computed, with the number of bytes.
+
+    Warns
+    -----
+    RuntimeWarning
+        Once, with their count, when rows came out NaN because their input is not finite.
+
+    Notes
+    -----
+    The formulas of :class:`HeavyTop`; see docs/heavy_top.md.
+    """
+    team = _threads(threads)
+    speeds, attitudes, times = _numbers(omega, "omega", 3), _numbers(attitude, "attitude", 4), _numbers(t, "t", None)
+    arms = _numbers(weight_arm, "weight_arm", None)
+
+    def kernel(*arguments: Any) -> int:
+        return _core._heavy_top(*(*arguments, team))
+
+    def evaluate(moments: Array, w: Array, q: Array, target: Any, names: str | Sequence[str]) -> Any:
+        return _evaluate([(moments, 1), (arms, 0), (w, 1), (q, 1)], times, target, names, kernel)
+
+    if not isinstance(inertia, InertiaTensor):
+        return evaluate(_numbers(inertia, "inertia", 3), speeds, attitudes, out, want)
+    matrix = inertia.matrix
+    if not np.count_nonzero(matrix - np.diag(np.diag(matrix))):
+        return evaluate(np.diag(matrix).copy(), speeds, attitudes, out, want)
+    # Products of inertia: the frame S has the symmetry axis for its z, as HeavyTop finds it.
     from .attitude import Rotation
 
-    R_BP = inertia.axes
-    q_BP = Rotation.from_matrix(R_BP).as_quat()
+    moments, axes = inertia.moments, inertia.axes
+    lone = 2 if moments[1] - moments[0] <= moments[2] - moments[1] else 0
+    first, second = [k for k in range(3) if k != lone]
+    axis = axes[:, lone] * np.copysign(1.0, axes[np.argmax(np.abs(axes[:, lone])), lone])
+    R_BS = np.stack([axes[:, first], np.cross(axis, axes[:, first]), axis], axis=1)
+    equal = 0.5 * (moments[first] + moments[second])
 
-    def times(p: Array, q: Array) -> Array:
-        x, y, z, w = np.moveaxis(p, -1, 0)
-        a, b, c, d = np.moveaxis(q, -1, 0)
-        return np.stack([w * a + x * d + y * c - z * b, w * b - x * c + y * d + z * a,
-                         w * c + x * b - y * a + z * d, w * d - x * a - y * b - z * c], axis=-1)
+    def top(w: Array, q: Array, names: tuple[str, ...]) -> Any:
+        return evaluate(np.array([equal, equal, moments[lone]]), w, q, None, names)
 
+    return _turned(R_BS, Rotation.from_matrix(R_BS).as_quat(), speeds, attitudes, out, want, top)
+
+
+def _turned(
+    R_BP: Array,
+    q_BP: Array,
+    omega: Array,
+    attitude: Array,
+    out: Any,
+    want: str | Sequence[str],
+    motion: Callable[[Array, Array, tuple[str, ...]], Any],
+) -> Any:
+    """A motion known in axes P, for a body whose own axes B are others."""
     names = _wanted(want)
-    found = free_motion(inertia.moments, omega @ R_BP, times(attitude, q_BP), t, want=names, threads=threads)
-    back: dict[str, Callable[[Array], Array]] = {"omega": lambda w: w @ R_BP.T, "attitude": lambda q: times(q, q_BP * [-1, -1, -1, 1])}
+    found = motion(omega @ R_BP, _product(attitude, q_BP), names)
+    back: dict[str, Callable[[Array], Array]] = {
+        "omega": lambda w: w @ R_BP.T, "attitude": lambda q: _product(q, q_BP * [-1, -1, -1, 1])}
     answer = [back[name](values) for name, values in zip(names, found, strict=True)]
     targets = _targets(out, names, answer[0].shape[:-1])
     for k, name in enumerate(names):

@@ -10,22 +10,14 @@
 #include "polhode/batch/parallel.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/exact/free_motion.hpp"
+#include "rows.hpp"
 
 namespace polhode {
 namespace {
 
 constexpr std::size_t block = 64;  // bodies set up together: their constants stay in the cache
 
-/// Every |value| <= most: no for NaN and, at the default, for infinity.
-bool within(const double* values, std::size_t n, double most = std::numeric_limits<double>::max()) {
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < n; ++i) count += std::abs(values[i]) <= most;
-  return count == n;
-}
-
 bool finite(const double* values, std::size_t n) { return within(values, n); }
-
-std::string row_name(const char* what, std::size_t body) { return std::string(what) + "[" + std::to_string(body) + "]"; }
 
 /// The door for one body of finite numbers; its largest |omega_i| comes back.
 double check_body(const FreeMotionBatch& b, std::size_t body) {
@@ -62,7 +54,7 @@ void check_times(const double* t, std::size_t n, double speed, std::size_t body)
 /// One run of bodies, on one thread.
 class Run {
  public:
-  Run(const FreeMotionBatch& batch, double* omega, double* attitude) : b_(batch), omega_(omega), attitude_(attitude) {}
+  Run(const FreeMotionBatch& batch, double* omega, double* attitude) : b_(batch), rows_{batch.t, batch.times, batch.own_times, omega, attitude} {}
 
   /// Bodies [first, last); returns how many rows are poisoned.
   std::size_t operator()(std::size_t first, std::size_t last) {
@@ -72,10 +64,6 @@ class Run {
   }
 
  private:
-  const double* times_of(std::size_t body) const { return b_.t + (b_.own_times ? body * b_.times : 0); }
-  double* omega_of(std::size_t body, std::size_t i = 0) const { return omega_ ? omega_ + 3 * (body * b_.times + i) : nullptr; }
-  double* attitude_of(std::size_t body, std::size_t i = 0) const { return attitude_ ? attitude_ + 4 * (body * b_.times + i) : nullptr; }
-
   std::size_t do_block(std::size_t begin, std::size_t end) {
     const exact::FreeKernels& kernels = exact::free_kernels();
     const std::size_t n = end - begin;
@@ -84,13 +72,13 @@ class Run {
       const std::size_t body = begin + i;
       sound[i] = finite(b_.moments + 3 * body, 3) && finite(b_.omega + 3 * body, 3) && finite(b_.attitude + 4 * body, 4);
       if (!sound[i]) continue;
-      check_times(times_of(body), b_.times, check_body(b_, body), body);
+      check_times(rows_.times_of(body), b_.times, check_body(b_, body), body);
     }
     const exact::FreeStarts starts{b_.moments + 3 * begin, b_.omega + 3 * begin, b_.attitude + 4 * begin};
     std::size_t left[block], remaining = 0;
     const bool once = b_.times == 1 && (b_.own_times || b_.bodies == 1);
     if (once) {
-      remaining = kernels.once(starts, b_.t + begin, n, omega_of(begin), attitude_of(begin), left);
+      remaining = kernels.once(starts, b_.t + begin, n, rows_.omega_of(begin), rows_.attitude_of(begin), left);
     } else {
       trig_.resize(block), frames_.resize(block);
       remaining = kernels.set_up(starts, n, trig_.data(), frames_.data(), left);
@@ -101,12 +89,12 @@ class Run {
       const bool by_itself = next < remaining && left[next] == i;
       if (by_itself) ++next;
       if (!sound[i]) {
-        poisoned += poison(body, 0, b_.times);
+        poisoned += rows_.poison(body, 0, b_.times);
       } else if (by_itself) {
         const FreeMotion motion = single(body);
-        poisoned += each_run(body, [&](const double* t, std::size_t count, double* w, double* q) { motion.at(t, count, w, q); });
+        poisoned += rows_.each_run(body, [&](const double* t, std::size_t count, double* w, double* q) { motion.at(t, count, w, q); });
       } else {
-        poisoned += each_run(body, [&](const double* t, std::size_t count, double* w, double* q) {
+        poisoned += rows_.each_run(body, [&](const double* t, std::size_t count, double* w, double* q) {
           if (!once) kernels.trig(trig_[i], frames_[i], t, count, w, q);
         });
       }
@@ -119,36 +107,8 @@ class Run {
     return {InertiaTensor::from_moments({I[0], I[1], I[2]}), {w[0], w[1], w[2]}, {q[0], q[1], q[2], q[3]}};
   }
 
-  std::size_t poison(std::size_t body, std::size_t from, std::size_t count) const {
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    if (omega_) std::fill_n(omega_of(body, from), 3 * count, nan);
-    if (attitude_) std::fill_n(attitude_of(body, from), 4 * count, nan);
-    return count;
-  }
-
-  /// evaluate(t, count, omega, attitude) for each run of finite times; the rows between are poisoned and counted.
-  template <class Evaluate>
-  std::size_t each_run(std::size_t body, const Evaluate& evaluate) const {
-    const double* t = times_of(body);
-    if (finite(t, b_.times)) {
-      evaluate(t, b_.times, omega_of(body), attitude_of(body));
-      return 0;
-    }
-    std::size_t poisoned = 0;
-    for (std::size_t i = 0, end = 0; i < b_.times; i = end) {
-      const bool good = std::isfinite(t[i]);
-      for (end = i; end < b_.times && std::isfinite(t[end]) == good;) ++end;
-      if (good) {
-        evaluate(t + i, end - i, omega_of(body, i), attitude_of(body, i));
-      } else {
-        poisoned += poison(body, i, end - i);
-      }
-    }
-    return poisoned;
-  }
-
   const FreeMotionBatch& b_;
-  double *omega_, *attitude_;
+  Rows rows_;
   std::vector<exact::FreeTrig<double>> trig_;
   std::vector<exact::FreeFrame> frames_;
 };

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+
+namespace polhode {
+
+/// Lagrange's tops, many at many times, on plain C-contiguous arrays.
+struct HeavyTopBatch {
+  std::size_t bodies = 0, times = 0;
+  const double* moments = nullptr;     ///< (bodies, 3) about the pivot, two of them equal [kg m^2]
+  const double* weight_arm = nullptr;  ///< (bodies) m g r, signed along the symmetry axis [N m]
+  const double* omega = nullptr;       ///< (bodies, 3) at t = 0, body axes [rad/s]
+  const double* attitude = nullptr;    ///< (bodies, 4) at t = 0, (x, y, z, w)
+  const double* t = nullptr;           ///< (times) for all bodies, or (bodies, times) with own_times [s]
+  bool own_times = false;
+};
+
+/// Writes omega (bodies, times, 3) and attitude (bodies, times, 4); either may be null. The bits of the result do not
+/// depend on the number of threads (0: as many as the machine has, for work that pays for them).
+///
+/// A row with an input that is not finite comes out as NaN; returns how many rows did. Throws InvalidInput, with the
+/// number of the body, for what HeavyTop refuses.
+std::size_t heavy_top(const HeavyTopBatch& batch, double* omega, double* attitude, int threads = 0);
+
+}  // namespace polhode

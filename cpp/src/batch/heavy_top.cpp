@@ -1,0 +1,59 @@
+#include "polhode/batch/heavy_top.hpp"
+
+#include <atomic>
+
+#include "polhode/batch/parallel.hpp"
+#include "polhode/core/error.hpp"
+#include "polhode/exact/heavy_top.hpp"
+#include "rows.hpp"
+
+namespace polhode {
+namespace {
+
+HeavyTop make_top(const HeavyTopBatch& b, std::size_t body) {
+  const double *I = b.moments + 3 * body, *w = b.omega + 3 * body, *q = b.attitude + 4 * body;
+  try {
+    return {Vector3d{I[0], I[1], I[2]}, b.weight_arm[body], Vector3d{w[0], w[1], w[2]}, Quat{q[0], q[1], q[2], q[3]}};
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(row_name("body", body) + ": " + error.what());
+  }
+}
+
+/// Tops [first, last) at times [from, from + count) of each; returns how many rows are poisoned.
+std::size_t run(const HeavyTopBatch& b, const Rows& rows, std::size_t first, std::size_t last) {
+  std::size_t poisoned = 0;
+  for (std::size_t body = first; body < last; ++body) {
+    if (!within(b.moments + 3 * body, 3) || !within(b.weight_arm + body, 1) || !within(b.omega + 3 * body, 3) ||
+        !within(b.attitude + 4 * body, 4)) {
+      poisoned += rows.poison(body, 0, rows.times);
+      continue;
+    }
+    const HeavyTop top = make_top(b, body);
+    poisoned += rows.each_run(body, [&](const double* t, std::size_t n, double* omega, double* attitude) {
+      top.at(t, n, omega, attitude);
+    });
+  }
+  return poisoned;
+}
+
+}  // namespace
+
+std::size_t heavy_top(const HeavyTopBatch& batch, double* omega, double* attitude, int threads) {
+  if (batch.bodies == 0 || batch.times == 0) return 0;
+  std::atomic<std::size_t> poisoned{0};
+  if (batch.bodies == 1 && batch.times > 4096) {
+    // One top: its times are cut, each piece at a multiple of the longest vector.
+    parallel_for(batch.times, thread_count(threads, batch.times, 20000), 1024, [&](std::size_t begin, std::size_t end) {
+      const Rows rows{batch.t + begin, end - begin, false, omega ? omega + 3 * begin : nullptr,
+                      attitude ? attitude + 4 * begin : nullptr};
+      poisoned += run(batch, rows, 0, 1);
+    });
+    return poisoned;
+  }
+  const Rows rows{batch.t, batch.times, batch.own_times, omega, attitude};
+  parallel_for(batch.bodies, thread_count(threads, batch.bodies * batch.times + 100 * batch.bodies, 5000), 16,
+               [&](std::size_t begin, std::size_t end) { poisoned += run(batch, rows, begin, end); });
+  return poisoned;
+}
+
+}  // namespace polhode
