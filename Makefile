@@ -9,10 +9,20 @@ VENV   := .venv
 BUILD  := build/dev
 PYTHON := $(CURDIR)/$(VENV)/bin/python
 JOBS   ?= $(shell nproc)
-inputs := $(shell find CMakeLists.txt pyproject.toml cpp python tests/cpp benchmarks/cpp scenes \
-            -type f -not -name '*.pyc' 2>/dev/null)
+# ccache and precompiled headers do not go together.
+PRECOMPILED := $(if $(findstring ccache,$(CMAKE_CXX_COMPILER_LAUNCHER)),OFF,ON)
+
+# An editable install reads Python files where they stand: only their names matter, what is compiled or copied matters whole.
+$(shell mkdir -p build; find python/polhode -type f -not -name '*.py[ci]' | sort > build/.names.new; \
+        cmp -s build/.names.new build/.names || cp build/.names.new build/.names)
+inputs := build/.names $(shell find CMakeLists.txt pyproject.toml cpp python/CMakeLists.txt python/bindings \
+            tests/cpp/CMakeLists.txt scenes -type f 2>/dev/null)
 
 .PHONY: help demo test check-long install module sanitize stubs clean
+# An environment whose Python has gone is made anew.
+ifneq ($(shell $(VENV)/bin/python -c 'import pip; print("there")' 2>/dev/null),there)
+.PHONY: $(VENV)/.ready
+endif
 help:
 	@sed -n '1,3s/^# //p' Makefile
 
@@ -26,7 +36,7 @@ build/.installed: $(VENV)/.ready $(inputs)
 	@$(PYTHON) -m pip uninstall -qq -y --disable-pip-version-check polhode
 	@CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) $(PYTHON) -m pip install -qq --disable-pip-version-check \
 	  --no-build-isolation --no-deps -Cbuild-dir=$(BUILD) -Ccmake.define.POLHODE_BUILD_TESTS=ON \
-	  -Ccmake.define.POLHODE_WERROR=ON \
+	  -Ccmake.define.POLHODE_WERROR=ON -Ccmake.define.POLHODE_PRECOMPILED=$(PRECOMPILED) \
 	  $$($(VENV)/bin/python .ci/eigen_prefix.py) -e .
 	@touch $@
 
