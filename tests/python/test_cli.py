@@ -55,6 +55,7 @@ def test_run_shows_ends_drift_cost_and_message(small):
     assert "small: 21 samples by " + motion.plan.method in text
     for i in (0, -1):
         assert all(f"{x:.9g}" in text for x in [motion.t[i], *motion.omega[i], *motion.attitude[i]])
+    assert "t [s]" in text and "z [rad/s]" in text
     assert f"energy {motion.drift['energy']:.1e}" in text and f"{motion.stats['steps']:,} steps" in text
     assert motion.message in text
 
@@ -104,7 +105,7 @@ def test_inertia_of_a_shape(tmp_path):
     assert finding["mass"] == 12 and finding["symmetry"] == "triaxial" and finding["valid"] is True
     assert np.array(finding["axes"]).shape == (3, 3)
     text = call("inertia", file).stdout
-    assert "0.2, 0.4, 0.52" in text and "triaxial" in text and "a body can have this tensor" in text
+    assert "moments [kg m^2]   0.2, 0.4, 0.52" in text and "triaxial" in text and "a body can have this tensor" in text
 
 
 @pytest.mark.parametrize("more", ["", "physical = false\n"])
@@ -149,6 +150,9 @@ def test_bad_input_is_one_line_and_status_2(arguments, words, capsys, tmp_path, 
 
 def test_version_and_help(capsys):
     assert left("--version", capsys=capsys)[:2] == (0, f"polhode {ph.__version__}\n")
+    for arguments in ((), ("--help",)):
+        status, out, err = left(*arguments, capsys=capsys)
+        assert (status, err) == (0, "") and "Chart speed against accuracy." in out and "..." not in out.split("Commands:")[1]
     status, out, _ = left("run", "--help", capsys=capsys)
     assert status == 0 and "--accuracy" in out
 

@@ -23,7 +23,8 @@ def _run(arguments: Sequence[str] | None) -> int:
     try:
         from .app import app
 
-        return app(args=arguments, prog_name="polhode", standalone_mode=False) or 0
+        given = list(sys.argv[1:] if arguments is None else arguments)
+        return app(args=given or ["--help"], prog_name="polhode", standalone_mode=False) or 0
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] not in EXTRA:
             raise

@@ -6,7 +6,6 @@ import functools
 import json
 import pathlib
 import sys
-import time
 from collections.abc import Callable
 from typing import Annotated, Any
 
@@ -69,27 +68,28 @@ def run(
         pathlib.Path | None, typer.Option("-o", "--output", help="Write all samples: .csv, .npz or .json.")] = None,
     as_json: Json = False,
 ) -> int:
-    """Turn the body of a scene, and show the ends, the invariants and the cost."""
+    """Turn the body of a scene.
+
+    Shows the first and last samples, how far the invariants moved, and the cost.
+    """
     if output is not None:
         files.check(output)
     with show.Bar("turning") as bar:
-        start = time.perf_counter()
         motion = solve(Scene.load(scene), accuracy, method=method, rtol=rtol, atol=atol, step=step, max_steps=max_steps,
                        progress=bar.fraction)
-        seconds = time.perf_counter() - start
     if as_json:
-        _print_json(files.to_json(motion, seconds))
+        _print_json(files.to_json(motion))
     else:
-        show.motion(motion, seconds)
+        show.motion(motion)
     if output is not None:
-        files.write(output, motion, seconds)
+        files.write(output, motion)
         print(f"wrote {output}", file=sys.stderr if as_json else sys.stdout)
     return 0 if motion.success else 1
 
 
 @_command
 def methods(as_json: Json = False) -> int:
-    """List every method with its order, what it keeps, and its source."""
+    """List every method."""
     records = method_records()
     if as_json:
         _print_json(records)
@@ -103,7 +103,10 @@ def inertia(
     file: Annotated[str, typer.Argument(help="A TOML file with a [body] table as in scenes, or a scene's name.")],
     as_json: Json = False,
 ) -> int:
-    """Judge a body: its moments, principal axes and symmetry, and whether there can be such a body."""
+    """Judge a body's inertia.
+
+    Shows its moments, principal axes and symmetry, and whether there can be such a body.
+    """
     from .body import examine
 
     finding = examine(file)
@@ -124,7 +127,10 @@ def chart(
     peers: Annotated[bool, typer.Option(help="Run SciPy beside, where it is installed.")] = True,
     as_json: Json = False,
 ) -> int:
-    """Chart speed against accuracy: all methods on the scenes given, against their stored truth."""
+    """Chart speed against accuracy.
+
+    All methods, closed forms and SciPy on the scenes given, against their stored truth, in one run.
+    """
     try:
         import matplotlib  # noqa: F401
     except ImportError:

@@ -30,24 +30,24 @@ def _arrays(motion: Motion) -> dict[str, Any]:
     return {name: array for name, array in arrays.items() if array is not None}
 
 
-def to_json(motion: Motion, seconds: float) -> dict[str, Any]:
+def to_json(motion: Motion) -> dict[str, Any]:
     """Return everything a motion says; what is not a finite number is null."""
     return {
         "scene": motion.scene.name, "plan": motion.plan._asdict(), "asked": motion.asked,
         "success": motion.success, "status": motion.status, "message": motion.message,
         "error": motion.error if math.isfinite(motion.error) else None, "error_kind": motion.error_kind,
-        "drift": motion.drift, "stats": motion.stats, "seconds": seconds,
+        "drift": motion.drift, "stats": motion.stats,
         **{name: array.tolist() for name, array in _arrays(motion).items()},
     }
 
 
-def write(path: pathlib.Path, motion: Motion, seconds: float) -> None:
+def write(path: pathlib.Path, motion: Motion) -> None:
     """Write a motion by the file's ending; CSV holds every bit, as the shortest digits that read back the same."""
     arrays = _arrays(motion)
     if path.suffix == ".npz":
         np.savez_compressed(path, **arrays)
     elif path.suffix == ".json":
-        path.write_text(json.dumps(to_json(motion, seconds)) + "\n", encoding="utf-8")
+        path.write_text(json.dumps(to_json(motion)) + "\n", encoding="utf-8")
     else:
         header = ",".join(column for name in arrays for column in COLUMNS[name])
         table = np.column_stack(list(arrays.values()))

@@ -23,7 +23,7 @@ UNCUT = 100_000
 def console(stderr: bool = False) -> Console:
     """Return a console on what stdout (or stderr) is now."""
     stream = sys.stderr if stderr else sys.stdout
-    return Console(file=stream, highlight=False, width=None if stream.isatty() else UNCUT, soft_wrap=False)
+    return Console(file=stream, highlight=False, markup=False, width=None if stream.isatty() else UNCUT)
 
 
 class Bar:
@@ -84,7 +84,7 @@ def _numbers(row: Any) -> list[str]:
     return [f"{value:.9g}" for value in row]
 
 
-def motion(result: Motion, seconds: float) -> None:
+def motion(result: Motion) -> None:
     """First and last samples, the invariants' drift, counts, message."""
     out = console()
     plan, n = result.plan, len(result)
@@ -104,7 +104,7 @@ def motion(result: Motion, seconds: float) -> None:
     drift = ", ".join(f"{name.replace('_', ' ')} {value:.1e}" for name, value in result.drift.items())
     counts = ", ".join(f"{value:,} {name}" for name, value in result.stats.items() if isinstance(value, int))
     out.print(Text(f"drift   {drift or 'nothing here is kept by the motion'}"))
-    out.print(Text(f"cost    {counts}; {1e3 * seconds:.3g} ms"))
+    out.print(Text(f"cost    {counts}; {1e3 * result.stats['seconds']:.3g} ms"))
     out.print(Text(f"result  {'' if result.success else 'FINDING: '}{result.message}"))
 
 
@@ -173,7 +173,9 @@ def scene(result: SceneResult) -> None:
 def chart_end(content: dict[str, Any], folder: pathlib.Path) -> None:
     """Say where the files are."""
     machine, out = content["machine"], console()
-    out.print(Text(f"\n{len(content['scenes'])} scenes in {content['seconds']:.0f} s on {machine['processor']}"))
+    count = len(content["scenes"])
+    scenes = f"{count} scene{'s' if count > 1 else ''}"
+    out.print(Text(f"\n{scenes} in {content['seconds']:.0f} s on {machine['processor']}"))
     for name in content["files"]:
         if not name.endswith(".svg"):
             out.print(Text(f"{folder / name}"))
