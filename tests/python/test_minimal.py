@@ -37,6 +37,12 @@ def smoke_free_motion_object():
     assert pickle.loads(pickle.dumps(motion)) == motion
 
 
+def smoke_heavy_tops():
+    omega, attitude = ph.heavy_top((1, 1, 0.5), np.array([1.0, 2.0]), (0.1, 0.2, 6), (0, 0, 0, 1), 3.5)
+    assert omega.shape == (2, 3) and np.allclose(np.linalg.norm(attitude, axis=1), 1)
+    assert np.allclose(omega[1], ph.HeavyTop((1, 1, 0.5), 2.0, (0.1, 0.2, 6)).at(3.5)[0])
+
+
 def smoke_free_motion():
     omega, attitude = ph.free_motion(BLOCK, OMEGA, (0, 0, 0, 1), TIMES)
     assert np.allclose(omega, ph.FreeMotion(BLOCK, OMEGA).at(TIMES)[0], rtol=1e-13)
@@ -121,6 +127,7 @@ SMOKE = {
     "euler_rates": smoke_body_rates,
     "free_motion": smoke_free_motion,
     "generalised_forces": smoke_generalised_forces,
+    "heavy_top": smoke_heavy_tops,
     "methods": smoke_methods,
     "solve": smoke_solve,
 }
