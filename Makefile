@@ -37,7 +37,7 @@ build/.installed: $(VENV)/.ready $(inputs)
 	@CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) $(PYTHON) -m pip install -qq --disable-pip-version-check \
 	  --no-build-isolation --no-deps -Cbuild-dir=$(BUILD) -Ccmake.define.POLHODE_BUILD_TESTS=ON \
 	  -Ccmake.define.POLHODE_WERROR=ON -Ccmake.define.POLHODE_PRECOMPILED=$(PRECOMPILED) \
-	  $$($(VENV)/bin/python .ci/eigen_prefix.py) -e .
+	  $$($(VENV)/bin/python .ci/eigen_dir.py) -e .
 	@touch $@
 
 install: build/.installed
@@ -61,7 +61,7 @@ module:
 # The C++ tests under the address and undefined-behaviour sanitizers.
 sanitize: $(VENV)/.ready
 	@cmake -S . -B build/sanitize -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo -DPOLHODE_BUILD_TESTS=ON \
-	  -DPOLHODE_SANITIZE=ON $$($(VENV)/bin/python .ci/eigen_prefix.py --cmake) > /dev/null
+	  -DPOLHODE_SANITIZE=ON $$($(VENV)/bin/python .ci/eigen_dir.py --cmake) > /dev/null
 	@cmake --build build/sanitize -j $(JOBS) --target polhode_tests
 	@build/sanitize/tests/cpp/polhode_tests
 
