@@ -239,7 +239,7 @@ def _stalling(axes: Any, result: SceneResult, results: list[SceneResult]) -> Non
     axes.set_ylim(min(1e-16, tolerances[0]), 1e4)   # room for the legend
     _error_ticks(axes, "y")
     axes.set_ylabel("largest error")
-    best = min(p.error for n in result.names("method") for p in result.of(n))
+    best = min(p.error for n in names for p in result.of(n))
     axes.set_title(f"{result.scene.name} {result.title}: rounding keeps the error\n"
                    f"above {to_error(best)}, whatever the tolerance")
     axes.legend(loc="upper right", frameon=False, fontsize=9, ncols=2, borderaxespad=0.2)
