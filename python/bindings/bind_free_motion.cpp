@@ -1,6 +1,7 @@
 #include <pybind11/operators.h>
 #include <pybind11/typing.h>
 
+#include "bind_exact.hpp"
 #include "convert.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/exact/free_motion.hpp"
@@ -13,30 +14,6 @@ FreeMotion make(py::handle inertia, py::handle omega, py::handle attitude) {
   const Quat q = to_attitude(attitude, "attitude");
   if (py::isinstance<InertiaTensor>(inertia)) return {inertia.cast<const InertiaTensor&>(), w, q};
   return {to_vector3(inertia, "inertia"), w, q};
-}
-
-/// A new array of shape t.shape + (width,).
-Array result_for(const Array& t, py::ssize_t width) {
-  std::vector<py::ssize_t> shape(t.shape(), t.shape() + t.ndim());
-  shape.push_back(width);
-  return Array(shape);
-}
-
-py::typing::Tuple<Array, Array> at(const FreeMotion& motion, py::handle t) {
-  if (PyFloat_CheckExact(t.ptr())) {
-    const State state = motion.at(PyFloat_AS_DOUBLE(t.ptr()));
-    return py::make_tuple(from_vector3(state.omega), from_quat(state.attitude));
-  }
-  const Array times = to_array(t, "t");
-  Array omega = result_for(times, 3), attitude = result_for(times, 4);
-  const double* in = times.data();
-  double *w = omega.mutable_data(), *q = attitude.mutable_data();
-  const auto n = static_cast<std::size_t>(times.size());
-  {
-    py::gil_scoped_release nogil;
-    motion.at(in, n, w, q);
-  }
-  return py::make_tuple(omega, attitude);
 }
 
 using Curve = Vector3d (FreeMotion::*)(double) const;
@@ -81,7 +58,7 @@ Notes
 Jacobi (1850), "Sur la rotation d'un corps", J. reine angew. Math. 39, in the Cayley-Klein form; see docs/exact.md.)");
   cls.attr("__module__") = "polhode";
   cls.def(py::init(&make), py::arg("inertia"), py::arg("omega"), py::arg("attitude") = py::make_tuple(0, 0, 0, 1))
-      .def("at", &at, py::arg("t"), R"(Angular velocity and attitude at the given times.
+      .def("at", &at<FreeMotion>, py::arg("t"), R"(Angular velocity and attitude at the given times.
 
 Parameters
 ----------

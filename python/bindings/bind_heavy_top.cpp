@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "bind_exact.hpp"
 #include "convert.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/exact/heavy_top.hpp"
@@ -18,30 +19,6 @@ HeavyTop make(py::handle inertia, py::handle weight_arm, py::handle omega, py::h
   const Array array = to_array(inertia, "inertia");
   if (array.ndim() == 2) return {InertiaTensor(to_matrix3(array, "inertia")), arm, w, q};
   return {to_vector3(array, "inertia"), arm, w, q};
-}
-
-/// A new array of shape t.shape + (width,).
-Array result_for(const Array& t, py::ssize_t width) {
-  std::vector<py::ssize_t> shape(t.shape(), t.shape() + t.ndim());
-  shape.push_back(width);
-  return Array(shape);
-}
-
-py::typing::Tuple<Array, Array> at(const HeavyTop& top, py::handle t) {
-  if (PyFloat_CheckExact(t.ptr())) {
-    const State state = top.at(PyFloat_AS_DOUBLE(t.ptr()));
-    return py::make_tuple(from_vector3(state.omega), from_quat(state.attitude));
-  }
-  const Array times = to_array(t, "t");
-  Array omega = result_for(times, 3), attitude = result_for(times, 4);
-  const double* in = times.data();
-  double *w = omega.mutable_data(), *q = attitude.mutable_data();
-  const auto n = static_cast<std::size_t>(times.size());
-  {
-    py::gil_scoped_release nogil;
-    top.at(in, n, w, q);
-  }
-  return py::make_tuple(omega, attitude);
 }
 
 }  // namespace
@@ -78,7 +55,7 @@ F. Klein and A. Sommerfeld, "Ueber die Theorie des Kreisels" (1897-1910); see do
   cls.attr("__module__") = "polhode";
   cls.def(py::init(&make), py::arg("inertia"), py::arg("weight_arm"), py::arg("omega"),
           py::arg("attitude") = py::make_tuple(0, 0, 0, 1))
-      .def("at", &at, py::arg("t"), R"(Angular velocity and attitude at the given times.
+      .def("at", &at<HeavyTop>, py::arg("t"), R"(Angular velocity and attitude at the given times.
 
 Parameters
 ----------

@@ -131,13 +131,7 @@ py::tuple to_tuple(const TorqueValues& values) {
 template <class T>
 void bind_traits(py::class_<T>& type) {
   type.def_property_readonly("traits", [](const T& torque) {
-    const TorqueTraits traits = torque.traits();
-    py::dict dict;
-    dict["uses_time"] = traits.uses_time;
-    dict["uses_attitude"] = traits.uses_attitude;
-    dict["uses_rates"] = traits.uses_rates;
-    dict["has_potential"] = traits.has_potential;
-    return dict;
+    return describe_traits(torque.traits());
   }, "dict: uses_time, uses_attitude, uses_rates, has_potential.");
 }
 

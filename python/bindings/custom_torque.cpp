@@ -148,13 +148,7 @@ void bind_custom_torque(py::module_& m) {
            py::arg("data") = py::none());
   type.def_property_readonly("function", [](const Custom& torque) -> py::object { return get_state(torque)[0]; });
   type.def_property_readonly("traits", [](const Custom& torque) {
-    const TorqueTraits traits = torque.traits();
-    py::dict dict;
-    dict["uses_time"] = traits.uses_time;
-    dict["uses_attitude"] = traits.uses_attitude;
-    dict["uses_rates"] = traits.uses_rates;
-    dict["has_potential"] = traits.has_potential;
-    return dict;
+    return describe_traits(torque.traits());
   });
   type.def("__repr__", [](const Custom& torque) {
     return "polhode.torques.Custom(" + std::string(py::repr(get_state(torque)[0])) + ")";
