@@ -64,7 +64,7 @@ std::string call_signature(const TorqueRecord& record) {
     text += parameter.name;
     if (parameter.fallback) {
       const char* quote = parameter.kind == Kind::choice ? "\"" : "";
-      text += "=" + (quote + std::string(*parameter.fallback)) + quote;
+      text.append("=").append(quote).append(*parameter.fallback).append(quote);
     }
   }
   return text + ")";
