@@ -11,8 +11,8 @@ import warnings
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
-from ._core import InertiaTensor, MassProperties, PrincipalAxes
+from .. import _core
+from .._core import InertiaTensor, MassProperties, PrincipalAxes
 
 __all__ = ["InertiaTensor", "MassProperties", "PrincipalAxes", "principal_axes"]
 
