@@ -9,6 +9,7 @@
 #include "polhode/solve/invariants.hpp"
 #include "polhode/solve/lagrangian_problem.hpp"
 #include "polhode/solve/euler_problem.hpp"
+#include "polhode/solve/methods.hpp"
 #include "polhode/solve/solve.hpp"
 
 namespace polhode::python {
@@ -136,6 +137,9 @@ void bind_solve(py::module_& m) {
   m.def("solve", &solve_scene, py::arg("scene"), py::arg("accuracy"), py::arg("method"), py::arg("rtol"),
         py::arg("atol"), py::arg("step"), py::arg("max_steps"), py::arg("dense"), py::arg("formulation"),
         py::arg("events"), py::arg("progress"));
+
+  m.def("method_refusal", [](const std::string& method, const Scene& scene) { return compute_refusal(method, scene); },
+        "Why a method does not take a scene, or an empty string.");
 
   m.def("energy", [](const Scene& scene, const Array& t, const Array& omega, const py::object& attitude) {
     Array energy(t.size());

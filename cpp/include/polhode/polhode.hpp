@@ -18,4 +18,5 @@
 #include "polhode/math/elliptic.hpp"
 #include "polhode/ode/methods.hpp"
 #include "polhode/solve/invariants.hpp"
+#include "polhode/solve/methods.hpp"
 #include "polhode/solve/solve.hpp"

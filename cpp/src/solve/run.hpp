@@ -8,6 +8,12 @@
 
 namespace polhode {
 
+/// What remains of the options once they have been checked.
+struct RunOptions {
+  const SolveOptions& asked;
+  ode::Tolerances tolerances;
+};
+
 using Unpack = void (*)(const double* y, double* omega, double* attitude);
 /// A stepper from the start state towards t_end.
 using MakeStepper = std::function<std::unique_ptr<ode::Stepper>(const double* y0, double t_end)>;

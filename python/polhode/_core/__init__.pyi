@@ -581,6 +581,10 @@ def method_records() -> list[typing.Any]:
     """
     The list of methods, a dict each.
     """
+def method_refusal(arg0: str, arg1: Scene) -> str:
+    """
+    Why a method does not take a scene, or an empty string.
+    """
 def principal_axes(matrices: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], int]:
     """
     (moments, axes, number of matrices that are not finite); see polhode.inertia.principal_axes.

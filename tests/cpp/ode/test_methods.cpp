@@ -55,10 +55,16 @@ struct Clock {
   void restore(double*, double*) const {}
 };
 
+/// The tolerance, or for a fixed step the step whose error per turn of a rate of 1 is of that order.
+template <class Method>
+Tolerances at_accuracy(double accuracy, double rate = 1.0) {
+  return {accuracy, 0.0, Method::record.adaptive ? 0.0 : std::pow(accuracy, 1.0 / Method::record.order) / rate};
+}
+
 template <class Method, class P>
-DriveResult run(const P& problem, std::vector<double> y0, std::vector<double> times, double rtol,
+DriveResult run(const P& problem, std::vector<double> y0, std::vector<double> times, Tolerances tolerances,
                 std::vector<double>& out, DriveOptions options = {}, Counts* counts = nullptr, double t0 = 0.0) {
-  typename Method::template Stepper<P> stepper(problem, t0, y0.data(), times.back(), {rtol, 0.0});
+  typename Method::template Stepper<P> stepper(problem, t0, y0.data(), times.back(), tolerances);
   out.clear();
   const DriveResult result = drive(stepper, times, [&](std::size_t, double, const double* y) {
     for (int i = 0; i < P::dimension; ++i) out.push_back(y[i]);
@@ -69,9 +75,10 @@ DriveResult run(const P& problem, std::vector<double> y0, std::vector<double> ti
 
 template <class Method>
 void conform() {
-  const MethodRecord& record = find_method(Method::record.name);
+  const MethodRecord& record = Method::record;
   const std::string name(record.name);
   CAPTURE(name);
+  constexpr auto within = [](double accuracy) { return at_accuracy<Method>(accuracy); };
   std::vector<double> y;
   const Oscillator oscillator;
 
@@ -80,7 +87,7 @@ void conform() {
     for (int k = 0; k < 2; ++k) {
       Counts counts;
       const double rtol = k == 0 ? 1e-7 : 1e-10;
-      run<Method>(oscillator, {1, 0}, {10}, rtol, y, {}, &counts);
+      run<Method>(oscillator, {1, 0}, {10}, within(rtol), y, {}, &counts);
       error[k] = std::hypot(y[0] - std::cos(10.0), y[1] + std::sin(10.0));
       steps[k] = static_cast<double>(counts.steps);
       CHECK(error[k] < 100 * rtol);
@@ -97,7 +104,7 @@ void conform() {
     double error[2], steps[2];
     for (int k = 0; k < 2; ++k) {
       Counts counts;
-      run<Method>(oscillator, {1, 0}, times, k == 0 ? 1e-5 : 1e-8, y, {}, &counts);
+      run<Method>(oscillator, {1, 0}, times, within(k == 0 ? 1e-5 : 1e-8), y, {}, &counts);
       error[k] = 0.0;
       steps[k] = static_cast<double>(counts.steps);
       for (std::size_t i = 0; i < times.size(); ++i) {
@@ -108,12 +115,12 @@ void conform() {
   }
 
   SUBCASE("backwards, and a span of zero") {
-    run<Method>(oscillator, {1, 0}, {0.0, -3.0, -10.0}, 1e-11, y);
+    run<Method>(oscillator, {1, 0}, {0.0, -3.0, -10.0}, within(1e-11), y);
     CHECK(y[0] == 1.0);
     CHECK(std::abs(y[2] - std::cos(3.0)) < 1e-9);
     CHECK(std::abs(y[5] - std::sin(10.0)) < 1e-9);
     Counts counts;
-    const DriveResult none = run<Method>(oscillator, {1, 0}, {0.0, 0.0}, 1e-9, y, {}, &counts);
+    const DriveResult none = run<Method>(oscillator, {1, 0}, {0.0, 0.0}, within(1e-9), y, {}, &counts);
     CHECK(none.samples == 2);
     CHECK(counts.steps == 0);
   }
@@ -122,7 +129,7 @@ void conform() {
     DriveOptions options;
     options.dense = true;
     std::vector<double> times{0.3, 1.7, 6.0};
-    const DriveResult result = run<Method>(oscillator, {1, 0}, times, 1e-8, y, options);
+    const DriveResult result = run<Method>(oscillator, {1, 0}, times, within(1e-8), y, options);
     double at[2];
     for (std::size_t i = 0; i < times.size(); ++i) {
       result.dense(times[i], at);
@@ -136,7 +143,7 @@ void conform() {
                               {[](double t, const double*) { return t - 7.0; }, 0, true}};
     DriveOptions options;
     options.events = events;
-    const DriveResult result = run<Method>(oscillator, {1, 0}, {20}, 1e-11, y, options);
+    const DriveResult result = run<Method>(oscillator, {1, 0}, {20}, within(1e-11), y, options);
     CHECK(result.ending == Ending::event);
     CHECK(result.t == doctest::Approx(7.0).epsilon(1e-14));
     REQUIRE(result.hits.size() == 4);   // pi/2, 3 pi/2 twice (rising), 7
@@ -147,9 +154,10 @@ void conform() {
   }
 
   SUBCASE("a solution that blows up ends with the time reached") {
-    const DriveResult result = run<Method>(Blowup{}, {1.0}, {0.5, 2.0}, 1e-9, y);
+    const DriveResult result = run<Method>(Blowup{}, {1.0}, {0.5, 2.0}, within(1e-9), y);
     CHECK((result.ending == Ending::underflow || result.ending == Ending::not_finite));
-    CHECK(std::abs(result.t - 1.0) < 1e-6);
+    // A fixed step walks over the pole and needs a few more to leave the numbers.
+    CHECK(std::abs(result.t - 1.0) < 1e-6 + 20 * within(1e-9).step);
     REQUIRE(y.size() == 1);
     CHECK(std::abs(y[0] - 2.0) < 1e-7);
   }
@@ -158,16 +166,16 @@ void conform() {
     DriveOptions options;
     options.max_steps = 5;
     Counts counts;
-    CHECK(run<Method>(oscillator, {1, 0}, {1e3}, 1e-9, y, options, &counts).ending == Ending::max_steps);
+    CHECK(run<Method>(oscillator, {1, 0}, {1e3}, within(1e-9), y, options, &counts).ending == Ending::max_steps);
     CHECK(counts.steps == 5);
   }
 
   SUBCASE("scales of y and of time change nothing") {
     std::vector<double> z;
-    run<Method>(Scaled{1.0}, {1, 0}, {10}, 1e-9, y);
+    run<Method>(Scaled{1.0}, {1, 0}, {10}, within(1e-9), y);
     for (const int power : {-40, 40}) {
       const double s = std::ldexp(1.0, power);
-      run<Method>(Scaled{s}, {s, 0}, {10 / s}, 1e-9, z);
+      run<Method>(Scaled{s}, {s, 0}, {10 / s}, at_accuracy<Method>(1e-9, s), z);
       CHECK(z[0] == y[0] * s);
       CHECK(z[1] == y[1] * s);
     }
@@ -183,24 +191,13 @@ void conform_all(std::tuple<M...>*) {
 
 TEST_CASE("every method of the list conforms") { conform_all(static_cast<Methods*>(nullptr)); }
 
-TEST_CASE("the list of methods: unique names, sources, and an unknown name refused with the known ones") {
-  for (const MethodRecord& record : methods()) {
-    CHECK(!record.doc.empty());
-    CHECK(!record.source.empty());
-    int same = 0;
-    for (const MethodRecord& other : methods()) same += other.name == record.name;
-    CHECK(same == 1);
-  }
-  CHECK_THROWS_WITH_AS(find_method("rk54"), doctest::Contains("rk45"), InvalidInput);
-}
-
 TEST_CASE("two zeros within one step are both found, and a touch is met once") {
   std::vector<Event> events{{[](double, const double* y) { return (y[0] - 4.0) * (y[0] - 6.5); }, 0, false}};
   DriveOptions options;
   options.events = events;
   std::vector<double> y;
   Counts counts;
-  const DriveResult result = run<Rk45>(Clock{}, {0.0}, {10.0}, 1e-3, y, options, &counts);
+  const DriveResult result = run<Rk45>(Clock{}, {0.0}, {10.0}, {1e-3}, y, options, &counts);
   CHECK(counts.steps <= 8);
   REQUIRE(result.hits.size() == 2);
   CHECK(result.hits[0].t == doctest::Approx(4.0).epsilon(1e-14));

@@ -4,7 +4,7 @@
 
 #include "polhode/core/error.hpp"
 #include "polhode/exact/free_motion.hpp"
-#include "polhode/ode/methods.hpp"
+#include "polhode/solve/methods.hpp"
 #include "polhode/solve/invariants.hpp"
 #include "polhode/solve/solve.hpp"
 

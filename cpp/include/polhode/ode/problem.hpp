@@ -15,9 +15,11 @@ concept Problem = requires(const P& problem, double t, const double* y, double* 
   problem.restore(out, out);
 };
 
+/// How fine a run is asked to be.
 struct Tolerances {
   double rtol = 1e-9;
   double atol = 0.0;
+  double step = 0.0;        ///< of methods with a fixed step
 };
 
 /// What a run cost.

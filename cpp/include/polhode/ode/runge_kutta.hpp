@@ -11,14 +11,16 @@
 
 namespace polhode::ode {
 
-/// Any embedded explicit Runge-Kutta pair whose last stage is the next step's first, with a continuous extension of
-/// order 4 made of the cubic Hermite polynomial and one quartic bump. The tableau is data; nothing here knows it.
+/// Any embedded explicit Runge-Kutta pair whose last stage is the next step's first, with a continuous extension made
+/// of the cubic Hermite polynomial and as many terms above it as the tableau has rows for, from stages of its own where
+/// it asks for them. The tableau is data; nothing here knows it.
 template <class Tableau, Problem P>
 class RungeKuttaStepper final : public Stepper {
  public:
   static constexpr int N = P::dimension;
   static constexpr int M = (N + 1) / 2 * 2;       ///< padded to whole vectors of two; the pad stays zero
-  static constexpr int segment_size = 5 * M;
+  static constexpr int terms = 4 + Tableau::dense_rows;
+  static constexpr int segment_size = terms * M;
 
   RungeKuttaStepper(const P& problem, double t0, const double* y0, double t_end, const Tolerances& tolerances)
       : Stepper(N, segment_size, &evaluate_segment, t0),
@@ -50,8 +52,7 @@ class RungeKuttaStepper final : public Stepper {
       }
       if (std::abs(h) < std::numeric_limits<double>::min()) return finite ? StepResult::underflow : StepResult::not_finite;
       compute_stages(h, std::make_integer_sequence<int, Tableau::stages - 1>{});
-      combine_error(h);
-      const double error = problem_.error_norm(error_, y_, y_new_, tolerances_.rtol, tolerances_.atol);
+      const double error = estimate_error(h);
       if (error <= 1.0) {
         t_old_ = t_;
         t_ = last ? t_end : t_ + h;
@@ -81,12 +82,16 @@ class RungeKuttaStepper final : public Stepper {
     return segment_;
   }
 
-  /// The continuous extension at the fraction s of a step: the cubic Hermite polynomial in nested form, and the bump.
+  /// The continuous extension at the fraction s of a step, in nested form: c0 + s (c1 + r (c2 + s (c3 + r (...)))),
+  /// r = 1 - s.
   static void evaluate_segment(const double* segment, double s, double* out) {
     const double r = 1.0 - s;
-    const double *c0 = segment, *c1 = c0 + M, *c2 = c1 + M, *c3 = c2 + M, *c4 = c3 + M;
     double y[M];
-    for (int i = 0; i < M; ++i) y[i] = c0[i] + s * (c1[i] + r * (c2[i] + s * (c3[i] + r * c4[i])));
+    std::copy_n(segment + (terms - 1) * M, M, y);
+    for (int k = terms - 1; k-- > 0;) {
+      const double factor = k % 2 == 0 ? s : r;
+      for (int i = 0; i < M; ++i) y[i] = segment[k * M + i] + factor * y[i];
+    }
     std::copy_n(y, N, out);
   }
 
@@ -111,27 +116,61 @@ class RungeKuttaStepper final : public Stepper {
     compute(t_ + Tableau::c[S] * h, y_new_, k_[S]);
   }
 
-  void combine_error(double h) {
+  double norm_of(const double (&weights)[Tableau::stages], double h) {
     for (int i = 0; i < M; ++i) {
       double sum = 0.0;
-      for (int s = 0; s < Tableau::stages; ++s) sum += Tableau::error[s] * k_[s][i];
+      for (int s = 0; s < Tableau::stages; ++s) sum += weights[s] * k_[s][i];
       error_[i] = h * sum;
     }
+    return problem_.error_norm(error_, y_, y_new_, tolerances_.rtol, tolerances_.atol);
+  }
+
+  /// One estimate, or two of them as Hairer, Norsett and Wanner join them in DOP853: e^2 / sqrt(e^2 + low^2 / 100).
+  double estimate_error(double h) {
+    const double error = norm_of(Tableau::error, h);
+    if constexpr (requires { Tableau::error_low; }) {
+      const double low = norm_of(Tableau::error_low, h), both = std::hypot(error, 0.1 * low);
+      return error == 0.0 ? 0.0 : error * (error / both);
+    } else {
+      return error;
+    }
+  }
+
+  /// The stages that the continuous extension asks for beyond those of the step.
+  template <int... E>
+  void compute_dense_stages([[maybe_unused]] double h, std::integer_sequence<int, E...>) {
+    (compute_dense_stage<Tableau::stages + E>(h, std::make_integer_sequence<int, Tableau::stages + E>{}), ...);
+  }
+
+  template <int S, int... J>
+  void compute_dense_stage(double h, std::integer_sequence<int, J...>) {
+    double y[M];
+    for (int i = 0; i < M; ++i) {
+      double sum = 0.0;
+      ((Tableau::a[S][J] != 0.0 ? void(sum += Tableau::a[S][J] * k_[J][i]) : void()), ...);
+      y[i] = y_old_[i] + h * sum;
+    }
+    compute(t_old_ + Tableau::c[S] * h, y, k_[S]);
   }
 
   void prepare_segment() {
     if (segment_ready_) return;
     segment_ready_ = true;
     const double h = h_taken_;
-    double *c0 = segment_, *c1 = c0 + M, *c2 = c1 + M, *c3 = c2 + M, *c4 = c3 + M;
+    compute_dense_stages(h, std::make_integer_sequence<int, Tableau::all_stages - Tableau::stages>{});
+    double *c0 = segment_, *c1 = c0 + M, *c2 = c1 + M, *c3 = c2 + M;
     for (int i = 0; i < M; ++i) {
-      double bump = 0.0;
-      for (int s = 0; s < Tableau::stages; ++s) bump += Tableau::bump[s] * k_[s][i];
       c0[i] = y_old_[i];
       c1[i] = y_[i] - y_old_[i];
       c2[i] = h * k_[0][i] - c1[i];
       c3[i] = c1[i] - h * k_[Tableau::stages - 1][i] - c2[i];
-      c4[i] = h * bump;
+    }
+    for (int row = 0; row < Tableau::dense_rows; ++row) {
+      for (int i = 0; i < M; ++i) {
+        double sum = 0.0;
+        for (int s = 0; s < Tableau::all_stages; ++s) sum += Tableau::dense[row][s] * k_[s][i];
+        segment_[(4 + row) * M + i] = h * sum;
+      }
     }
   }
 
@@ -161,7 +200,7 @@ class RungeKuttaStepper final : public Stepper {
   double h_ = 0.0, h_taken_ = 0.0;
   bool fresh_ = true, segment_ready_ = false;
   alignas(16) double y_[M] = {}, y_old_[M] = {}, y_new_[M] = {}, error_[M] = {};
-  alignas(16) double k_[Tableau::stages][M] = {};
+  alignas(16) double k_[Tableau::all_stages][M] = {};
   alignas(16) double segment_[segment_size] = {};
 };
 

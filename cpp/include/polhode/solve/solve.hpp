@@ -21,7 +21,7 @@ enum class Formulation { euler, lagrangian };
 
 struct SolveOptions {
   std::optional<double> accuracy = {};    ///< of every sample, 0 < accuracy <= 1; excludes rtol and atol
-  std::optional<std::string> method = {}; ///< a name of ode::methods(); without it the best there is
+  std::optional<std::string> method = {}; ///< a name of methods(); without it the best there is
   std::optional<double> rtol = {};        ///< relative tolerance of a step
   std::optional<double> atol = {};        ///< absolute tolerance of a step, in rad/s and in quaternion components
   std::optional<double> step = {};        ///< [s], for fixed-step methods alone

@@ -3,10 +3,11 @@
 namespace polhode::ode::tableaus {
 
 /// Dormand & Prince 1980, J. Comput. Appl. Math. 6, 19, table 2: RK5(4)7M. The last row of `a` is the solution of
-/// order 5 (first same as last). `error` is order 5 minus order 4. `bump` completes the cubic Hermite polynomial
+/// order 5 (first same as last). `error` is order 5 minus order 4. `dense` completes the cubic Hermite polynomial
 /// to the continuous extension of order 4: Hairer, Norsett, Wanner 1993, Solving ODEs I, sec. II.6, (6.12) and DOPRI5.
 struct DormandPrince54 {
   static constexpr int stages = 7;
+  static constexpr int all_stages = 7;
   static constexpr int order = 5;
   static constexpr int error_order = 4;
   static constexpr double c[stages] = {0.0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1.0, 1.0};
@@ -21,10 +22,11 @@ struct DormandPrince54 {
   };
   static constexpr double error[stages] = {71.0 / 57600,      0.0,        -71.0 / 16695, 71.0 / 1920,
                                            -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
-  static constexpr double bump[stages] = {-12715105075.0 / 11282082432, 0.0,
-                                          87487479700.0 / 32700410799,  -10690763975.0 / 1880347072,
-                                          701980252875.0 / 199316789632, -1453857185.0 / 822651844,
-                                          69997945.0 / 29380423};
+  static constexpr int dense_rows = 1;
+  static constexpr double dense[dense_rows][all_stages] = {
+      {-12715105075.0 / 11282082432, 0.0, 87487479700.0 / 32700410799, -10690763975.0 / 1880347072,
+       701980252875.0 / 199316789632, -1453857185.0 / 822651844, 69997945.0 / 29380423},
+  };
 };
 
 }  // namespace polhode::ode::tableaus

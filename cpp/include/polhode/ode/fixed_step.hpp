@@ -1,0 +1,45 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "polhode/ode/stepper.hpp"
+
+namespace polhode::ode {
+
+/// Steps of one length. Their times are counted from the start, t0 + n h, so that they do not drift; only the last step
+/// of a run may be shorter.
+class FixedStepper : public Stepper {
+ public:
+  StepResult advance(double t_end) final {
+    const double rest = t_end - t_;
+    // The rounding of t0 + n h must not leave a sliver of a step behind, nor bend the last step.
+    const double rounding = 4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(t_), std::abs(t_end));
+    const double h = std::copysign(step_, rest);
+    const bool last = std::abs(rest) <= step_ + rounding;
+    h_taken_ = last && std::abs(rest) < step_ - rounding ? rest : h;
+    const double t_new = last ? t_end : t0_ + static_cast<double>(counts_.steps + 1) * h;
+    if (t_new == t_) return StepResult::underflow;
+    if (!step(t_, h_taken_)) return StepResult::not_finite;
+    t_old_ = t_;
+    t_ = t_new;
+    ++counts_.steps;
+    return StepResult::accepted;
+  }
+
+ protected:
+  FixedStepper(int size, int numbers_per_segment, Evaluate evaluate_segment, double t0, double length)
+      : Stepper(size, numbers_per_segment, evaluate_segment, t0), t0_(t0), step_(length) {}
+
+  /// One step of length h, which is negative backwards. False, and nothing changed, when the result is not finite.
+  virtual bool step(double t, double h) = 0;
+
+  double fraction(double t) const { return (t - t_old_) / (t_ - t_old_); }
+  double h_taken() const { return h_taken_; }
+
+ private:
+  double t0_, step_, h_taken_ = 0.0;
+};
+
+}  // namespace polhode::ode

@@ -1,0 +1,58 @@
+#include "polhode/solve/methods.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "polhode/core/error.hpp"
+#include "polhode/ode/methods.hpp"
+#include "solve/methods/body_method.hpp"
+#include "solve/run_general.hpp"
+
+namespace polhode {
+namespace {
+
+template <class... M>
+void append_general(std::vector<BodyMethod>& list, std::tuple<M...>*) {
+  (list.push_back({M::record, &run_general<M>, nullptr, false}), ...);
+}
+
+const std::vector<BodyMethod>& all() {
+  static const std::vector<BodyMethod> list = [] {
+    std::vector<BodyMethod> made;
+    append_general(made, static_cast<ode::Methods*>(nullptr));
+#define POLHODE_METHOD(name) made.push_back(name##_method);
+#include "polhode/solve/methods.def"
+#undef POLHODE_METHOD
+    return made;
+  }();
+  return list;
+}
+
+}  // namespace
+
+const BodyMethod& find_body_method(std::string_view name) {
+  std::string names;
+  for (const BodyMethod& method : all()) {
+    if (method.record.name == name) return method;
+    names.append(names.empty() ? "" : ", ").append(method.record.name);
+  }
+  throw InvalidInput("method", "one of " + names, "'" + std::string(name) + "'");
+}
+
+std::span<const ode::MethodRecord> methods() {
+  static const std::vector<ode::MethodRecord> records = [] {
+    std::vector<ode::MethodRecord> made;
+    for (const BodyMethod& method : all()) made.push_back(method.record);
+    return made;
+  }();
+  return records;
+}
+
+const ode::MethodRecord& find_method(std::string_view name) { return find_body_method(name).record; }
+
+std::string compute_refusal(std::string_view method, const Scene& scene) {
+  const BodyMethod& one = find_body_method(method);
+  return one.refuse ? one.refuse(scene) : "";
+}
+
+}  // namespace polhode

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cmath>
+
+#include "polhode/core/error.hpp"
+#include "polhode/solve/euler_problem.hpp"
+#include "polhode/solve/lagrangian_problem.hpp"
+#include "solve/run.hpp"
+
+namespace polhode {
+
+template <class Method, class P>
+Motion run_problem(const Scene& scene, const P& problem, const RunOptions& options) {
+  double y0[P::dimension];
+  P::pack(scene.start(), y0);
+  return run(scene, options.asked, y0, &P::unpack, [&](const double* y, double t_end) {
+    return std::make_unique<typename Method::template Stepper<P>>(problem, scene.t0(), y, t_end, options.tolerances);
+  });
+}
+
+/// Calls `action` with the scene's torques in the form that costs least to evaluate.
+template <class Action>
+Motion with_torque(const Scene& scene, Action&& action) {
+  const auto& torques = scene.torques();
+  if (torques.empty()) return action(NoTorque{});
+  if (torques.size() == 1) return std::visit([&](const auto& one) { return action(one); }, torques.front());
+  return action(SeveralTorques{torques});
+}
+
+template <class Method>
+Motion run_euler(const Scene& scene, const RunOptions& options) {
+  const bool with_attitude =
+      scene.want().attitude || scene.torque_sum().uses_attitude || !options.asked.events.empty();
+  const InertiaTensor& inertia = scene.inertia_B();
+  return with_torque(scene, [&]<class Torque>(const Torque& torque) {
+    const auto go = [&]<bool diagonal, bool attitude>() {
+      const EulerProblem<Torque, diagonal, attitude> problem(inertia, torque);
+      return run_problem<Method>(scene, problem, options);
+    };
+    Motion motion = inertia.is_diagonal()
+                        ? (with_attitude ? go.template operator()<true, true>() : go.template operator()<true, false>())
+                        : (with_attitude ? go.template operator()<false, true>() : go.template operator()<false, false>());
+    motion.plan = {"euler", "", with_attitude ? "omega, attitude" : "omega"};
+    return motion;
+  });
+}
+
+template <class Method>
+Motion run_lagrangian(const Scene& scene, const RunOptions& options) {
+  constexpr const char* cause = "Lagrange's equations in z-x-z angles divide by sin(theta); Euler's, the default, do not";
+  using Angles = LagrangianProblem<NoTorque>;
+  const double theta = Angles::compute_angles(scene.attitude())[1];
+  if (!(std::sin(theta) > Angles::least_sine)) {
+    throw InvalidInput("formulation 'lagrangian'", "started away from theta = 0 and pi",
+                       "theta = " + to_text(theta) + " rad", cause);
+  }
+  return with_torque(scene, [&]<class Torque>(const Torque& torque) {
+    const LagrangianProblem<Torque> problem(scene.inertia_B(), torque);
+    Motion motion = run_problem<Method>(scene, problem, options);
+    if (motion.status == Status::failed) motion.message += std::string(": ") + cause;
+    motion.plan = {"lagrangian", "", "phi, theta, psi and their rates"};
+    return motion;
+  });
+}
+
+/// A method for any y' = f(t, y) at work on a scene.
+template <class Method>
+Motion run_general(const Scene& scene, const RunOptions& options) {
+  return options.asked.formulation == Formulation::euler ? run_euler<Method>(scene, options)
+                                                         : run_lagrangian<Method>(scene, options);
+}
+
+}  // namespace polhode
