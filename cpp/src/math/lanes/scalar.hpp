@@ -12,6 +12,7 @@ struct One {
   POLHODE_INLINE One() = default;
   POLHODE_INLINE One(double a) : v(a) {}  // NOLINT(google-explicit-constructor)
   static POLHODE_INLINE One load(const double* p) { return *p; }
+  POLHODE_INLINE void store(double* p) const { *p = v; }
 };
 
 POLHODE_INLINE One operator+(One a, One b) { return a.v + b.v; }

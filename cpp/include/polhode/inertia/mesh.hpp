@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <variant>
+
+#include "polhode/core/simd.hpp"
+#include "polhode/inertia/mass_properties.hpp"
+#include "polhode/math/double_double.hpp"
+
+// Solids of uniform density inside a surface of triangles.
+namespace polhode {
+
+/// A view of somebody's triangles: x, y, z of each vertex, and three vertices of each face, counter-clockwise as seen
+/// from outside. Cavities are shells wound the other way round.
+struct Mesh {
+  Mesh(const double* vertices_in, std::size_t vertex_count_in, const std::int32_t* faces_in, std::size_t face_count_in)
+      : vertices(vertices_in), vertex_count(vertex_count_in), faces(faces_in), face_count(face_count_in) {}
+  Mesh(const double* vertices_in, std::size_t vertex_count_in, const std::int64_t* faces_in, std::size_t face_count_in)
+      : vertices(vertices_in), vertex_count(vertex_count_in), faces(faces_in), face_count(face_count_in) {}
+
+  const double* vertices;
+  std::size_t vertex_count;
+  std::variant<const std::int32_t*, const std::int64_t*> faces;
+  std::size_t face_count;
+};
+
+/// What check_mesh found in a surface that encloses a body.
+struct MeshReport {
+  std::size_t components = 0;  ///< surfaces that share no edge, cavities with them
+  std::size_t cavities = 0;    ///< of these, wound inward inside another
+  std::size_t degenerate = 0;  ///< faces with two corners at one vertex: they count for nothing
+  bool merged = false;         ///< closed only when vertices at exactly one place are taken as one
+  bool inside_out = false;     ///< wound consistently, but inward
+  Vector3d low = Vector3d::Zero(), high = Vector3d::Zero();  ///< the box round the faces
+};
+
+/// Is this the surface of a body: every edge between two faces that pass it in opposite directions, every inward shell
+/// inside another? Throws InvalidInput with counts and the first faces when it is not. A surface that is turned inside
+/// out as a whole is no failure here: see `inside_out`. Surfaces that cross each other are not looked for.
+MeshReport check_mesh(const Mesh& mesh);
+
+/// Volume and moments of the solid, in units of the vertices; double-double, so that what follows rounds once.
+/// Negative volume: wound inward.
+struct MeshIntegrals {
+  Vector3d reference = Vector3d::Zero();  ///< a point near the mesh, from which the rest is seen
+  math::DD volume;
+  math::DD centre[3];    ///< centre of volume
+  math::DD second[6];    ///< integral of xx, yy, zz, xy, xz, yz about the centre
+  bool flipped = false;  ///< `flip` was called
+  bool refined = false;  ///< plain numbers would have lost digits here: integrated in double-double
+
+  /// Turns the surface over: what was wound inward is wound outward.
+  void flip();
+
+  /// With a density [kg/m^3] and the length of a vertex unit [m]. Throws InvalidInput unless the volume is positive.
+  MassProperties with_density(double density, double unit = 1) const;
+  /// With the mass [kg] of the whole.
+  MassProperties with_mass(double mass, double unit = 1) const;
+};
+
+/// Exact for exact arithmetic whatever the shape: sums over the tetrahedra between a reference point and each face
+/// ([Mirtich1996], [Eberly2002]). Compensated; the same bits on avx2 and avx512. Nothing is asked of the surface;
+/// throws InvalidInput for an index out of range, a vertex that is not finite, or no face at all.
+MeshIntegrals integrate_mesh(const Mesh& mesh);
+MeshIntegrals integrate_mesh(const Mesh& mesh, SimdLevel level);
+
+}  // namespace polhode

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace polhode::inertia {
+
+/// What is summed over the triangles: d, d s (3), d f (6: xx, yy, zz, xy, xz, yz), and the square of what rounding may
+/// do to d.
+inline constexpr int mesh_sums = 11;
+
+/// Sums over triangles seen from `reference`: the value of each is hi + lo.
+struct MeshSums {
+  double hi[mesh_sums], lo[mesh_sums];
+};
+
+template <class Index>
+struct MeshTriangles {
+  const double* vertices;
+  std::size_t vertex_count;
+  const Index* faces;
+  std::size_t face_count;
+  const double* reference;
+};
+
+/// False when an index is out of range; the sums are then worth nothing.
+template <class Index>
+using MeshLoop = bool (*)(const MeshTriangles<Index>&, MeshSums&);
+
+/// `quick` in plain numbers with compensated sums of blocks, `fine` in double-double throughout. avx2 and avx512 give
+/// the same bits.
+struct MeshKernels {
+  MeshLoop<std::int32_t> quick32, fine32;
+  MeshLoop<std::int64_t> quick64, fine64;
+};
+
+/// Null where the compiler could not build the level.
+const MeshKernels* baseline_mesh_kernels();
+const MeshKernels* avx2_mesh_kernels();
+const MeshKernels* avx512_mesh_kernels();
+
+}  // namespace polhode::inertia

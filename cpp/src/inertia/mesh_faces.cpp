@@ -1,0 +1,104 @@
+#include "inertia/mesh_faces.hpp"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "polhode/core/error.hpp"
+
+namespace polhode::inertia {
+namespace {
+
+std::uint64_t mixed(std::uint64_t h) {  // the finaliser of MurmurHash3
+  h = (h ^ (h >> 33)) * 0xff51afd7ed558ccdULL;
+  h = (h ^ (h >> 33)) * 0xc4ceb9fe1a85ec53ULL;
+  return h ^ (h >> 33);
+}
+
+/// Of three coordinates; -0 is 0.
+std::uint64_t hash_of(const double* p) {
+  std::uint64_t h = 0;
+  for (int k = 0; k < 3; ++k) h = mixed(h * 31 + std::bit_cast<std::uint64_t>(p[k] + 0.0));
+  return h;
+}
+
+/// For each vertex the first one at its place.
+std::vector<std::uint32_t> first_at_place(const double* vertices, std::size_t count) {
+  constexpr std::uint32_t empty = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> table(std::bit_ceil(2 * count + 2), empty), first(count);
+  const std::size_t mask = table.size() - 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double* p = vertices + 3 * i;
+    first[i] = static_cast<std::uint32_t>(i);
+    if (!(p[0] == p[0] && p[1] == p[1] && p[2] == p[2])) continue;  // NaN is nowhere
+    std::size_t slot = hash_of(p) & mask;
+    for (; table[slot] != empty; slot = (slot + 1) & mask) {
+      const double* q = vertices + 3 * std::size_t{table[slot]};
+      if (p[0] == q[0] && p[1] == q[1] && p[2] == q[2]) break;
+    }
+    if (table[slot] == empty) table[slot] = first[i];
+    first[i] = table[slot];
+  }
+  return first;
+}
+
+template <class Visit>
+void visit_indices(const Mesh& mesh, const Visit& visit) {
+  std::visit(
+      [&](const auto* faces) {
+        for (std::size_t i = 0; i < 3 * mesh.face_count; ++i) visit(i, static_cast<std::int64_t>(faces[i]));
+      },
+      mesh.faces);
+}
+
+std::string face_text(std::size_t corner) { return "face " + std::to_string(corner / 3); }
+
+}  // namespace
+
+void require_indices(const Mesh& mesh) {
+  if (mesh.face_count == 0) throw InvalidInput("faces", "one triangle or more", "none");
+  const std::uint64_t count = mesh.vertex_count;
+  bool fits = true;
+  visit_indices(mesh, [&](std::size_t, std::int64_t index) { fits &= static_cast<std::uint64_t>(index) < count; });
+  if (fits) return;
+  visit_indices(mesh, [&](std::size_t i, std::int64_t index) {
+    if (static_cast<std::uint64_t>(index) < count) return;
+    throw InvalidInput("faces", "numbers of vertices, from 0 to below " + std::to_string(count),
+                       std::to_string(index) + " in " + face_text(i),
+                       index == static_cast<std::int64_t>(count) ? "counted from 1?" : "");
+  });
+}
+
+void require_finite_vertices(const Mesh& mesh) {
+  visit_indices(mesh, [&](std::size_t i, std::int64_t index) {
+    const double* p = mesh.vertices + 3 * index;
+    if (std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])) return;
+    throw InvalidInput("vertices", "finite",
+                       "(" + to_text(p[0]) + ", " + to_text(p[1]) + ", " + to_text(p[2]) + ") at vertex " +
+                           std::to_string(index) + " of " + face_text(i));
+  });
+}
+
+Corners::Corners(const Mesh& mesh) {
+  constexpr std::size_t most = std::size_t{1} << 31;
+  if (mesh.face_count >= most || mesh.vertex_count >= 2 * most) {
+    throw InvalidInput("faces", "fewer than 2^31 faces and 2^32 vertices, to be checked",
+                       std::to_string(mesh.face_count) + " faces and " + std::to_string(mesh.vertex_count) + " vertices");
+  }
+  if (const auto* faces = std::get_if<const std::int32_t*>(&mesh.faces)) {
+    first_ = reinterpret_cast<const std::uint32_t*>(*faces);  // the unsigned type of the same: allowed
+    return;
+  }
+  own_.resize(3 * mesh.face_count);
+  visit_indices(mesh, [&](std::size_t i, std::int64_t index) { own_[i] = static_cast<std::uint32_t>(index); });
+  first_ = own_.data();
+}
+
+void Corners::merge(const Mesh& mesh) {
+  const std::vector<std::uint32_t> first = first_at_place(mesh.vertices, mesh.vertex_count);
+  own_.resize(3 * mesh.face_count);
+  visit_indices(mesh, [&](std::size_t i, std::int64_t index) { own_[i] = first[static_cast<std::size_t>(index)]; });
+  first_ = own_.data();
+}
+
+}  // namespace polhode::inertia

@@ -1,0 +1,252 @@
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+
+#include "convert.hpp"
+#include "polhode/core/error.hpp"
+#include "polhode/inertia/mesh.hpp"
+
+namespace polhode::python {
+namespace {
+
+/// Faces as they come, int32 or int64 without a copy, any other whole numbers as int64.
+py::array to_faces(py::handle value) {
+  constexpr int style = py::array::c_style | py::array::forcecast;
+  py::array faces = py::array::ensure(value);
+  if (!faces) {
+    PyErr_Clear();
+    throw InvalidInput("faces", "an array of whole numbers", std::string(py::str(py::type::of(value))));
+  }
+  if (faces.size() == 0) return py::array_t<std::int64_t>({0, 3});
+  const char kind = faces.dtype().kind();
+  if (kind != 'i' && kind != 'u') {
+    throw InvalidInput("faces", "an array of whole numbers",
+                       "dtype " + std::string(py::str(static_cast<py::object>(faces.dtype()))));
+  }
+  if (faces.ndim() != 2 || faces.shape(1) != 3) {
+    throw InvalidInput("faces", "of shape (n, 3): triangles",
+                       "shape " + std::string(py::str(faces.attr("shape"))),
+                       faces.ndim() == 2 && faces.shape(1) == 4 ? "quadrilaterals? cut each in two" : "");
+  }
+  if (kind == 'i' && faces.itemsize() == 4) return py::array_t<std::int32_t, style>::ensure(faces);
+  return py::array_t<std::int64_t, style>::ensure(faces);
+}
+
+/// The arrays, kept alive, and the view of them.
+struct Triangles {
+  Array vertices;
+  py::array faces;
+
+  Triangles(py::handle vertices_in, py::handle faces_in)
+      : vertices(to_array_with_tail(vertices_in, "vertices", {3})), faces(to_faces(faces_in)) {
+    if (vertices.ndim() != 2) {
+      throw InvalidInput("vertices", "of shape (n, 3)", "shape " + std::string(py::str(vertices.attr("shape"))));
+    }
+  }
+
+  Mesh view() const {
+    const auto vertex_count = static_cast<std::size_t>(vertices.shape(0));
+    const auto face_count = static_cast<std::size_t>(faces.shape(0));
+    if (faces.itemsize() == 4) {
+      return {vertices.data(), vertex_count, static_cast<const std::int32_t*>(faces.data()), face_count};
+    }
+    return {vertices.data(), vertex_count, static_cast<const std::int64_t*>(faces.data()), face_count};
+  }
+};
+
+struct Unit {
+  const char* name;
+  double metres;
+};
+constexpr std::array<Unit, 8> units = {
+    {{"m", 1}, {"dm", 0.1}, {"cm", 0.01}, {"mm", 0.001}, {"um", 1e-6}, {"km", 1000}, {"in", 0.0254}, {"ft", 0.3048}}};
+
+double to_unit(py::handle value) {
+  if (!py::isinstance<py::str>(value)) {
+    const double metres = to_real(value, "unit");
+    if (!(metres > 0)) throw InvalidInput("unit", "positive, in metres", to_text(metres));
+    return metres;
+  }
+  const auto name = value.cast<std::string>();
+  for (const Unit& unit : units)
+    if (name == unit.name) return unit.metres;
+  throw InvalidInput("unit", "a length in metres, or one of m, dm, cm, mm, um, km, in, ft", "'" + name + "'");
+}
+
+void warn(const std::string& text) {
+  if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+}
+
+void ask_about_the_unit(const MeshReport& report, double metres) {
+  const double extent = (report.high - report.low).maxCoeff() * metres;
+  if (extent > 2000) {
+    warn("vertices: the mesh is " + to_text(extent) + " m long: is that meant? unit=\"mm\" reads millimetres");
+  } else if (extent < 2e-6) {
+    warn("vertices: the mesh is " + to_text(extent) + " m long: is that meant? unit=\"km\" reads kilometres");
+  }
+}
+
+struct Options {
+  std::optional<double> density, mass;
+  double unit;
+  bool check, flip;
+};
+
+Options to_options(const py::object& density, const py::object& mass, py::handle unit, bool check,
+                   const py::object& repair) {
+  Options options{{}, {}, to_unit(unit), check, false};
+  if (density.is_none() == mass.is_none()) {
+    throw InvalidInput("density", "given, or else the mass", density.is_none() ? "neither" : "both");
+  }
+  if (!density.is_none()) options.density = to_real(density, "density");
+  if (!mass.is_none()) options.mass = to_real(mass, "mass");
+  if (!repair.is_none()) {
+    if (!py::isinstance<py::str>(repair) || repair.cast<std::string>() != "flip") {
+      throw InvalidInput("repair", "\"flip\" or None", std::string(py::repr(repair)));
+    }
+    options.flip = true;
+  }
+  return options;
+}
+
+MassProperties properties_of(const Triangles& triangles, const Options& options) {
+  const Mesh mesh = triangles.view();
+  std::optional<MeshReport> report;
+  MeshIntegrals integrals;
+  {
+    py::gil_scoped_release nogil;
+    if (options.check) report = check_mesh(mesh);
+    integrals = integrate_mesh(mesh);
+    if (options.flip && integrals.volume.hi < 0) integrals.flip();
+  }
+  const MassProperties body = options.mass ? integrals.with_mass(*options.mass, options.unit)
+                                           : integrals.with_density(options.density.value(), options.unit);
+  if (report) ask_about_the_unit(*report, options.unit);
+  if (integrals.flipped) warn("faces: wound inward, all of them: turned over");
+  return body;
+}
+
+}  // namespace
+
+void bind_mesh(py::module_& m, py::class_<MassProperties>& cls) {
+  cls.def_static(
+      "from_mesh",
+      [](py::handle vertices, py::handle faces, const py::object& density, const py::object& mass, py::handle unit,
+         bool check, const py::object& repair) {
+        const Options options = to_options(density, mass, unit, check, repair);
+        return properties_of(Triangles(vertices, faces), options);
+      },
+      py::arg("vertices"), py::arg("faces"), py::kw_only(), py::arg("density") = py::none(),
+      py::arg("mass") = py::none(), py::arg("unit") = "m", py::arg("check") = true, py::arg("repair") = py::none(),
+      R"(The solid of uniform density inside a surface of triangles, exact for its vertices wherever they are.
+
+The surface must be closed, every edge between two faces that pass it in opposite directions; vertices at exactly one
+place count as one. It may have several parts and cavities (shells wound inward); parts that overlap count twice, which
+is not looked for.
+
+Parameters
+----------
+vertices : array_like, shape (n, 3)
+    In the body's axes, in units of `unit`. C-contiguous float64 is taken without a copy.
+faces : array_like of integers, shape (m, 3)
+    Vertices of each triangle, counter-clockwise as seen from outside. C-contiguous int32 and int64 need no copy.
+density : float
+    [kg/m^3]; or else
+mass : float
+    [kg] of the whole.
+unit : float or str
+    Length of a unit of the vertices [m], or one of "m", "dm", "cm", "mm", "um", "km", "in", "ft".
+check : bool
+    False leaves out all that is asked of the surface: fast, and wrong without a word when it is open.
+repair : {"flip"}, optional
+    Turns a surface that is wound inward as a whole, and warns that it did.
+
+Returns
+-------
+MassProperties
+
+Warns
+-----
+UserWarning
+    A mesh longer than 2 km or shorter than 2 um, which may be a wrong unit; one that was turned.
+
+Raises
+------
+InvalidInput
+    An open, inverted or non-manifold surface, with counts and the first faces; an index that names no vertex; a vertex
+    that is not finite; no volume; density or mass not positive.
+
+References
+----------
+B. Mirtich, J. Graphics Tools 1(2) (1996) 31; D. Eberly, Polyhedral mass properties (revisited) (2002).)");
+  cls.def_static(
+      "from_file",
+      [](const py::object& path, const py::object& density, const py::object& mass, py::handle unit, bool check,
+         const py::object& repair) {
+        const Options options = to_options(density, mass, unit, check, repair);
+        const py::tuple arrays = py::module_::import("polhode.mesh").attr("read")(path);
+        try {
+          return properties_of(Triangles(arrays[0], arrays[1]), options);
+        } catch (const InvalidInput& error) {
+          throw InvalidInput(std::string(py::str(path)) + ": " + error.what());
+        }
+      },
+      py::arg("path"), py::kw_only(), py::arg("density") = py::none(), py::arg("mass") = py::none(),
+      py::arg("unit") = "m", py::arg("check") = true, py::arg("repair") = py::none(),
+      R"(The solid inside the surface that a file holds: STL, or with the `mesh` extra OBJ, PLY, glTF.
+
+Files do not tell their unit: say it. The rest is as for :meth:`from_mesh`.
+
+Parameters
+----------
+path : str or PathLike
+    The format goes by the suffix.
+density, mass : float
+    One of them [kg/m^3], [kg].
+unit : float or str
+    Length of a unit of the file [m], or one of "m", "dm", "cm", "mm", "um", "km", "in", "ft".
+check : bool
+    As for `from_mesh`.
+repair : {"flip"}, optional
+    As for `from_mesh`.
+
+Returns
+-------
+MassProperties
+
+Raises
+------
+InvalidInput
+    A file that cannot be read, is cut short or does not hold what it says, and what `from_mesh` refuses.)");
+  m.def(
+      "mesh_report",
+      [](py::handle vertices, py::handle faces) {
+        const Triangles triangles(vertices, faces);
+        const Mesh mesh = triangles.view();
+        MeshReport report;
+        {
+          py::gil_scoped_release nogil;
+          report = check_mesh(mesh);
+        }
+        py::dict found;
+        found["faces"] = mesh.face_count;
+        found["components"] = report.components;
+        found["cavities"] = report.cavities;
+        found["degenerate"] = report.degenerate;
+        found["merged"] = report.merged;
+        found["inside_out"] = report.inside_out;
+        found["low"] = from_vector3(report.low);
+        found["high"] = from_vector3(report.high);
+        return found;
+      },
+      py::arg("vertices"), py::arg("faces"), "What the check of a surface found; see polhode.mesh.report.");
+  m.def(
+      "mesh_is_refined",
+      [](py::handle vertices, py::handle faces) {
+        return integrate_mesh(Triangles(vertices, faces).view()).refined;
+      },
+      py::arg("vertices"), py::arg("faces"), "Integrated in double-double, as plain numbers would lose digits.");
+}
+
+}  // namespace polhode::python

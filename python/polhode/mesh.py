@@ -1,0 +1,201 @@
+"""Triangles from files: STL by itself, OBJ, PLY and glTF through trimesh (the `mesh` extra).
+
+What a file claims is compared with its size before anything is read from it.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+import re
+import struct
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._core import InvalidInput
+
+__all__ = ["read", "report"]
+
+Vertices = npt.NDArray[np.float64]
+Faces = npt.NDArray[np.int64]
+
+FORMATS = (".stl", ".obj", ".ply", ".gltf", ".glb")
+
+
+def read(path: str | os.PathLike[str]) -> tuple[Vertices, Faces]:
+    """Read the triangles of a mesh file; several objects of one file, each in its place, become one.
+
+    Parameters
+    ----------
+    path : str or PathLike
+        STL (binary or ASCII), OBJ, PLY or glTF, by its suffix.
+
+    Returns
+    -------
+    vertices : ndarray, shape (n, 3)
+        In the file's unit. As they stand there: an STL file has three for each face.
+    faces : ndarray, shape (m, 3)
+        Vertices of each triangle.
+
+    Raises
+    ------
+    InvalidInput
+        A file that cannot be read, is cut short, or claims more than it holds.
+    """
+    file = pathlib.Path(path)
+    kind = file.suffix.lower()
+    if kind not in FORMATS:
+        raise InvalidInput(f"{file}: must be a mesh file, one of {', '.join(FORMATS)}; got {kind or 'no suffix'!r}")
+    try:
+        data = file.read_bytes()
+    except OSError as error:
+        raise InvalidInput(f"{file}: cannot be read: {error.strerror}") from None
+    try:
+        vertices, faces = _stl(data) if kind == ".stl" else _by_trimesh(file, data)
+    except _Wrong as error:
+        raise InvalidInput(f"{file}: {error}") from None
+    if len(faces) == 0:
+        raise InvalidInput(f"{file}: must hold one triangle or more, got none")
+    return vertices, faces
+
+
+def report(vertices: npt.ArrayLike, faces: npt.ArrayLike) -> dict[str, Any]:
+    """Check that triangles are the surface of a body, and tell what it is made of.
+
+    Parameters
+    ----------
+    vertices : array_like, shape (n, 3)
+    faces : array_like of integers, shape (m, 3)
+
+    Returns
+    -------
+    dict
+        faces; components: surfaces that share no edge, cavities with them; cavities: wound inward inside another;
+        degenerate: faces with two corners at one place, which count for nothing; merged: closed only with vertices at
+        one place taken as one; inside_out; low and high: the box round the faces, ndarrays of shape (3,).
+
+    Raises
+    ------
+    InvalidInput
+        An open or non-manifold surface, faces wound against each other, with counts and the first faces; wrong indices.
+    """
+    return _core.mesh_report(vertices, faces)
+
+
+class _Wrong(Exception):
+    """What is wrong with a file, without its name."""
+
+
+# ---- STL
+
+
+def _stl(data: bytes) -> tuple[Vertices, Faces]:
+    corners = _ascii_stl(data) if _is_ascii(data) else _binary_stl(data)
+    return corners, np.arange(len(corners), dtype=np.int64).reshape(-1, 3)
+
+
+def _is_ascii(data: bytes) -> bool:
+    """Binary files, too, may begin with "solid": their length is right, or they hold bytes that no text has."""
+    if not data.lstrip()[:5].lower() == b"solid":
+        return False
+    if len(data) >= 84 and len(data) == 84 + 50 * struct.unpack_from("<I", data, 80)[0]:
+        return False
+    return b"\0" not in data[:512]
+
+
+def _binary_stl(data: bytes) -> Vertices:
+    if len(data) < 84:
+        raise _Wrong(f"must be a binary STL file of 84 bytes or more, got {len(data)} (cut short?)")
+    (count,) = struct.unpack_from("<I", data, 80)
+    if len(data) != 84 + 50 * count:
+        held = max(0, (len(data) - 84) // 50)
+        raise _Wrong(f"claims {count} triangles, which take {84 + 50 * count} bytes, but has {len(data)} bytes, "
+                     f"room for {held} (cut short?)")
+    rows = np.frombuffer(data, np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("more", "<u2")]), count, 84)
+    return rows["corners"].reshape(-1, 3).astype(np.float64)
+
+
+def _ascii_stl(data: bytes) -> Vertices:
+    words = re.findall(rb"^\s*vertex\s+(\S+)\s+(\S+)\s+(\S+)\s*$", data, flags=re.I | re.M)
+    loops, ends = (len(re.findall(word, data, flags=re.I | re.M)) for word in (rb"^\s*outer\s+loop", rb"^\s*endloop"))
+    solids, closed = (len(re.findall(word, data, flags=re.I | re.M)) for word in (rb"^\s*solid\b", rb"^\s*endsolid\b"))
+    if len(words) != 3 * loops or loops != ends or solids != closed:
+        raise _Wrong(f"has {solids} solids with {closed} ends and {loops} triangles with {ends} ends and {len(words)} "
+                     "corners (cut short?)")
+    try:
+        return np.array(words, dtype="S").astype(np.float64).reshape(-1, 3)
+    except ValueError as error:
+        raise _Wrong(f"holds a corner that is no number: {error}") from None
+
+
+# ---- through trimesh
+
+
+def _by_trimesh(file: pathlib.Path, data: bytes) -> tuple[Vertices, Faces]:
+    kind = file.suffix.lower()
+    if kind == ".ply":
+        _require_ply_claims(data)
+    elif kind != ".obj":
+        _require_gltf_claims(kind, data)
+    try:
+        import trimesh
+    except ImportError:
+        raise _Wrong(f"{kind} files need trimesh: pip install 'polhode[mesh]'") from None
+    try:
+        # No tidying: what the file holds is what is judged.
+        loaded = trimesh.load(file, force="scene", process=False, maintain_order=True, skip_materials=True)
+    except Exception as error:   # whatever a reader of foreign bytes may throw
+        raise _Wrong(f"cannot be read as {kind[1:].upper()}: {type(error).__name__}: {error}") from None
+    return _join(loaded)
+
+
+def _join(scene: Any) -> tuple[Vertices, Faces]:
+    """All objects of a scene, each in its place; a mirrored one keeps its outside."""
+    vertices, faces, count = [np.empty((0, 3))], [np.empty((0, 3), np.int64)], 0
+    for node in sorted(scene.graph.nodes_geometry):
+        transform, name = scene.graph[node]
+        part = scene.geometry[name]
+        if len(getattr(part, "faces", ())) == 0:
+            continue   # points, lines
+        turned = np.asarray(part.faces, np.int64) + count
+        placed = np.asarray(part.vertices, np.float64)
+        if not np.array_equal(transform, np.eye(4)):
+            placed = placed @ transform[:3, :3].T + transform[:3, 3]
+            if np.linalg.det(transform[:3, :3]) < 0:
+                turned = turned[:, ::-1]
+        vertices.append(placed)
+        faces.append(turned)
+        count += len(placed)
+    return np.concatenate(vertices), np.concatenate(faces)
+
+
+def _require_ply_claims(data: bytes) -> None:
+    header, end, _ = data.partition(b"end_header")
+    if not data.startswith(b"ply") or not end:
+        raise _Wrong("must begin with a PLY header, which has an end (cut short?)")
+    for name, count in re.findall(rb"^element\s+(\S+)\s+(\S+)", header, flags=re.M):
+        if not count.isdigit() or int(count) > len(data):
+            raise _Wrong(f"claims {count.decode(errors='replace')} of element {name.decode(errors='replace')}, but has "
+                         f"{len(data)} bytes (cut short?)")
+
+
+def _require_gltf_claims(kind: str, data: bytes) -> None:
+    """What is made from a count alone, without bytes that would bear it out."""
+    if kind == ".glb":
+        if len(data) < 20 or data[:4] != b"glTF":
+            raise _Wrong("must begin with a glTF header (cut short?)")
+        length, chunk = struct.unpack_from("<II", data, 8)
+        if length != len(data) or chunk > len(data) - 20:
+            raise _Wrong(f"claims {length} bytes with {chunk} of them JSON, but has {len(data)} (cut short?)")
+        data = data[20:20 + chunk]
+    try:
+        accessors = json.loads(data).get("accessors", [])
+        counts = [a["count"] for a in accessors if "bufferView" not in a]
+    except (ValueError, AttributeError, KeyError, TypeError, RecursionError) as error:
+        raise _Wrong(f"holds no glTF: {error}") from None
+    if any(not isinstance(count, int) or count > len(data) for count in counts):
+        raise _Wrong(f"claims {max(map(str, counts))} entries of data that it does not hold")
