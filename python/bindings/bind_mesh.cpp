@@ -2,6 +2,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "convert.hpp"
 #include "polhode/core/error.hpp"
@@ -18,7 +19,7 @@ py::array to_faces(py::handle value) {
     PyErr_Clear();
     throw InvalidInput("faces", "an array of whole numbers", std::string(py::str(py::type::of(value))));
   }
-  if (faces.size() == 0) return py::array_t<std::int64_t>({0, 3});
+  if (faces.size() == 0) return py::array_t<std::int64_t>(std::vector<py::ssize_t>{0, 3});
   const char kind = faces.dtype().kind();
   if (kind != 'i' && kind != 'u') {
     throw InvalidInput("faces", "an array of whole numbers",

@@ -2,6 +2,7 @@
 
 from . import elliptic as elliptic
 from . import inertia as inertia
+from . import mesh as mesh
 from . import shapes as shapes
 from . import torques as torques
 from ._core import FreeMotion as FreeMotion

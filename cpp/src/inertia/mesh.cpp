@@ -79,6 +79,17 @@ MeshIntegrals integrals(const MeshSums& sums, const Vector3d& reference) {
   return out;
 }
 
+/// In double-double, what lies at the 93rd bit is rounding: a symmetric body has its zeros.
+void clear_rounding(MeshIntegrals& mesh) {
+  constexpr double part = 1e-28;
+  const double trace = std::abs(mesh.second[0].hi + mesh.second[1].hi + mesh.second[2].hi);
+  const double size = std::sqrt(trace / std::abs(mesh.volume.hi));
+  for (int m = 3; m < 6; ++m)
+    if (std::abs(mesh.second[m].hi) <= part * trace) mesh.second[m] = DD(0.0);
+  for (DD& c : mesh.centre)
+    if (std::abs(c.hi) <= part * size) c = DD(0.0);
+}
+
 bool plain_will_do(const MeshSums& sums, const MeshIntegrals& found) {
   const double about_reference = sums.hi[4] + sums.hi[5] + sums.hi[6];
   const double about_centre = 120 * (found.second[0].hi + found.second[1].hi + found.second[2].hi);
@@ -152,12 +163,13 @@ MeshIntegrals integrate_mesh(const Mesh& mesh, SimdLevel level) {
   if (refined) {
     run(kernels, mesh, reference, true, sums);
     found = integrals(sums, reference);
+    clear_rounding(found);
   }
   found.refined = refined;
   const double size = sums.hi[10];
   if (!std::isfinite(size)) inertia::require_finite_vertices(mesh);
-  if (!(size >= 1e-280 && size <= 1e280) && size != 0) {
-    throw InvalidInput("vertices", "of a mesh between 1e-45 and 1e45 in size", "one beyond");
+  if (!(size >= 1e-280 && size <= 1e280)) {
+    throw InvalidInput("vertices", "of a mesh between 1e-45 and 1e45 in size", "one beyond, or faces of no area alone");
   }
   // What is left of a volume of zero: rounding at the 100th bit.
   if (std::abs(found.volume.hi) <= 1e-29 * std::sqrt(size)) {

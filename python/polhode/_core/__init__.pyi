@@ -177,6 +177,80 @@ class MassProperties:
         A mass that is not positive, anything not finite, and what InertiaTensor refuses.
     """
     @staticmethod
+    def from_file(path: typing.Any, *, density: typing.Any = None, mass: typing.Any = None, unit: typing.Any = 'm', check: bool = True, repair: typing.Any = None) -> MassProperties:
+        """
+        The solid inside the surface that a file holds: STL, or with the `mesh` extra OBJ, PLY, glTF.
+
+        Files do not tell their unit: say it. The rest is as for :meth:`from_mesh`.
+
+        Parameters
+        ----------
+        path : str or PathLike
+            The format goes by the suffix.
+        density, mass : float
+            One of them [kg/m^3], [kg].
+        unit : float or str
+            Length of a unit of the file [m], or one of "m", "dm", "cm", "mm", "um", "km", "in", "ft".
+        check : bool
+            As for `from_mesh`.
+        repair : {"flip"}, optional
+            As for `from_mesh`.
+
+        Returns
+        -------
+        MassProperties
+
+        Raises
+        ------
+        InvalidInput
+            A file that cannot be read, is cut short or does not hold what it says, and what `from_mesh` refuses.
+        """
+    @staticmethod
+    def from_mesh(vertices: typing.Any, faces: typing.Any, *, density: typing.Any = None, mass: typing.Any = None, unit: typing.Any = 'm', check: bool = True, repair: typing.Any = None) -> MassProperties:
+        """
+        The solid of uniform density inside a surface of triangles, exact for its vertices wherever they are.
+
+        The surface must be closed, every edge between two faces that pass it in opposite directions; vertices at exactly one
+        place count as one. It may have several parts and cavities (shells wound inward); parts that overlap count twice, which
+        is not looked for.
+
+        Parameters
+        ----------
+        vertices : array_like, shape (n, 3)
+            In the body's axes, in units of `unit`. C-contiguous float64 is taken without a copy.
+        faces : array_like of integers, shape (m, 3)
+            Vertices of each triangle, counter-clockwise as seen from outside. C-contiguous int32 and int64 need no copy.
+        density : float
+            [kg/m^3]; or else
+        mass : float
+            [kg] of the whole.
+        unit : float or str
+            Length of a unit of the vertices [m], or one of "m", "dm", "cm", "mm", "um", "km", "in", "ft".
+        check : bool
+            False leaves out all that is asked of the surface: fast, and wrong without a word when it is open.
+        repair : {"flip"}, optional
+            Turns a surface that is wound inward as a whole, and warns that it did.
+
+        Returns
+        -------
+        MassProperties
+
+        Warns
+        -----
+        UserWarning
+            A mesh longer than 2 km or shorter than 2 um, which may be a wrong unit; one that was turned.
+
+        Raises
+        ------
+        InvalidInput
+            An open, inverted or non-manifold surface, with counts and the first faces; an index that names no vertex; a vertex
+            that is not finite; no volume; density or mass not positive.
+
+        References
+        ----------
+        B. Mirtich, J. Graphics Tools 1(2) (1996) 31; D. Eberly, Polyhedral mass properties (revisited) (2002).
+        """
+    @staticmethod
     def from_points(masses: typing.Any, positions: typing.Any) -> MassProperties:
         """
         A rigid set of point masses.
@@ -576,6 +650,14 @@ def generalised_forces(arg0: typing.Any, arg1: typing.Any) -> numpy.typing.NDArr
 def make_shape(name: str, values: collections.abc.Sequence[typing.Any]) -> MassProperties:
     """
     The body from all its parameters, in the record's order.
+    """
+def mesh_is_refined(vertices: typing.Any, faces: typing.Any) -> bool:
+    """
+    Integrated in double-double, as plain numbers would lose digits.
+    """
+def mesh_report(vertices: typing.Any, faces: typing.Any) -> dict[str, typing.Any]:
+    """
+    What the check of a surface found; see polhode.mesh.report.
     """
 def method_records() -> list[typing.Any]:
     """
