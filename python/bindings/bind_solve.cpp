@@ -40,14 +40,19 @@ SceneEvent to_event(const py::object& function, int direction, bool terminal) {
           direction, terminal};
 }
 
-/// An array that owns the numbers of a vector, without a copy.
-Array adopt(std::vector<double>&& values, py::ssize_t columns) {
-  auto* owner = new std::vector<double>(std::move(values));
-  const py::capsule capsule(owner, [](void* pointer) { delete static_cast<std::vector<double>*>(pointer); });
-  const auto size = static_cast<py::ssize_t>(owner->size());
-  if (columns == 1) return Array({size}, owner->data(), capsule);
-  return Array({size / columns, columns}, owner->data(), capsule);
+/// The rows of a vector that the answer owns, as an array that keeps the answer alive.
+py::object view(const py::object& answer, const std::vector<double>& values, py::ssize_t columns, bool wanted = true) {
+  if (!wanted) return py::none();
+  const auto size = static_cast<py::ssize_t>(values.size());
+  if (columns == 1) return Array({size}, values.data(), answer);
+  return Array({size / columns, columns}, values.data(), answer);
 }
+
+/// What a solve gave; Python looks at its parts when they are asked for.
+struct Answer {
+  Motion motion;
+  Wanted want;
+};
 
 template <class T>
 std::optional<double> to_optional(const T& value, const char* name) {
@@ -55,7 +60,7 @@ std::optional<double> to_optional(const T& value, const char* name) {
   return to_real(value, name);
 }
 
-py::dict solve_scene(const Scene& scene, const py::object& accuracy, const py::object& method, const py::object& rtol,
+std::unique_ptr<Answer> solve_scene(const Scene& scene, const py::object& accuracy, const py::object& method, const py::object& rtol,
                      const py::object& atol, const py::object& step, long max_steps, bool dense,
                      const std::string& formulation, const py::list& events, const py::object& progress) {
   SolveOptions options;
@@ -76,37 +81,27 @@ py::dict solve_scene(const Scene& scene, const py::object& accuracy, const py::o
   }
   options.progress = make_progress(progress);
 
-  std::shared_ptr<Motion> motion = std::make_shared<Motion>();
-  {
-    py::gil_scoped_release nogil;   // Python callables take it back for themselves
-    *motion = solve(scene, options);
-  }
-  py::dict result;
-  const bool has_omega = scene.want().omega, has_attitude = scene.want().attitude;
-  py::list hits;
-  for (const MotionEvent& hit : motion->events) {
-    hits.append(py::make_tuple(hit.event, hit.state.t, from_vector3(hit.state.omega), from_quat(hit.state.attitude)));
-  }
-  const ode::Counts& counts = motion->stats;
+  py::gil_scoped_release nogil;   // Python callables take it back for themselves
+  return std::unique_ptr<Answer>(new Answer{solve(scene, options), scene.want()});
+}
+
+py::dict describe_stats(const Motion& motion) {
+  const ode::Counts& counts = motion.stats;
   py::dict stats;
   stats["steps"] = counts.steps;
   stats["rejected"] = counts.rejected;
   stats["derivatives"] = counts.derivatives;
   stats["events"] = counts.events;
   stats["seconds"] = counts.seconds;
-  result["stats"] = stats;
-  result["status"] = std::string(to_text(motion->status));
-  result["message"] = motion->message;
-  result["plan"] = py::make_tuple(motion->plan.model, motion->plan.method, motion->plan.state);
-  result["error"] = motion->error;
-  result["error_kind"] = motion->error_kind;
-  result["asked"] = motion->asked;
-  result["events"] = hits;
-  result["t"] = adopt(std::move(motion->t), 1);
-  result["omega"] = has_omega ? py::object(adopt(std::move(motion->omega), 3)) : py::none();
-  result["attitude"] = has_attitude ? py::object(adopt(std::move(motion->attitude), 4)) : py::none();
-  result["dense"] = motion->has_dense ? py::cast(motion) : py::none();
-  return result;
+  return stats;
+}
+
+py::list describe_events(const Motion& motion) {
+  py::list hits;
+  for (const MotionEvent& hit : motion.events) {
+    hits.append(py::make_tuple(hit.event, hit.state.t, from_vector3(hit.state.omega), from_quat(hit.state.attitude)));
+  }
+  return hits;
 }
 
 std::size_t rows(const Array& array) { return static_cast<std::size_t>(array.size() == 0 ? 0 : array.shape(0)); }
@@ -114,8 +109,30 @@ std::size_t rows(const Array& array) { return static_cast<std::size_t>(array.siz
 }  // namespace
 
 void bind_solve(py::module_& m) {
-  py::class_<Motion, std::shared_ptr<Motion>>(m, "DenseMotion")
-      .def("__call__", [](const Motion& motion, py::handle times) {
+  py::class_<Answer>(m, "Answer")
+      .def_property_readonly("t", [](const py::object& self) { return view(self, self.cast<const Answer&>().motion.t, 1); })
+      .def_property_readonly("omega", [](const py::object& self) {
+        const Answer& answer = self.cast<const Answer&>();
+        return view(self, answer.motion.omega, 3, answer.want.omega);
+      })
+      .def_property_readonly("attitude", [](const py::object& self) {
+        const Answer& answer = self.cast<const Answer&>();
+        return view(self, answer.motion.attitude, 4, answer.want.attitude);
+      })
+      .def_property_readonly("status", [](const Answer& answer) { return std::string(to_text(answer.motion.status)); })
+      .def_property_readonly("message", [](const Answer& answer) { return answer.motion.message; })
+      .def_property_readonly("stats", [](const Answer& answer) { return describe_stats(answer.motion); })
+      .def_property_readonly("events", [](const Answer& answer) { return describe_events(answer.motion); })
+      .def_property_readonly("plan", [](const Answer& answer) {
+        const Plan& plan = answer.motion.plan;
+        return py::make_tuple(plan.model, plan.method, plan.state);
+      })
+      .def_property_readonly("error", [](const Answer& answer) { return answer.motion.error; })
+      .def_property_readonly("error_kind", [](const Answer& answer) { return answer.motion.error_kind; })
+      .def_property_readonly("asked", [](const Answer& answer) { return answer.motion.asked; })
+      .def_property_readonly("has_dense", [](const Answer& answer) { return answer.motion.has_dense; })
+      .def("__call__", [](const Answer& answer, py::handle times) {
+        const Motion& motion = answer.motion;
         const Array t = to_array(times, "motion(t)");
         const auto n = t.size();
         std::vector<py::ssize_t> shape(t.shape(), t.shape() + t.ndim());

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -33,6 +35,13 @@ class EventHit(NamedTuple):
     attitude: Floats
 
 
+# How each part of the core's answer is shown.
+_PARTS: dict[str, Callable[[Any], Any]] = {
+    **dict.fromkeys(("t", "omega", "attitude", "status", "stats", "error", "error_kind", "asked"), lambda part: part),
+    "plan": lambda part: Plan(*part), "events": lambda part: tuple(EventHit(*hit) for hit in part),
+}
+
+
 class Motion:
     """Where the body points and how fast it spins, at the times asked for, in the order asked for.
 
@@ -53,26 +62,36 @@ class Motion:
         Every zero that was found, in the order of the integration.
     plan : Plan
     error : float
-        Of all samples, NaN while it is not estimated; `error_kind` says how it is known.
+        Of all samples, as the accuracy is meant; NaN where it is not estimated.
+    error_kind : {"bounded", "expected", "limit", "not estimated"}
+        "bounded": by the rounding of a closed form, or by a certificate; "expected": no certificate was made; "limit":
+        more than was asked, since float64 allows no less.
     asked : float
         The accuracy, or the relative tolerance, that was asked for.
     """
 
-    def __init__(self, scene: Scene, result: dict[str, Any]) -> None:
+    t: Floats
+    omega: Floats | None
+    attitude: Floats | None
+    status: str
+    stats: dict[str, Any]
+    plan: Plan
+    error: float
+    error_kind: str
+    asked: float
+    events: tuple[EventHit, ...]
+
+    def __init__(self, scene: Scene, answer: _core.Answer) -> None:
         self.scene = scene
-        self.t: Floats = result["t"]
-        self.omega: Floats | None = result["omega"]
-        self.attitude: Floats | None = result["attitude"]
-        self.status: str = result["status"]
-        self.stats: dict[str, Any] = result["stats"]
-        self.plan = Plan(*result["plan"])
-        self.error: float = result["error"]
-        self.error_kind: str = result["error_kind"]
-        self.asked: float = result["asked"]
-        self.events = tuple(EventHit(*hit) for hit in result["events"])
-        self._message: str = result["message"]
-        self._dense = result["dense"]
-        self._drift: dict[str, float] | None = None
+        self._answer: _core.Answer | None = answer
+
+    def __getattr__(self, name: str) -> Any:
+        # Each part crosses from the compiled core when it is first asked for.
+        if name not in _PARTS or self.__dict__.get("_answer") is None:
+            raise AttributeError(f"'Motion' object has no attribute {name!r}")
+        value = _PARTS[name](getattr(self._answer, name))
+        self.__dict__[name] = value
+        return value
 
     def _need(self, *names: str) -> None:
         for name in names:
@@ -108,9 +127,10 @@ class Motion:
         "energy", "angular_momentum" (free bodies), "vertical_momentum" (under gravity), "jacobi" (gravity gradient:
         energy less mean motion times L_z). What does not hold, or cannot be seen in what was wanted, is not there.
         """
-        if self._drift is None:
-            self._drift = dict(_core.drift(self.scene, self.t, self.omega, self.attitude))
-        return self._drift
+        kept = self.__dict__.get("_drift")
+        if kept is None:
+            kept = self.__dict__["_drift"] = dict(_core.drift(self.scene, self.t, self.omega, self.attitude))
+        return kept
 
     def _moved(self) -> str:
         moved = {name: value for name, value in self.drift.items() if not value <= self.asked}
@@ -121,14 +141,24 @@ class Motion:
 
     @property
     def success(self) -> bool:
-        """False when the end was not reached, or an invariant that should hold moved by more than was asked."""
-        return self.status in ("finished", "event") and not self._moved()
+        """Whether the end was reached and the accuracy with it.
+
+        Where the error is not estimated (``rtol`` alone, or a fixed step): whether no invariant that should hold moved by
+        more than was asked.
+        """
+        if self.status not in ("finished", "event"):
+            return False
+        return not self._moved() if math.isnan(self.error) else self.error <= self.asked
 
     @property
     def message(self) -> str:
         """What happened, in a sentence."""
-        moved = self._moved() if self.status in ("finished", "event") else ""
-        return f"{self._message}; {moved}" if moved else self._message
+        kept: str | None = self.__dict__.get("_message")
+        if kept is None:
+            assert self._answer is not None
+            moved = self._moved() if self.status in ("finished", "event") and math.isnan(self.error) else ""
+            kept = self.__dict__["_message"] = self._answer.message + (f"; {moved}" if moved else "")
+        return kept
 
     def __call__(self, t: npt.ArrayLike) -> tuple[Floats, Floats]:
         """Return omega (..., 3) and attitude (..., 4) at any times within the span, from the continuous extension.
@@ -138,9 +168,9 @@ class Motion:
         InvalidInput
             Without ``dense=True`` in `solve`, or for a time outside the span that was reached.
         """
-        if self._dense is None:
+        if self._answer is None or not self._answer.has_dense:
             raise _core.InvalidInput("motion(t): must be solved with dense=True, which keeps the continuous extension")
-        omega, attitude = self._dense(t)
+        omega, attitude = self._answer(t)
         return omega, attitude
 
     def __len__(self) -> int:
@@ -148,10 +178,12 @@ class Motion:
 
     def __repr__(self) -> str:
         drift = ", ".join(f"{name} {value:.1e}" for name, value in self.drift.items())
+        cost = f"{self.stats['steps']} steps, " if self.stats["steps"] else ""
+        known = "" if math.isnan(self.error) else f"; error {self.error:.1e} ({self.error_kind})"
         return (f"Motion({self.scene.name or 'unnamed'}: {self.t.size} samples by {self.plan.method}, "
-                f"{self.stats['steps']} steps, {self.status}{'; drift: ' + drift if drift else ''})")
+                f"{cost}{self.status}{known}{'; drift: ' + drift if drift else ''})")
 
     def __getstate__(self) -> dict[str, Any]:
-        state = dict(self.__dict__)
-        state["_dense"] = None   # the continuous extension stays behind: solve again for it
-        return state
+        for name in (*_PARTS, "message"):
+            getattr(self, name)
+        return {**self.__dict__, "_answer": None}   # the continuous extension stays behind: solve again for it

@@ -96,13 +96,13 @@ def solve(
         raise _core.InvalidInput(f"scene: must be a polhode.Scene, got {type(scene).__name__}")
     if callable(events) or isinstance(events, Event):
         events = (events,)
-    if not isinstance(events, Iterable):
+    if not isinstance(events, (tuple, list, Iterable)):
         raise _core.InvalidInput(f"events: must be events or callables, got {events!r}")
     if not isinstance(max_steps, (int, np.integer)):
         raise _core.InvalidInput(f"max_steps: must be a whole number, got {max_steps!r}")
-    result = _core.solve(scene, accuracy, method, rtol, atol, step, int(max_steps), bool(dense), str(formulation),
+    answer = _core.solve(scene, accuracy, method, rtol, atol, step, int(max_steps), bool(dense), str(formulation),
                          [_event(item) for item in events], progress)
-    return Motion(scene, result)
+    return Motion(scene, answer)
 
 
 def methods() -> list[dict[str, Any]]:

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "polhode/core/error.hpp"
+#include "polhode/solve/closed_form.hpp"
 
 namespace polhode {
 
@@ -22,8 +23,9 @@ State Motion::at(double time) const {
     throw InvalidInput("motion(t)", "called on a motion solved with dense=True", "one without it",
                        "solve(scene, ..., dense=True) keeps the continuous extension");
   }
-  const double begin = dense_backward.empty() ? start.t : dense_backward.t_end();
-  const double end = dense_forward.empty() ? start.t : dense_forward.t_end();
+  double begin = dense_backward.empty() ? start.t : dense_backward.t_end();
+  double end = dense_forward.empty() ? start.t : dense_forward.t_end();
+  if (closed_form) begin = t_begin, end = t_reached;
   if (!(time >= begin && time <= end)) {
     throw InvalidInput("motion(t)", "a time between " + polhode::to_text(begin) + " and " + polhode::to_text(end) + " s",
                        polhode::to_text(time));
@@ -32,6 +34,12 @@ State Motion::at(double time) const {
   double y[64], q[4] = {NAN, NAN, NAN, NAN};
   State state;
   state.t = time;
+  if (closed_form) {
+    const double since = time - start.t;
+    closed_form->at(&since, 1, state.omega.data(), q);
+    state.attitude = {q[0], q[1], q[2], q[3]};
+    return state;
+  }
   (time < start.t ? dense_backward : dense_forward)(time, y);
   unpack(y, state.omega.data(), q);
   state.attitude = {q[0], q[1], q[2], q[3]};

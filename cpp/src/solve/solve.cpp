@@ -5,6 +5,7 @@
 
 #include "polhode/core/error.hpp"
 #include "polhode/solve/invariants.hpp"
+#include "solve/exact_run.hpp"
 #include "solve/methods/body_method.hpp"
 
 namespace polhode {
@@ -54,6 +55,7 @@ Motion solve(const Scene& scene, const SolveOptions& options) {
       throw InvalidInput("event.direction", "-1, 0 or 1", std::to_string(event.direction));
     }
   }
+  if (std::optional<Motion> exact = solve_exactly(scene, options)) return *std::move(exact);
   const std::string name = options.method.value_or("rk45");
   const BodyMethod& method = find_body_method(name);
   require_fitting(method.record, options);
@@ -84,6 +86,7 @@ Motion solve(const Scene& scene, const SolveOptions& options) {
 
 bool succeeded(const Scene& scene, const Motion& motion) {
   if (motion.status != Status::finished && motion.status != Status::event) return false;
+  if (!std::isnan(motion.error)) return motion.error <= motion.asked;
   for (const auto& [name, moved] : compute_drift(scene, motion)) {
     if (!(moved <= motion.asked)) return false;
   }

@@ -11,6 +11,8 @@ TorqueSum summarize(std::span<const AnyTorque> torques) {
   bool one_pattern = true, turning = false, standing_still = true;
   for (const AnyTorque& torque : torques) {
     const TorqueTraits one = traits(torque);
+    if (one.vanishes) continue;
+    ++sum.acting;
     sum.uses_time |= one.uses_time;
     sum.uses_attitude |= one.uses_attitude;
     sum.uses_rates |= one.uses_rates;

@@ -622,8 +622,44 @@ class Scene:
     @property
     def want(self) -> tuple[typing.Any, ...]:
         ...
-class DenseMotion:
+class Answer:
     def __call__(self, arg0: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        ...
+    @property
+    def asked(self) -> float:
+        ...
+    @property
+    def attitude(self) -> typing.Any:
+        ...
+    @property
+    def error(self) -> float:
+        ...
+    @property
+    def error_kind(self) -> str:
+        ...
+    @property
+    def events(self) -> list[typing.Any]:
+        ...
+    @property
+    def has_dense(self) -> bool:
+        ...
+    @property
+    def message(self) -> str:
+        ...
+    @property
+    def omega(self) -> typing.Any:
+        ...
+    @property
+    def plan(self) -> tuple[str, str, str]:
+        ...
+    @property
+    def stats(self) -> dict[str, typing.Any]:
+        ...
+    @property
+    def status(self) -> str:
+        ...
+    @property
+    def t(self) -> typing.Any:
         ...
 def _complete_K(arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
     ...
@@ -675,7 +711,7 @@ def shape_records() -> list[typing.Any]:
     """
     (name, doc, ((parameter, size, doc), ...)) of every shape.
     """
-def solve(scene: Scene, accuracy: typing.Any, method: typing.Any, rtol: typing.Any, atol: typing.Any, step: typing.Any, max_steps: typing.SupportsInt | typing.SupportsIndex, dense: bool, formulation: str, events: list[typing.Any], progress: typing.Any) -> dict[str, typing.Any]:
+def solve(scene: Scene, accuracy: typing.Any, method: typing.Any, rtol: typing.Any, atol: typing.Any, step: typing.Any, max_steps: typing.SupportsInt | typing.SupportsIndex, dense: bool, formulation: str, events: list[typing.Any], progress: typing.Any) -> Answer:
     ...
 def torque_records() -> list[typing.Any]:
     """

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,14 +13,16 @@
 
 namespace polhode {
 
+class ClosedForm;
+
 /// How a solve ended.
 enum class Status { finished, event, max_steps, stopped, failed };
 std::string_view to_text(Status status);
 
 /// Which model and method were taken.
 struct Plan {
-  std::string model;      ///< "euler" | "lagrangian"
-  std::string method;     ///< a name of ph.methods()
+  std::string model;      ///< a name of exact_models(), "euler" or "lagrangian"
+  std::string method;     ///< "exact", or a name of ph.methods()
   std::string state;      ///< what is carried along: "omega", "omega, attitude", ...
 };
 
@@ -36,15 +39,17 @@ struct Motion {
   std::string message;
   ode::Counts stats;
   Plan plan;
-  double error = std::numeric_limits<double>::quiet_NaN();   ///< NaN: not estimated
-  std::string error_kind = "not estimated";
+  double error = std::numeric_limits<double>::quiet_NaN();   ///< of all samples; NaN: not estimated
+  std::string error_kind = "not estimated";   ///< "bounded" | "expected" | "limit" (more than was asked) | "not estimated"
   double asked = 0.0;                    ///< the accuracy, or the relative tolerance, that was asked for
   std::vector<MotionEvent> events;
   ode::DenseOutput dense_forward, dense_backward;
   bool has_dense = false;
+  std::shared_ptr<const ClosedForm> closed_form = nullptr;   ///< in place of dense output, where there is one
   void (*unpack)(const double* y, double* omega, double* attitude) = nullptr;   ///< a dense state as omega and attitude
   State start;
   double t_reached = 0.0;
+  double t_begin = 0.0;                  ///< of a closed form's span
 
   /// The state at any time within the span, from the continuous extension. @throws InvalidInput without dense=true.
   State at(double time) const;

@@ -18,7 +18,8 @@ class Constant {
 
   TorqueTraits traits() const {
     return {.uses_attitude = frame_ == Frame::space,
-            .keeps_vertical = frame_ == Frame::space && torque_[2] == 0.0};
+            .keeps_vertical = frame_ == Frame::space && torque_[2] == 0.0,
+            .vanishes = torque_.isZero(0.0)};
   }
 
   /// tau_B += the torque [N m]

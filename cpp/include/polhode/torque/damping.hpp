@@ -16,7 +16,7 @@ class Damping {
 
   const Matrix3d& matrix() const { return matrix_; }
 
-  TorqueTraits traits() const { return {.uses_rates = true}; }
+  TorqueTraits traits() const { return {.uses_rates = true, .vanishes = matrix_.isZero(0.0)}; }
 
   void add(const TorqueInput& in, double* tau_B) const {
     for (int i = 0; i < 3; ++i) {

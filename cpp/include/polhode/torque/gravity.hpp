@@ -19,7 +19,9 @@ class Gravity {
   double weight() const { return weight_; }
   const Vector3d& arm() const { return arm_; }
 
-  TorqueTraits traits() const { return {.uses_attitude = true, .has_potential = true, .keeps_vertical = true}; }
+  TorqueTraits traits() const {
+    return {.uses_attitude = true, .has_potential = true, .keeps_vertical = true, .vanishes = moment_.isZero(0.0)};
+  }
 
   void add(const TorqueInput& in, double* tau_B) const {
     double g[3];

@@ -21,7 +21,11 @@ class GravityGradient {
   double phase() const { return phase_; }
 
   TorqueTraits traits() const {
-    return {.uses_time = true, .uses_attitude = true, .has_potential = true, .pattern_rate = mean_motion_};
+    return {.uses_time = true,
+            .uses_attitude = true,
+            .has_potential = true,
+            .pattern_rate = mean_motion_,
+            .vanishes = mean_motion_ == 0.0};
   }
 
   void add(const TorqueInput& in, double* tau_B) const {

@@ -19,6 +19,7 @@ struct TorqueTraits {
   bool has_potential = false;        ///< tau is minus the gradient of compute_potential() on the rotations
   bool keeps_vertical = false;       ///< no torque about the space z axis: L_z stays
   double pattern_rate = 0.0;         ///< the potential turns about space z at this rate [rad/s]; 0: it stands still
+  bool vanishes = false;             ///< zero wherever the body goes
 };
 
 /// All that a torque may look at. `attitude` is any positive multiple of a unit quaternion (x, y, z, w).

@@ -20,6 +20,7 @@ using AnyTorque = std::variant<torques::Constant,         //
 
 /// What a set of torques acting together depends on and keeps.
 struct TorqueSum {
+  int acting = 0;                   ///< how many of them do not vanish
   bool uses_time = false;
   bool uses_attitude = false;
   bool uses_rates = false;

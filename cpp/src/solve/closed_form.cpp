@@ -1,0 +1,212 @@
+#include "polhode/solve/closed_form.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "measure.hpp"
+#include "polhode/core/error.hpp"
+#include "polhode/math/double_double.hpp"
+
+namespace polhode {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+std::string percent(double part) {
+  char text[32];
+  std::snprintf(text, sizeof text, part < 1e-3 ? "%.0e" : "%.2g %%", part < 1e-3 ? part : 100 * part);
+  return text;
+}
+
+std::string degrees(double angle) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g degrees", angle * (180 / std::numbers::pi));
+  return text;
+}
+
+/// The one gravity of a scene in which nothing else acts.
+const torques::Gravity* find_only_gravity(const Scene& scene) {
+  const torques::Gravity* found = nullptr;
+  for (const AnyTorque& torque : scene.torques()) {
+    if (traits(torque).vanishes) continue;
+    const auto* gravity = std::get_if<torques::Gravity>(&torque);
+    if (gravity == nullptr || found != nullptr) return nullptr;
+    found = gravity;
+  }
+  return found;
+}
+
+/// The symmetry axis HeavyTop would take, from moments equal to the last bit; none for a full tensor that only nearly is one.
+std::optional<int> find_top_axis(const Scene& scene, const Vector3d& arm) {
+  const Matrix3d& I = scene.inertia_B().matrix();
+  if (!scene.inertia_B().is_diagonal()) return std::nullopt;
+  for (const int axis : {2, 0, 1}) {
+    const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+    if (I(a, a) != I(b, b)) continue;
+    if (arm[a] == 0.0 && arm[b] == 0.0) return axis;
+    return std::nullopt;   // HeavyTop takes the first pair that is equal
+  }
+  return std::nullopt;
+}
+
+std::string refuse_free(const Scene& scene, const Facts& facts) {
+  if (facts.is_free()) return "";
+  std::string names;
+  for (const AnyTorque& torque : scene.torques()) {
+    if (traits(torque).vanishes) continue;
+    if (!names.empty()) names += " and ";
+    names += std::visit([](const auto& one) { return one.record().name; }, torque);
+  }
+  return "not free: " + names + (facts.torques.acting == 1 ? " acts" : " act");
+}
+
+std::string refuse_unless(bool holds, const char* why_not) { return holds ? "" : why_not; }
+
+bool is_steady(const Facts& facts) {
+  return facts.off_axis == 0.0 || facts.off_axis <= 4 * symmetry_gap;
+}
+
+std::string refuse_rest(const Scene& scene, const Facts& facts) {
+  std::string torques = refuse_free(scene, facts);
+  if (!torques.empty()) return torques;
+  return refuse_unless(scene.omega().isZero(0.0), "it turns");
+}
+
+std::string refuse_spherical(const Scene& scene, const Facts& facts) {
+  std::string torques = refuse_free(scene, facts);
+  if (!torques.empty()) return torques;
+  if (facts.symmetry == Symmetry::spherical) return "";
+  return "its moments differ by " + percent(facts.gap_low + facts.gap_high);
+}
+
+std::string refuse_steady(const Scene& scene, const Facts& facts) {
+  std::string torques = refuse_free(scene, facts);
+  if (!torques.empty()) return torques;
+  if (is_steady(facts)) return "";
+  return "omega is " + degrees(facts.off_axis) + " off the nearest principal axis";
+}
+
+std::string refuse_symmetric(const Scene& scene, const Facts& facts) {
+  std::string torques = refuse_free(scene, facts);
+  if (!torques.empty()) return torques;
+  if (facts.symmetry == Symmetry::oblate || facts.symmetry == Symmetry::prolate) return "";
+  return "the closest two moments differ by " + percent(std::min(facts.gap_low, facts.gap_high));
+}
+
+std::string refuse_separatrix(const Scene& scene, const Facts& facts) {
+  std::string torques = refuse_free(scene, facts);
+  if (!torques.empty()) return torques;
+  if (facts.symmetry != Symmetry::triaxial) return "it has no intermediate axis";
+  return "k'^2 = " + to_text(facts.separatrix) + ", and it is 0 on the separatrix alone";
+}
+
+std::string refuse_triaxial(const Scene& scene, const Facts& facts) { return refuse_free(scene, facts); }
+
+std::string refuse_top(const Scene& scene, const Facts& facts) {
+  if (facts.is_free()) return "no weight acts on it";
+  const torques::Gravity* gravity = find_only_gravity(scene);
+  if (gravity == nullptr) return "needs gravity on a pivot and nothing else";
+  if (std::min(facts.gap_low, facts.gap_high) > symmetry_gap) {
+    return "the closest two moments differ by " + percent(std::min(facts.gap_low, facts.gap_high));
+  }
+  return refuse_unless(find_top_axis(scene, gravity->arm()).has_value(),
+                       "the centre of mass is off the axis of two moments equal to the last bit");
+}
+
+constexpr std::string_view jacobi = "Jacobi 1850; Klein & Sommerfeld 1897-1910 (Cayley-Klein form)";
+
+constexpr ExactModel models[] = {
+    {"rest", "no torque, no rotation: the attitude stays", "Newton's first law", refuse_rest},
+    {"spherical", "three equal moments: omega is constant", "Euler 1758", refuse_spherical},
+    {"steady", "rotation about a principal axis: omega is constant", "Euler 1758", refuse_steady},
+    {"symmetric", "two equal moments: regular precession, in sines and cosines", "Poinsot 1834", refuse_symmetric},
+    {"separatrix", "L^2 = 2 T I2 exactly: one flip, in hyperbolic functions", jacobi, refuse_separatrix},
+    {"triaxial", "three moments: elliptic and theta functions", jacobi, refuse_triaxial},
+    {"heavy_top", "Lagrange's top: symmetric, on a pivot on its axis, under gravity; theta functions",
+     "Klein & Sommerfeld 1897-1910", refuse_top},
+};
+
+/// How far the closed form moves at the scene's times (sixteen of them) when its input moves by a part 2^-46.
+double compare_closed_forms(const Scene& scene, const ClosedForm& a, const ClosedForm& b) {
+  constexpr std::size_t most = 16;
+  const std::vector<double>& times = scene.times();
+  const std::size_t n = std::min(most, times.size());
+  double t[most], wa[3 * most], wb[3 * most], qa[4 * most], qb[4 * most];
+  // The last ones, and evenly spread ones before them.
+  for (std::size_t i = 0; i < n; ++i) t[i] = times[times.size() - 1 - i * ((times.size() - 1) / n)] - scene.t0();
+  a.at(t, n, wa, qa);
+  b.at(t, n, wb, qb);
+  return compute_distance(n, wa, qa, wb, qb);
+}
+
+constexpr double nudge = 0x1p-46;
+
+}  // namespace
+
+std::string_view ClosedForm::model() const {
+  if (std::holds_alternative<HeavyTop>(motion_)) return "heavy_top";
+  switch (std::get<FreeMotion>(motion_).kind()) {
+    case FreeKind::rest: return "rest";
+    case FreeKind::spherical: return "spherical";
+    case FreeKind::steady: return "steady";
+    case FreeKind::oblate:
+    case FreeKind::prolate: return "symmetric";
+    case FreeKind::separatrix: return "separatrix";
+    case FreeKind::about_least:
+    case FreeKind::about_greatest: break;
+  }
+  return "triaxial";
+}
+
+double ClosedForm::rate(const double* omega) const {
+  const double w = std::hypot(omega[0], omega[1], omega[2]);
+  if (const auto* top = std::get_if<HeavyTop>(&motion_)) {
+    return std::hypot(w, std::sqrt(std::abs(top->weight_arm()) / top->inertia().moments()[2]));
+  }
+  return w;
+}
+
+std::span<const ExactModel> exact_models() { return models; }
+
+std::optional<ClosedForm> find_closed_form(const Scene& scene, const Facts& facts) {
+  if (facts.is_free()) return ClosedForm(FreeMotion(scene.inertia_B(), scene.omega(), scene.attitude()));
+  const torques::Gravity* gravity = find_only_gravity(scene);
+  if (gravity == nullptr) return std::nullopt;
+  const std::optional<int> axis = find_top_axis(scene, gravity->arm());
+  if (!axis) return std::nullopt;
+  const double weight_arm = gravity->weight() * gravity->arm()[*axis];
+  return ClosedForm(HeavyTop(scene.inertia_B(), weight_arm, scene.omega(), scene.attitude()));
+}
+
+double compute_closed_form_error(const Scene& scene, const Facts& facts, const ClosedForm& form) {
+  constexpr double u = epsilon / 2;
+  double error = 20 * epsilon;
+  if (scene.t0() != 0.0) {
+    bool rounded = false;
+    for (const double t : scene.times()) rounded |= math::two_diff(t, scene.t0()).lo != 0.0;
+    if (rounded) error += 2 * std::numbers::pi * facts.turns * u;
+  }
+  if (const torques::Gravity* gravity = facts.is_free() ? nullptr : find_only_gravity(scene)) {
+    const double arm = gravity->arm()[*find_top_axis(scene, gravity->arm())];
+    const double product = gravity->weight() * arm;
+    if (std::fma(gravity->weight(), arm, -product) != 0.0) {
+      const HeavyTop other(scene.inertia_B(), product * (1 + nudge), scene.omega(), scene.attitude());
+      error += 4 * (u / nudge) * compare_closed_forms(scene, form, ClosedForm(other));
+    }
+  } else if (!scene.inertia_B().is_diagonal() && !scene.omega().isZero(0.0)) {
+    // The principal moments and axes of a full tensor are good to a few units of rounding of the largest.
+    const PrincipalAxes& principal = scene.inertia_B().principal();
+    const double largest = principal.moments[2];
+    const auto turned = [&](double sign) {
+      const Vector3d I = principal.moments + sign * nudge * largest * Vector3d{1, -1, 1};
+      const Vector3d w = principal.axes.transpose() * scene.omega();
+      return ClosedForm(FreeMotion(InertiaTensor::from_moments(I, false), w));
+    };
+    error += 8 * (epsilon / nudge) * compare_closed_forms(scene, turned(1), turned(-1));
+  }
+  return error;
+}
+
+}  // namespace polhode

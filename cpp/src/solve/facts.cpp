@@ -1,0 +1,148 @@
+#include "polhode/solve/facts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace polhode {
+namespace {
+
+/// omega and the moments along the principal axes, moments ascending.
+struct Principal {
+  Vector3d I, w;
+};
+
+Principal find_principal(const Scene& scene) {
+  const InertiaTensor& inertia = scene.inertia_B();
+  return {inertia.moments(), inertia.axes().transpose() * scene.omega()};
+}
+
+/// tau_B of all torques with another omega.
+Vector3d compute_torque(const Scene& scene, const Vector3d& omega) {
+  const Quat& q = scene.attitude();
+  const double attitude[4] = {q.x, q.y, q.z, q.w};
+  double tau[3] = {0.0, 0.0, 0.0};
+  const TorqueInput in{scene.t0(), omega.data(), attitude, scene.inertia_B().matrix()};
+  for (const AnyTorque& torque : scene.torques()) std::visit([&](const auto& one) { one.add(in, tau); }, torque);
+  return {tau[0], tau[1], tau[2]};
+}
+
+}  // namespace
+
+TorqueSum find_acting_torques(const Scene& scene) {
+  const Vector3d& I = scene.inertia_B().moments();
+  if (scene.torques().empty() || I[0] != I[2]) return scene.torque_sum();
+  std::vector<AnyTorque> acting;
+  for (const AnyTorque& torque : scene.torques()) {
+    if (!std::holds_alternative<torques::GravityGradient>(torque)) acting.push_back(torque);
+  }
+  return summarize(acting);
+}
+
+double compute_off_axis_angle(const Scene& scene) {
+  const Vector3d w = find_principal(scene).w.cwiseAbs();
+  double least = std::numbers::pi;
+  for (int i = 0; i < 3; ++i) least = std::min(least, std::atan2(std::hypot(w[(i + 1) % 3], w[(i + 2) % 3]), w[i]));
+  return least;
+}
+
+double compute_separatrix_distance(const Scene& scene) {
+  const auto [I, w] = find_principal(scene);
+  const double scale = w.cwiseAbs().maxCoeff();
+  if (scale == 0.0 || I[0] == I[1] || I[1] == I[2]) return 1.0;
+  const Vector3d u = w / scale, J = I / I[2];
+  const double least = J[0] * (J[1] - J[0]) * u[0] * u[0], greatest = J[2] * (J[2] - J[1]) * u[2] * u[2];
+  const double distance = std::abs(greatest - least);   // |L^2 - 2 T I2|
+  // L^2 - 2 T I1 above the separatrix, 2 T I3 - L^2 below it; both from squares alone.
+  const double middle = J[1] * u[1] * u[1];
+  const double whole = greatest > least
+                           ? (J[1] - J[0]) * middle + (J[2] - J[0]) * J[2] * u[2] * u[2]
+                           : (J[2] - J[1]) * middle + (J[2] - J[0]) * J[0] * u[0] * u[0];
+  if (whole == 0.0) return 0.0;   // steady about the intermediate axis
+  const double gap = greatest > least ? J[2] - J[1] : J[1] - J[0];
+  return std::min(1.0, distance * (J[2] - J[0]) / (gap * whole));
+}
+
+double compute_torque_scale(const Scene& scene) {
+  if (scene.torques().empty()) return 0.0;
+  double largest = compute_torque(scene, scene.omega()).norm();
+  // Gravity on a body that just hangs or stands is no torque now, and one as soon as it leans.
+  for (const AnyTorque& torque : scene.torques()) {
+    if (const auto* gravity = std::get_if<torques::Gravity>(&torque)) {
+      largest = std::max(largest, std::abs(gravity->weight()) * gravity->arm().norm());
+    } else if (const auto* gradient = std::get_if<torques::GravityGradient>(&torque)) {
+      const Vector3d& I = scene.inertia_B().moments();
+      largest = std::max(largest, 1.5 * gradient->mean_motion() * gradient->mean_motion() * (I[2] - I[0]));
+    }
+  }
+  return largest;
+}
+
+bool may_spin_up(const Scene& scene, const TorqueSum& torques) {
+  if (torques.acting == 0 || torques.has_potential) return false;
+  for (const AnyTorque& torque : scene.torques()) {
+    const bool damps = std::holds_alternative<torques::Damping>(torque);
+    if (!damps && !traits(torque).has_potential && !traits(torque).vanishes) return true;
+  }
+  return false;
+}
+
+double estimate_turns(const Scene& scene, const TorqueSum& torques, double span) {
+  const double start = scene.omega().norm();
+  double turned = start * span;
+  if (torques.acting > 0) {
+    const double acceleration = compute_torque_scale(scene) / scene.inertia_B().moments()[0];
+    turned = std::hypot(start, std::sqrt(acceleration)) * span;
+    if (may_spin_up(scene, torques)) turned = std::max(turned, start * span + 0.5 * acceleration * span * span);
+  }
+  return turned / (2 * std::numbers::pi);
+}
+
+double compute_decay_rate(const Scene& scene, const TorqueSum& torques) {
+  if (!torques.uses_rates) return 0.0;
+  const Vector3d& I = scene.inertia_B().moments();
+  const Matrix3d& R = scene.inertia_B().axes();
+  // The step in omega is as large as omega itself: damping is linear, and nothing is lost to rounding.
+  double step = scene.omega().norm();
+  if (step == 0.0) step = 1.0;
+  Matrix3d D;
+  for (int j = 0; j < 3; ++j) {
+    const Vector3d up = scene.omega() + step * R.col(j), down = scene.omega() - step * R.col(j);
+    const Vector3d slope = (compute_torque(scene, up) - compute_torque(scene, down)) / (2 * step);
+    D.col(j) = R.transpose() * slope;
+  }
+  Matrix3d S;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) S(i, j) = 0.5 * (D(i, j) + D(j, i)) / std::sqrt(I[i] * I[j]);
+  if (!S.allFinite()) return 0.0;
+  return std::max(0.0, -compute_principal_axes(S).moments[0]);
+}
+
+Facts compute_facts(const Scene& scene) {
+  Facts facts;
+  facts.torques = find_acting_torques(scene);
+  const InertiaTensor& inertia = scene.inertia_B();
+  const Vector3d& I = inertia.moments();
+  facts.symmetry = inertia.symmetry();
+  facts.gap_low = (I[1] - I[0]) / I[2];
+  facts.gap_high = (I[2] - I[1]) / I[2];
+  facts.off_axis = compute_off_axis_angle(scene);
+  facts.separatrix = compute_separatrix_distance(scene);
+  double first = scene.t0(), last = scene.t0();
+  bool one = true;
+  for (const double t : scene.times()) {
+    first = std::min(first, t);
+    last = std::max(last, t);
+    one &= t == scene.times().front();
+  }
+  facts.before = scene.t0() - first;
+  facts.after = last - scene.t0();
+  facts.only_at_end = one;
+  facts.turns = estimate_turns(scene, facts.torques, facts.span());
+  facts.may_spin_up = may_spin_up(scene, facts.torques);
+  facts.decay = compute_decay_rate(scene, facts.torques);
+  facts.stiffness = facts.decay * facts.span();
+  return facts;
+}
+
+}  // namespace polhode
