@@ -63,10 +63,11 @@ def solve(
     scene : Scene
     accuracy : float, optional
         Of every sample: the larger of the error in omega, relative to the largest omega, and the angle of the attitude's
-        error [rad]. 0 < accuracy <= 1; 1e-9 when no tolerance is given either. It is aimed at by steps ten times finer and
-        not yet estimated: `motion.error` is NaN. Excludes rtol and atol.
+        error [rad]. 0 < accuracy <= 1; 1e-9 when no tolerance is given either. A closed form is taken where one holds,
+        and `motion.error` bounds its rounding; else it is aimed at by steps ten times finer and not yet estimated:
+        `motion.error` is NaN. Excludes rtol and atol.
     method : str, optional
-        A name of `methods()`; without it the best there is for the scene.
+        A name of `methods()`, or "exact" for the closed form alone; without it the best there is for the scene.
     rtol, atol : float, optional
         Tolerances of a step. Rates are measured against their own size, the quaternion against 1; atol is added, in
         rad/s and in quaternion components.

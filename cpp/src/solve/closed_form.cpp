@@ -99,6 +99,7 @@ std::string refuse_separatrix(const Scene& scene, const Facts& facts) {
   std::string torques = refuse_free(scene, facts);
   if (!torques.empty()) return torques;
   if (facts.symmetry != Symmetry::triaxial) return "it has no intermediate axis";
+  if (facts.separatrix == 0.0 && facts.off_axis > 0.0) return "";
   return "k'^2 = " + to_text(facts.separatrix) + ", and it is 0 on the separatrix alone";
 }
 

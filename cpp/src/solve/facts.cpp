@@ -50,7 +50,8 @@ double compute_separatrix_distance(const Scene& scene) {
   const auto [I, w] = find_principal(scene);
   const double scale = w.cwiseAbs().maxCoeff();
   if (scale == 0.0 || I[0] == I[1] || I[1] == I[2]) return 1.0;
-  const Vector3d u = w / scale, J = I / I[2];
+  // Powers of two: what is exactly on the separatrix stays there.
+  const Vector3d u = w * std::ldexp(1.0, -std::ilogb(scale)), J = I * std::ldexp(1.0, -std::ilogb(I[2]));
   const double least = J[0] * (J[1] - J[0]) * u[0] * u[0], greatest = J[2] * (J[2] - J[1]) * u[2] * u[2];
   const double distance = std::abs(greatest - least);   // |L^2 - 2 T I2|
   // L^2 - 2 T I1 above the separatrix, 2 T I3 - L^2 below it; both from squares alone.
