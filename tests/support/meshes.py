@@ -58,19 +58,23 @@ def soup(mesh):
 
 def exact(vertices, faces):
     """Volume, centre and inertia about it (density 1) of the doubles as they are: a sum over tetrahedra from 0."""
-    points = [[Fraction(float(x)) for x in v] for v in vertices]
-    volume, first, second = Fraction(0), [Fraction(0)] * 3, [[Fraction(0)] * 3 for _ in range(3)]
+    fractions = [[Fraction(float(x)) for x in v] for v in vertices]
+    grain = max(x.denominator for v in fractions for x in v)   # a power of two: in its parts all are whole numbers
+    points = [[int(x * grain) for x in v] for v in fractions]
+    volume, first, second = 0, [0] * 3, [[0] * 3 for _ in range(3)]
     for i, j, k in np.asarray(faces).tolist():
         a, b, c = points[i], points[j], points[k]
         d = (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2])
              + a[2] * (b[0] * c[1] - b[1] * c[0]))
         s = [a[m] + b[m] + c[m] for m in range(3)]
-        volume += d / 6
+        volume += d
         for m in range(3):
-            first[m] += d * s[m] / 24
+            first[m] += d * s[m]
             for n in range(m, 3):
-                second[m][n] += d * (a[m] * a[n] + b[m] * b[n] + c[m] * c[n] + s[m] * s[n]) / 120
-    centre = [f / volume for f in first]
-    C = [[second[min(m, n)][max(m, n)] - volume * centre[m] * centre[n] for n in range(3)] for m in range(3)]
+                second[m][n] += d * (a[m] * a[n] + b[m] * b[n] + c[m] * c[n] + s[m] * s[n])
+    centre = [Fraction(f, 4 * volume * grain) for f in first]
+    volume = Fraction(volume, 6 * grain**3)
+    C = [[Fraction(second[min(m, n)][max(m, n)], 120 * grain**5) - volume * centre[m] * centre[n] for n in range(3)]
+         for m in range(3)]
     trace = C[0][0] + C[1][1] + C[2][2]
     return volume, centre, [[(trace if m == n else 0) - C[m][n] for n in range(3)] for m in range(3)]

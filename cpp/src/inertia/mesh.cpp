@@ -93,7 +93,7 @@ void clear_rounding(MeshIntegrals& mesh) {
 bool plain_will_do(const MeshSums& sums, const MeshIntegrals& found) {
   const double about_reference = sums.hi[4] + sums.hi[5] + sums.hi[6];
   const double about_centre = 120 * (found.second[0].hi + found.second[1].hi + found.second[2].hi);
-  return std::sqrt(sums.hi[10]) <= noise_limit * std::abs(sums.hi[0]) &&
+  return std::sqrt(sums.hi[10] / 12) <= noise_limit * std::abs(sums.hi[0]) &&
          std::abs(about_reference) <= magnification_limit * std::abs(about_centre);
 }
 

@@ -7,9 +7,9 @@
 // set, after `nmadd(a, b, c)` = c - a b and `load_rows<last>(vertices, indices, x, y, z)` for it.
 //
 // The tetrahedron between the reference point and the triangle (a, b, c) has the volume d / 6, the first moments d s / 24
-// and the second moments d (a a + b b + c c + s s) / 120 with d = a . (b x c) and s = a + b + c: Mirtich 1996, Eberly
-// 2002. Here d = a . ((b - a) x (c - a)): the edges are short and nearly exact however far the triangle is, where b x c
-// of a small triangle loses most of its digits.
+// and the second moments d (p p + q q + o o) / 120 with d = a . (b x c), s = a + b + c, and the sums p, q, o of two
+// corners: Mirtich 1996, Eberly 2002; their a a + b b + c c + s s is the same. Here d = a . ((b - a) x (c - a)): the
+// edges are short and nearly exact however far the triangle is, where b x c of a small one loses most of its digits.
 namespace polhode::POLHODE_ISA {
 
 using inertia::mesh_sums;
@@ -41,27 +41,29 @@ POLHODE_INLINE Wide square(const N (&v)[3]) {
 template <class N>
 POLHODE_INLINE void add_triangles(const Wide (&A)[3], const Wide (&B)[3], const Wide (&C)[3], const Wide (&r)[3],
                                   N (&sum)[mesh_sums]) {
-  N a[3], b[3], c[3], e[3], f[3], s[3];
+  N a[3], e[3], f[3], p[3], q[3], o[3];
   for (int k = 0; k < 3; ++k) {
     difference(A[k], r[k], a[k]);
-    difference(B[k], r[k], b[k]);
-    difference(C[k], r[k], c[k]);
     difference(B[k], A[k], e[k]);
     difference(C[k], A[k], f[k]);
-    s[k] = a[k] + b[k] + c[k];
+    p[k] = madd(N(Wide(2.0)), a[k], e[k]);
+    o[k] = madd(N(Wide(2.0)), a[k], f[k]);
+    q[k] = p[k] + f[k];
   }
   const N nx = nmadd(e[2], f[1], e[1] * f[2]), ny = nmadd(e[0], f[2], e[2] * f[0]), nz = nmadd(e[1], f[0], e[0] * f[1]);
   const N d = madd(a[0], nx, madd(a[1], ny, a[2] * nz));
   sum[0] = sum[0] + d;
-  for (int k = 0; k < 3; ++k) sum[1 + k] = madd(d, s[k], sum[1 + k]);
+  for (int k = 0; k < 3; ++k) sum[1 + k] = madd(d, a[k] + q[k], sum[1 + k]);
   constexpr int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
+  Wide distance(0.0);  // about twelve squares of it
   for (int m = 0; m < 6; ++m) {
     const int i = row[m], j = column[m];
-    const N moment = madd(a[i], a[j], madd(b[i], b[j], madd(c[i], c[j], s[i] * s[j])));
+    const N moment = madd(p[i], p[j], madd(q[i], q[j], o[i] * o[j]));
     sum[4 + m] = madd(d, moment, sum[4 + m]);
+    if (m < 3) distance = distance + plain(moment);
   }
-  // |a|^2 |e|^2 |f|^2 bounds d^2, and so, in units of rounding, what went into d.
-  sum[10] = sum[10] + N(square(a) * (square(e) * square(f)));
+  // |e|^2 |f|^2 |a|^2 bounds d^2 and so, in units of rounding, the square of what rounding did to d.
+  sum[10] = madd(N(distance), N(square(e) * square(f)), sum[10]);
 }
 
 /// `groups` times eight triangles, `last` when one of them has the last vertex, beyond which nothing may be read.
