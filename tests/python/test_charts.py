@@ -10,15 +10,16 @@ import pytest
 
 import polhode as ph
 from polhode.charts import chart
-from polhode.charts import measure as measuring
-from polhode.charts.candidates import Answer, Candidate, Failure, candidates, tolerances
+from polhode.charts import stage as staging
+from polhode.charts.candidate import Answer, Candidate, Failure, tolerances
+from polhode.charts.candidates import candidates
 from polhode.charts.findings import (
-    all_ratios, front, headline, held_by_stability, stalls, time_to_reach, to_count, to_error, to_time, without_answer,
+    all_ratios, dominated, front, headline, held_by_stability, stalls, time_to_reach, to_count, to_error, to_time,
+    without_answer,
 )  # fmt: skip
 from polhode.charts.measure import Point, SceneResult, measure
 from polhode.charts.results import document
-from polhode.charts.right_hand_sides import in_floats, in_numpy
-from polhode.charts.scipy_peer import refuses
+from polhode.charts.stage import Here
 from polhode.charts.truth import Truth, compute_errors, find_truth
 
 TINY = ph.Scene(inertia=(1.0, 2.0, 2.5), omega=(1.0, 2.0, 3.0), times=np.linspace(0, 1, 5), name="tiny")
@@ -90,9 +91,18 @@ def test_a_made_truth_is_as_good_as_it_says():
 # candidates
 
 
-def test_every_adaptive_method_takes_part():
-    assert [m["name"] for m in ph.methods() if m["adaptive"]] == [c.name for c in candidates() if c.family == "method"]
-    assert {c.family for c in candidates(with_peers=False)} == {"method", "exact"}
+def test_every_method_takes_part():
+    own = [c.name for c in candidates() if c.family in ("method", "cheap")]
+    assert own == [m["name"] for m in ph.methods()]
+    assert "peer" not in {c.family for c in candidates(with_peers=False)}
+
+
+def test_fixed_steps_land_on_the_samples():
+    scene = ph.Scene.load("S1")   # a sample a second, 3.7 rad/s
+    for candidate in candidates(with_peers=False):
+        if candidate.swept == "step":
+            values = [value for _, value in candidate.settings(scene)]
+            assert values[0] == 0.25 and all(1 / h == round(1 / h) for h in values) and len(values) > 5
 
 
 @pytest.mark.parametrize(("name", "exact"), [("S1", "FreeMotion"), ("S4", "HeavyTop"), ("S5", None), ("S7", None)])
@@ -130,49 +140,11 @@ def test_a_run_past_its_limit_fails_and_says_so(name):
         candidate.run(ph.Scene.load("S7b"), 1e-6, 0.0)
 
 
-TORQUES = {
-    "none": (),
-    "gravity": ph.torques.Gravity(2.0, (0.3, 0.2, 0.5)),
-    "gravity gradient": ph.torques.GravityGradient(1.5, 0.7),
-    "damping": ph.torques.Damping(np.array([[0.5, 0.1, 0.2], [0.3, 0.4, 0.0], [0.1, 0.6, 0.3]])),
-    "thruster": ph.torques.Constant((0.3, -0.2, 0.1)),
-    "wind": ph.torques.Constant((0.3, -0.2, 0.1), "space"),
-}
-TURN = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]])
-
-
-@pytest.mark.parametrize("right_hand_side", [in_floats, in_numpy])
-@pytest.mark.parametrize("tensor", [np.diag([1.0, 2.0, 2.5]), TURN @ np.diag([1.0, 2.0, 2.5]) @ TURN.T], ids=["diagonal", "full"])
-@pytest.mark.parametrize("torque", TORQUES)
-def test_right_hand_sides_are_the_derivative_of_the_motion(torque, tensor, right_hand_side):
-    h, q = 1e-4, np.array([0.1, 0.7, 0.3, 0.5])
-    scene = ph.Scene(inertia=tensor, omega=(1.0, 2.0, 3.0), attitude=q / np.linalg.norm(q), torques=TORQUES[torque], t0=0.4,
-                     times=[0.4 - h, 0.4 + h])
-    motion = ph.solve(scene, method="rk45", rtol=1e-14)
-    y = np.hstack([motion.omega, motion.attitude])
-    f = right_hand_side(scene)(0.4, np.concatenate([scene.omega, scene.attitude]))
-    np.testing.assert_allclose(f, (y[1] - y[0]) / (2 * h), atol=1e-6)   # the third derivative times h^2 / 6
-
-
-def test_scipys_counts_do_not_depend_on_the_unit_of_time():
-    peer = next(c for c in candidates() if c.name == "SciPy RK45")
-    fast = TINY.replace(times=20 * TINY.times)
-    slow = fast.replace(omega=1e-3 * fast.omega, times=1e3 * fast.times)
-    counts = [peer.run(scene, 1e-6, None).stats["derivatives"] for scene in (fast, slow)]
-    assert counts[1] == pytest.approx(counts[0], rel=0.05)   # SciPy's first step is not free of the unit
-
-
-def test_scipy_refuses_what_it_cannot_do():
-    custom = ph.torques.Custom(lambda t, w, q: (0.0, 0.0, 0.0))
-    assert "Custom" in refuses(TINY.replace(torques=[custom]))
-    assert "in order" in refuses(TINY.replace(times=[1.0, 0.5]))
-
-
 # the sweep
 
 
 def fake(run, name="fake", family="method", settings=tolerances(3, 6)):
-    return Candidate(name, family, "", settings, run, lambda scene: "")
+    return Candidate(name, family, "", settings, lambda scene: lambda value, limit: run(scene, value, limit), lambda scene: "")
 
 
 def exact(scene, value, limit):
@@ -201,7 +173,7 @@ def test_crashes_nan_and_lateness_are_points_and_the_others_go_on():
 
 
 def test_what_does_not_fit_the_budget_is_left_out_and_says_so():
-    result = measure(ph.Scene.load("S1"), "", candidates(), 0.4, silent)
+    result = measure(ph.Scene.load("S1"), "", candidates(with_peers=False), 0.1, silent)
     left_out = [p for p in result.points if p.left_out]
     assert left_out and all("s were left" in p.why or "not done in time" in p.why for p in left_out)
     assert all(p.why.startswith("not done within") for p in result.points if not p.answered and not p.left_out)
@@ -209,14 +181,29 @@ def test_what_does_not_fit_the_budget_is_left_out_and_says_so():
 
 
 def test_time_is_the_median_of_what_the_clock_says(monkeypatch):
+    stage = Here([fake(exact)])
+    stage.enter(TINY)
+    stage.start("fake")
     ticks = iter([10.0, 18.0])
-    monkeypatch.setattr(measuring.time, "thread_time", lambda: next(ticks))
-    assert measuring._clock(lambda: None, 4) == 2.0
+    monkeypatch.setattr(staging.time, "thread_time", lambda: next(ticks))
+    assert stage.clock("fake", 1e-3, 4) == 2.0
     monkeypatch.undo()
-    readings = iter([5.0, 1.0, 2.0, 4.0, 3.5])
-    monkeypatch.setattr(measuring, "_clock", lambda run, times: next(readings))
-    result = measure(TINY, "", [fake(exact, settings=tolerances(3, 3))], 5.0, silent)
-    assert result.points[0].seconds == 3.5 and result.points[0].repeats == 5
+    readings = iter([7.0, 5.0, 1.0, 2.0, 4.0, 3.5])   # the first is the first run again, warm
+    monkeypatch.setattr(Here, "clock", lambda self, name, value, calls: next(readings))
+    (point,) = measure(TINY, "", [fake(exact, settings=tolerances(3, 3))], 60.0, silent).points
+    assert (point.seconds, point.fastest, point.slowest, point.repeats) == (3.5, 1.0, 5.0, 5)
+
+
+def test_a_run_that_answers_otherwise_the_second_time_is_a_failure():
+    calls = []
+
+    def forgetful(scene, value, limit):
+        calls.append(1)
+        answer = exact(scene, value, limit)
+        return answer if len(calls) == 1 else answer._replace(omega=answer.omega + 1)
+
+    points = measure(TINY, "", [fake(forgetful, settings=tolerances(3, 3))], 2.0, silent).points
+    assert [p.why for p in points] == ["another answer the second time"]
 
 
 # the words
@@ -255,6 +242,17 @@ def test_stalling_and_stability_are_told_from_plain_convergence():
     assert headline(stuck) == "No tolerance takes rk45 below 2e-5"
     assert headline(held) == "Stability holds rk45 to 1.5 million steps and 200 ms at every tolerance"
     assert headline(plain).startswith("rk45 reaches 1e-12 in 68.7 ms")
+
+
+def test_a_method_that_another_beats_everywhere_is_found():
+    times = [1e-3 * 1.6**k for k in range(10)]
+    quick = curve("rk45", "method", VALUES, VALUES, times)
+    slow = curve("slow", "method", VALUES, VALUES, [1.3 * t for t in times])
+    near = curve("near", "peer", VALUES, VALUES, [1.2 * t for t in times])
+    good = curve("good", "peer", VALUES, [2 * v for v in VALUES], [2 * t for t in times[:-1]] + [1e-4])
+    assert dominated(made_up(quick + slow + near)) == {"slow"}
+    assert dominated(made_up(quick + good)) == set()
+    assert dominated(made_up(curve("wrong", "method", VALUES[:1], [3.0], [1e-9]) + quick)) == {"wrong"}
 
 
 def test_speed_is_compared_at_equal_error():
@@ -299,7 +297,7 @@ def test_files_of_a_chart(charted):
 def test_results_json(charted):
     folder, results, content, _ = charted
     assert json.loads((folder / "results.json").read_text()) == json.loads(json.dumps(content, allow_nan=False))
-    assert set(content) == {"format", "measure", "seconds", "polhode", "machine", "versions", "files", "scenes"}
+    assert set(content) == {"format", "measure", "seconds", "polhode", "machine", "versions", "missing", "files", "scenes"}
     assert content["polhode"]["version"] == ph.__version__
     assert content["machine"]["cores"] >= 1 and "numpy" in content["versions"]
     scene = content["scenes"][0]
@@ -343,7 +341,7 @@ def test_the_command_prints_tables_uncut(tmp_path):
     result = CliRunner().invoke(app, ["chart", "S5", "-o", str(tmp_path), "--budget", "1", "--no-peers"])
     assert result.exit_code == 0, result.output
     row = next(line for line in result.stdout.splitlines() if re.match(r"rk45 +1e-09", line))
-    assert re.fullmatch(r"rk45 +1e-09 +\d\.\de-\d\d +[\d.]+ (µs|ms) +\d +[\d,]+ +[\d,]+ +\de-\d\d +\de-\d\d *", row)
+    assert re.fullmatch(r"rk45 +1e-09 +\d\.\de-\d\d( +[\d.]+ (µs|ms)){3} +\d +[\d,]+ +[\d,]+ +\de-\d\d +\de-\d\d *", row)
     assert str(Path(tmp_path) / "overview.png") in result.stdout and "input rounding 2e-14" in result.stdout
     content = CliRunner().invoke(app, ["chart", "S5", "-o", str(tmp_path), "--budget", "1", "--no-peers", "--json"])
     assert json.loads(content.stdout)["scenes"][0]["name"] == "S5"

@@ -1,89 +1,78 @@
-"""Who takes part: every adaptive method, the closed forms that apply, and other programs where they are installed.
+"""Who takes part: every method of the list, the plan's choice, the closed forms that apply, and other programs.
 
-A candidate is a record with a function that answers a scene at one setting; the charts go through `candidates()`. A
-method joins by the compiled list, a closed form or another program by a line in `_exact` or `candidates`.
+A method joins by the compiled list, another program by its file and a name in `peers`, a closed form by a line here.
 """
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 import polhode
 
-from ..motion import Floats
+from ..motion import Motion
 from ..scene import Scene
 from ..solver import methods, solve
-from . import scipy_peer
-from .right_hand_sides import in_floats, in_numpy
-
+from . import peers as peer_list
+from .candidate import Answer, Candidate, Failure, Run, Settings, fixed, steps, tolerances
 
 COUNTS = ("steps", "rejected", "derivatives")
 
 
-class Answer(NamedTuple):
-    """What a candidate returns: the states at the scene's times, and what they cost."""
-
-    omega: Floats
-    attitude: Floats
-    stats: dict[str, int]
-
-
-class Failure(Exception):
-    """A run that ended without an answer; the text says why."""
+def _answer(motion: Motion, limit: float | None) -> Answer:
+    if motion.status == "stopped":
+        raise Failure(f"not done within {limit:.2g} s")
+    if motion.status != "finished":
+        raise Failure(motion.message)
+    if motion.omega is None or motion.attitude is None:
+        raise Failure("the scene does not want both omega and attitude")
+    return Answer(motion.omega, motion.attitude, {key: int(motion.stats[key]) for key in COUNTS if key in motion.stats})
 
 
-class Candidate(NamedTuple):
-    """One way to answer a scene.
-
-    `settings`: what is swept, from loose to tight, as (label, value). `run(scene, value, limit)` answers the scene, or
-    raises `Failure`; it ends after `limit` seconds when that is given, and otherwise looks at no clock, so that timed
-    runs pay for none. `refuses(scene)`: why it does not take part, or "".
-    """
-
-    name: str
-    family: str          # "method" | "exact" | "peer"
-    source: str
-    settings: tuple[tuple[str, float], ...]
-    run: Callable[[Scene, float, float | None], Answer]
-    refuses: Callable[[Scene], str]
-
-
-def tolerances(first: int, last: int, step: int = 1) -> tuple[tuple[str, float], ...]:
-    """Powers of ten from 10^-first to 10^-last."""
-    return tuple((f"1e-{k:02d}", 10.0**-k) for k in range(first, last + 1, step))
-
-
-def _adaptive(record: dict[str, Any]) -> Candidate:
-    def run(scene: Scene, rtol: float, limit: float | None) -> Answer:
+def _solving(scene: Scene, option: str, **others: Any) -> Run:
+    """Return a run that solves the scene with the value swept as this option."""
+    def run(value: float, limit: float | None) -> Answer:
         watch = None
         if limit is not None:
-            end = time.thread_time() + limit
+            end = time.perf_counter() + limit
 
             def watch(reached: float, last: float) -> bool:
-                return time.thread_time() < end
+                return time.perf_counter() < end
 
-        motion = solve(scene, method=record["name"], rtol=rtol, progress=watch)
-        if motion.status == "stopped":
-            raise Failure(f"not done within {limit:.2g} s")
-        if motion.status != "finished":
-            raise Failure(motion.message)
-        if motion.omega is None or motion.attitude is None:
-            raise Failure("the scene does not want both omega and attitude")
-        return Answer(motion.omega, motion.attitude, {key: int(motion.stats[key]) for key in COUNTS})
+        options: dict[str, Any] = {option: value, **others}
+        return _answer(solve(scene, progress=watch, **options), limit)
 
-    return Candidate(record["name"], "method", record["source"], tolerances(3, 14), run, lambda scene: "")
+    return run
+
+
+def _method(record: dict[str, Any]) -> Candidate:
+    name, adaptive = record["name"], record["adaptive"]
+    settings: Callable[[Scene], Settings] = tolerances(3, 14) if adaptive else steps
+    return Candidate(name, "cheap" if record.get("cheap") else "method", record["source"], settings,
+                     lambda scene: _solving(scene, "rtol" if adaptive else "step", method=name), lambda scene: "",
+                     "rtol" if adaptive else "step")
+
+
+def _plan() -> list[Candidate]:
+    """What `solve` takes by itself for an accuracy, its certificate included; once there is a planner."""
+    if not hasattr(polhode, "plan"):
+        return []
+    return [Candidate("plan", "plan", "polhode.solve(accuracy=), with its certificate", tolerances(3, 12, 3),
+                      lambda scene: _solving(scene, "accuracy"), lambda scene: "", "accuracy")]
 
 
 def _closed_form(name: str, source: str, make: Callable[[Scene], Any], refuses: Callable[[Scene], str]) -> Candidate:
-    def run(scene: Scene, value: float, limit: float | None) -> Answer:
-        omega, attitude = make(scene).at(scene.times - scene.t0)
-        return Answer(omega, attitude, {})
+    def start(scene: Scene) -> Run:
+        def run(value: float, limit: float | None) -> Answer:
+            omega, attitude = make(scene).at(scene.times - scene.t0)
+            return Answer(omega, attitude, {})
 
-    return Candidate(name, "exact", source, (("closed form", 0.0),), run, refuses)
+        return run
+
+    return Candidate(name, "exact", source, fixed("closed form"), start, refuses, "")
 
 
 def _free(scene: Scene) -> str:
@@ -113,21 +102,7 @@ def _exact() -> list[Candidate]:
     ]
 
 
-def _scipy(name: str, method: str, make: Callable[[Scene], Any], last: int) -> Candidate:
-    def run(scene: Scene, rtol: float, limit: float | None) -> Answer:
-        try:
-            return Answer(*scipy_peer.run(scene, make, method, rtol, limit))
-        except (scipy_peer.Stopped, FloatingPointError) as error:
-            raise Failure(str(error)) from None
-
-    # A run takes up to seconds, so every third decade is what there is time for.
-    return Candidate(name, "peer", f"scipy.integrate.solve_ivp, right-hand side {make.__name__.replace('_', ' ')}",
-                     tolerances(3, last, 3), run, scipy_peer.refuses)
-
-
 def candidates(with_peers: bool = True) -> list[Candidate]:
     """Return everyone who takes part, polhode's own first."""
-    own = [_adaptive(record) for record in methods() if record["adaptive"]]
-    peers = [_scipy("SciPy RK45", "RK45", in_floats, 12), _scipy("SciPy DOP853", "DOP853", in_floats, 12),
-             _scipy("SciPy RK45, NumPy", "RK45", in_numpy, 9)]
-    return [*own, *_exact(), *(peers if with_peers else [])]
+    own = [_method(record) for record in methods()]
+    return [*_exact(), *own, *_plan(), *(peer_list.candidates() if with_peers else [])]

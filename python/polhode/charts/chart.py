@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import os
 import pathlib
@@ -16,6 +17,7 @@ from . import pictures
 from .candidates import candidates
 from .measure import SceneResult, measure
 from .results import document
+from .stage import make_stage
 
 DRAWING = 1.5    # seconds a scene's picture takes, about
 GENEROUS = 1.5   # times an equal share of the time left is what a scene may use
@@ -23,6 +25,10 @@ GENEROUS = 1.5   # times an equal share of the time left is what a scene may use
 
 def _title(source: Any) -> str:
     return "" if isinstance(source, Scene) else str(read_toml(find_scene(source)).get("title", ""))
+
+
+def _report(progress: Callable[[int, str], object], index: int, label: str, text: str) -> None:
+    progress(index, f"{label}: {text}")
 
 
 def _check_folder(folder: pathlib.Path) -> None:
@@ -55,7 +61,7 @@ def chart(
     budget : float
         About how long the whole may take [s]. What does not fit is left out, slow programs first, and listed.
     peers : bool
-        Whether other programs take part, where they are installed.
+        Whether other programs take part, where they are installed; those that are not are named.
     progress : callable
         ``progress(scenes done, what is being done)``.
     show : callable
@@ -91,14 +97,22 @@ def chart(
     _check_folder(output)
 
     taking_part = candidates(peers)
+    stage, together = make_stage(taking_part, [scene for scene, _ in loaded])
     results: list[SceneResult] = []
-    for index, (scene, title) in enumerate(loaded):
-        left = budget - (time.perf_counter() - start) - DRAWING * (len(loaded) + 2)
-        # Most scenes need less than an equal share, and what they leave goes to those after them.
-        share = max(left, 0.1 * budget) * min(1.0, GENEROUS / (len(loaded) - index))
-        label = scene.name or "scene"
-        results.append(measure(scene, title, taking_part, share, lambda text: progress(index, f"{label}: {text}")))
-        show(results[-1])
+    try:
+        stage.enter(loaded[0][0])   # a process apart takes a moment to be there
+        for index, (scene, title) in enumerate(loaded):
+            left = budget - (time.perf_counter() - start) - DRAWING * (len(loaded) + 2)
+            # Most scenes need less than an equal share, and what they leave goes to those after them.
+            share = max(left, 0.1 * budget) * min(1.0, GENEROUS / (len(loaded) - index))
+            label = scene.name or "scene"
+            report = functools.partial(_report, progress, index, label)
+            results.append(measure(scene, title, taking_part, share, report, stage))
+            if together:
+                results[-1].notes.append(together)
+            show(results[-1])
+    finally:
+        stage.close()
 
     files: list[pathlib.Path] = []
     for result in results:
@@ -107,6 +121,6 @@ def chart(
     progress(len(results), "pictures: overview")
     files += pictures.overview(results, output) + pictures.limits(results, output)
     written = [path.name for path in files] + ["results.json"]
-    content = document(results, time.perf_counter() - start, written)
+    content = document(results, time.perf_counter() - start, written, peers)
     (output / "results.json").write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
     return results, content

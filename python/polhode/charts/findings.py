@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import statistics
 
 from .measure import Point, SceneResult
 
@@ -54,10 +55,35 @@ def time_to_reach(points: list[Point], error: float) -> float:
     return best[0].seconds
 
 
+def own(result: SceneResult) -> list[Point]:
+    """Return the points of all of polhode's steppers."""
+    return [p for name in result.names("method", "cheap") for p in result.of(name)]
+
+
+def dominated(result: SceneResult) -> set[str]:
+    """Return the steppers, polhode's and others', of which another one beats every point, in error and by a quarter in time.
+
+    A point with an error above 0.3 answers nothing and is always beaten.
+    """
+    names = result.names("method", "cheap", "peer")
+    rivals = {name: [p for other in names if other != name for p in result.of(other)] for name in names}
+
+    def beaten(point: Point) -> bool:
+        return point.error > 0.3 or any(r.error <= point.error and 1.25 * r.seconds <= point.seconds
+                                        for r in rivals[point.candidate])
+
+    return {name for name in names if all(beaten(p) for p in result.of(name))}
+
+
+def adaptive(result: SceneResult) -> list[str]:
+    """Return polhode's methods with a tolerance that answered."""
+    return [name for name in result.names("method") if result.of(name)[0].swept == "rtol"]
+
+
 def stalls(result: SceneResult, name: str) -> bool:
     """Whether tighter tolerances stop helping long before float64's floor."""
     points = result.of(name)
-    if len(points) < 6:
+    if len(points) < 6 or points[0].swept != "rtol":
         return False
     early = [p.error for p in points if p.value >= 1e3 * points[-1].value]
     best = min(p.error for p in points)
@@ -69,31 +95,47 @@ def held_by_stability(result: SceneResult, name: str) -> bool:
     """Whether the number of steps hardly depends on the tolerance."""
     points = result.of(name)
     steps = [p.stats.get("steps", 0) for p in points]
-    return len(points) >= 4 and points[0].value >= 1e4 * points[-1].value and 0 < max(steps) < 2 * min(steps)
+    return len(points) >= 4 and points[0].swept == "rtol" and points[0].value >= 1e4 * points[-1].value and 0 < max(steps) < 2 * min(steps)
 
 
-def _time_ratios(result: SceneResult, name: str, peer: str) -> list[float]:
-    """Times of a peer over a method's at equal error, at each error of the peer below 0.1 that the method reaches."""
-    points = result.of(name)
-    ratios = [p.seconds / time_to_reach(points, p.error) for p in result.of(peer) if p.error < 0.1]
+def _time_ratios(result: SceneResult, peer: str) -> list[float]:
+    """Times of a peer over those of polhode's fastest stepper at equal error, at each error of the peer below 0.1 that one
+    reaches; none on a scene where no tolerance helps."""
+    points = own(result)
+    if any(stalls(result, name) for name in adaptive(result)):
+        return []
+    ratios = [p.seconds / time_to_reach(points, p.error) for p in result.of(peer) if p.error < 0.1 and p.swept]
     return [ratio for ratio in ratios if ratio == ratio]
 
 
 def all_ratios(results: list[SceneResult], peer: str) -> list[float]:
-    """Times of a peer over those of the first method at equal error, on all scenes where tolerances help that one."""
-    found = []
-    for result in results:
-        names = result.names("method")
-        if names and not stalls(result, names[0]):
-            found += _time_ratios(result, names[0], peer)
+    """The same on all scenes."""
+    return [ratio for result in results for ratio in _time_ratios(result, peer)]
+
+
+def programs(results: list[SceneResult]) -> dict[str, list[str]]:
+    """Return other programs, each with its candidates that answered: the first word of a candidate is its program."""
+    found: dict[str, list[str]] = {}
+    for name in dict.fromkeys(n for r in results for n in r.names("peer")):
+        found.setdefault(name.split()[0], []).append(name)
     return found
+
+
+def program_ratios(results: list[SceneResult]) -> dict[str, list[float]]:
+    """Return each program's ratios, of the candidate of it that is fastest in the median."""
+    found = {}
+    for program, names in programs(results).items():
+        ratios = [r for r in (all_ratios(results, name) for name in names) if r]
+        if ratios:
+            found[program] = min(ratios, key=statistics.median)
+    return dict(sorted(found.items(), key=lambda item: statistics.median(item[1])))
 
 
 def fastest(result: SceneResult) -> tuple[str, float, float] | None:
     """Who is first at the tightest of 1e-12, 1e-9, 1e-6, 1e-3 any stepping method reaches: name, error, seconds."""
     for error in (1e-12, 1e-9, 1e-6, 1e-3):
         times = {}
-        for name in result.names("method"):
+        for name in result.names("method", "cheap"):
             reaching = [p.seconds for p in result.of(name) if p.error <= error]
             if reaching:
                 times[name] = min(reaching)
@@ -107,27 +149,31 @@ def headline(result: SceneResult) -> str:
     """The one thing a scene's picture shows."""
     exact = [p for name in result.names("exact") for p in result.of(name)]
     closed = f"the closed form has {to_error(exact[0].error)} in {to_time(exact[0].seconds)}" if exact else ""
-    steppers = result.names("method")
-    if not steppers:
+    steppers = adaptive(result)
+    if not result.names("method", "cheap"):
         return closed[:1].upper() + closed[1:] if closed else "No method answered"
     stalled = [name for name in steppers if stalls(result, name)]
     held = [name for name in steppers if held_by_stability(result, name)]
     if stalled and len(stalled) == len(steppers):
         best = min(p.error for name in stalled for p in result.of(name))
-        text = f"No tolerance takes {' or '.join(stalled)} below {to_error(best)}"
+        who = stalled[0] if len(stalled) == 1 else "any stepper"
+        text = f"No tolerance takes {who} below {to_error(best)}"
         return f"{text}; {closed}" if closed else text
-    if held and len(held) == len(steppers):
+    first = fastest(result)
+    if held and not (first and first[0] not in held):
         points = result.of(held[0])
         return (f"Stability holds {held[0]} to {to_count(min(p.stats['steps'] for p in points))} steps and "
                 f"{to_time(min(p.seconds for p in points))} at every tolerance")
-    first = fastest(result)
-    stepping = f"{steppers[0]} never reaches 1e-3"
+    stepping = "No stepper reaches 1e-3"
     if first:
         stepping = f"{first[0]} reaches {to_error(first[1])} in {to_time(first[2])}"
+    if held and first:
+        points = result.of(held[0])
+        return f"{stepping}; stability holds {held[0]} to {to_time(min(p.seconds for p in points))} at every tolerance"
     if closed:
         return f"{closed[:1].upper()}{closed[1:]}; {stepping}"
-    ratios = [r for peer in result.names("peer") for r in _time_ratios(result, first[0], peer)] if first else []
-    return f"{stepping}; SciPy takes {to_range(ratios)} times as long at equal error" if ratios else stepping
+    ratios = next(iter(program_ratios([result]).items()), None)
+    return f"{stepping}; {ratios[0]} takes {to_range(ratios[1])} times as long at equal error" if ratios else stepping
 
 
 def to_ratio(ratio: float) -> str:
@@ -147,14 +193,9 @@ def under_headline(result: SceneResult) -> str:
     scene = result.scene
     span = abs(scene.times[-1] - scene.t0)
     text = f"{scene.name or 'scene'} {result.title}: {scene.times.size} samples over {span:g} s"
-    first = fastest(result)
-    parts = []
-    for peer in result.names("peer"):
-        ratios = _time_ratios(result, first[0], peer) if first and not stalls(result, first[0]) else []
-        if ratios:
-            parts.append(f"{peer} {to_range(ratios)}")
-    if parts and first:
-        text += f". Times as long as {first[0]} at equal error: {', '.join(parts)}"
+    parts = [f"{program} {to_range(ratios)}" for program, ratios in program_ratios([result]).items()]
+    if parts:
+        text += f". Times as long as polhode's fastest stepper at equal error: {', '.join(parts)}"
     for name, why in without_answer(result).items():
         text += f". {name}: {why}"
     return text

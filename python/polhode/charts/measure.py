@@ -5,22 +5,24 @@ from __future__ import annotations
 import math
 import statistics
 import time
-from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
 from .. import _core
 from ..scene import Scene
-from .candidates import Answer, Candidate, Failure
+from .candidate import Answer, Candidate, Failure
+from .stage import Apart, Here
 from .truth import Truth, compute_errors, find_truth
 
 ROUNDS = 5
 SHORTEST = 2e-3   # seconds of calls behind one reading of the clock
-SHARES = {"method": 0.8, "exact": 0.8, "peer": 0.7}   # of the budget: when a family must have ended; then come repeats
-LEAST = 0.1   # of the budget, for a candidate whose family has used its time up, and for the repeats
+SWEEPS = 0.75     # of the budget: when the sweeps must have ended; then come repeats
+LEAST = 0.1       # of the budget, for the repeats
+CROWDED = 0.02    # of the budget: what a candidate gets when all the time is gone
+
+ENDS = ("not done within", "hung", "ended its process", "InvalidInput")   # failures that tighter settings share
 
 Report = Callable[[str], object]
 
@@ -33,12 +35,15 @@ class Point:
     family: str
     setting: str
     value: float
+    swept: str = "rtol"         # what the value is: "rtol", "accuracy", "step" or "" for a closed form
     why: str = ""
     left_out: bool = False      # not run at all
     error: float = math.nan     # the larger of the two below
     error_omega: float = math.nan
     error_attitude: float = math.nan
     seconds: float = math.nan   # median of `repeats`, CPU time of the thread
+    fastest: float = math.nan
+    slowest: float = math.nan
     repeats: int = 0
     stats: dict[str, int] = field(default_factory=dict)
     drift: dict[str, float] = field(default_factory=dict)
@@ -59,6 +64,7 @@ class SceneResult:
     points: list[Point]
     notes: list[str]
     seconds: float = 0.0
+    startups: dict[str, float] = field(default_factory=dict)   # seconds before the first answer, beside that answer's
 
     def of(self, candidate: str) -> list[Point]:
         """The points of one candidate that answered, from loose to tight."""
@@ -75,30 +81,20 @@ def compute_drift(scene: Scene, answer: Answer) -> dict[str, float]:
     return dict(_core.drift(scene, scene.times, answer.omega, attitude))
 
 
-def _clock(run: Callable[[], Any], times: int = 1) -> float:
-    start = time.thread_time()
-    for _ in range(times):
-        run()
-    return (time.thread_time() - start) / times
-
-
-def _first(point: Point, candidate: Candidate, scene: Scene, truth: Truth, limit: float) -> None:
-    """Run once; a crash, a NaN and a run past its limit are answers too."""
-    start = time.thread_time()
+def _first(point: Point, stage: Here | Apart, scene: Scene, truth: Truth, limit: float) -> float:
+    """Run once; a crash, a NaN and a run past its limit are answers too. Returns the seconds of warm-up."""
     try:
-        answer = candidate.run(scene, point.value, limit)
-        point.seconds, point.repeats = time.thread_time() - start, 1
+        answer, point.seconds, warm_up = stage.run(point.candidate, point.value, limit)
         if not (np.isfinite(answer.omega).all() and np.isfinite(answer.attitude).all()):
             raise Failure("returned NaN or infinity")
     except Failure as failure:
         point.why = str(failure)
-        return
-    except Exception as error:   # a candidate may raise anything, and the others go on
-        point.why = f"{type(error).__name__}: {error}".splitlines()[0]
-        return
+        return 0.0
+    point.fastest, point.slowest, point.repeats = point.seconds, point.seconds, 1
     errors = compute_errors(answer.omega, answer.attitude, truth)
     point.error, point.error_omega, point.error_attitude = errors.largest, errors.omega, errors.attitude
     point.stats, point.drift = answer.stats, compute_drift(scene, answer)
+    return warm_up
 
 
 def _prediction(done: list[Point], value: float) -> float:
@@ -112,47 +108,65 @@ def _prediction(done: list[Point], value: float) -> float:
     return float(last.seconds * (last.value / value) ** slope)
 
 
-def _sweep(candidate: Candidate, scene: Scene, truth: Truth, deadline: float) -> Iterable[Point]:
-    """Run a candidate from its loosest setting to its tightest; what would not end in time is left out, and says so."""
+def _sweep(
+    candidate: Candidate, stage: Here | Apart, scene: Scene, truth: Truth, share: float, startups: dict[str, float]
+) -> Iterable[Point]:
+    """Run a candidate from its loosest setting to its tightest within a share of time; what would not end is left out,
+    and says so. The first setting always has its try."""
     done: list[Point] = []
-    late = ""
-    for setting, value in candidate.settings:
-        point = Point(candidate.name, candidate.family, setting, value)
+    late, tried = "", False
+    try:
+        startups[candidate.name] = stage.start(candidate.name)
+    except Failure as failure:
+        late = f"does not start: {failure}"
+    deadline = time.perf_counter() + share
+    for setting, value in candidate.settings(scene):
+        point = Point(candidate.name, candidate.family, setting, value, candidate.swept)
         left = deadline - time.perf_counter()
         prediction = _prediction(done, value)
         if late:
-            point.why, point.left_out = late, True
-        elif prediction > left or left <= 0:
+            point.why, point.left_out = late, not late.startswith("does not start")
+        elif tried and (prediction > left or left <= 0):
             late = point.why = f"would take about {prediction:.2g} s, and {max(left, 0):.2g} s were left"
             point.left_out = True
         else:
-            _first(point, candidate, scene, truth, max(left, 0.05))
+            tried = True
+            warm_up = _first(point, stage, scene, truth, max(left, 0.05))
             if point.answered:
+                if not done:
+                    startups[candidate.name] += warm_up
                 done.append(point)
-            elif point.why.startswith("not done within"):
-                late = "a looser setting was not done in time"
+            elif point.why.startswith(ENDS):
+                late = "a looser setting " + ("was not done in time" if point.why.startswith("not done") else point.why)
         yield point
 
 
-def _repeat(points: list[tuple[Point, Candidate]], scene: Scene, deadline: float) -> None:
+def _repeat(points: list[Point], stage: Here | Apart, deadline: float) -> None:
     """Time all points again, in turn, so that a slow minute of the machine hits all of them alike."""
     readings: dict[int, list[float]] = {}
     plans = []
-    for index, (point, candidate) in enumerate(points):
+    for index, point in enumerate(points):
         calls = max(1, min(1000, int(SHORTEST / max(point.seconds, 1e-7))))
-        plans.append((index, point, candidate, calls))
+        plans.append((index, point, calls))
     plans.sort(key=lambda plan: plan[1].seconds)   # where time is short, the many quick ones are served
     for _ in range(ROUNDS):
-        for index, point, candidate, calls in plans:
+        for index, point, calls in plans:
             if time.perf_counter() + point.seconds * calls > deadline:
                 continue
-            readings.setdefault(index, []).append(_clock(lambda: candidate.run(scene, point.value, None), calls))
-    for index, (point, _) in enumerate(points):
-        if index in readings:
-            point.seconds, point.repeats = statistics.median(readings[index]), len(readings[index])
+            try:
+                readings.setdefault(index, []).append(stage.clock(point.candidate, point.value, calls))
+            except Failure:   # it answered before: that answer and its time stand
+                continue
+    for index, point in enumerate(points):
+        if readings.get(index):
+            found = readings[index]
+            point.seconds, point.repeats = statistics.median(found), len(found)
+            point.fastest, point.slowest = min(found), max(found)
 
 
-def measure(scene: Scene, title: str, candidates: list[Candidate], budget: float, report: Report) -> SceneResult:
+def measure(
+    scene: Scene, title: str, candidates: list[Candidate], budget: float, report: Report, stage: Here | Apart | None = None
+) -> SceneResult:
     """Measure a scene within about `budget` seconds.
 
     Parameters
@@ -162,29 +176,34 @@ def measure(scene: Scene, title: str, candidates: list[Candidate], budget: float
     title : str
     candidates : list of Candidate
     budget : float
-        Of wall time [s], for polhode's methods, other programs, and repeats, in these `SHARES`.
+        Of wall time [s]. The candidates share three quarters of it, what one leaves going to those after it; the rest
+        is for repeats.
     report : callable
         Is told, in a few words, what is being done.
+    stage : Here or Apart, optional
+        Where the candidates run; this process without it.
     """
     start = time.perf_counter()
     report("reference")
     truth = find_truth(scene)
     notes = [] if truth.kind == "stored" else [f"reference: {truth.source}, {truth.uncertainty:.1e}"]
-    points: list[Point] = []
-    waiting = Counter(c.family for c in candidates if not c.refuses(scene))
+    stage = stage or Here(candidates)
+    stage.enter(scene)
+    taking_part = []
     for candidate in candidates:
         reason = candidate.refuses(scene)
-        if reason:
-            if candidate.family == "peer":
-                notes.append(f"{candidate.name}: {reason}")
-            continue
+        if not reason:
+            taking_part.append(candidate)
+        elif candidate.family == "peer":
+            notes.append(f"{candidate.name}: {reason}")
+    points: list[Point] = []
+    startups: dict[str, float] = {}
+    for index, candidate in enumerate(taking_part):
         report(candidate.name)
-        waiting[candidate.family] -= 1   # those of a family who are left share its time
         now = time.perf_counter()
-        own = (start + SHARES[candidate.family] * budget - now) / (waiting[candidate.family] + 1)
-        points += _sweep(candidate, scene, truth, now + max(own, LEAST * budget))
+        own = (start + SWEEPS * budget - now) / (len(taking_part) - index)
+        points += _sweep(candidate, stage, scene, truth, max(own, CROWDED * budget), startups)
     report("repeats")
-    by_name = {candidate.name: candidate for candidate in candidates}
     deadline = max(start + budget, time.perf_counter() + LEAST * budget)
-    _repeat([(p, by_name[p.candidate]) for p in points if p.answered], scene, deadline)
-    return SceneResult(scene, title, truth, points, notes, time.perf_counter() - start)
+    _repeat([p for p in points if p.answered], stage, deadline)
+    return SceneResult(scene, title, truth, points, notes, time.perf_counter() - start, startups)

@@ -14,7 +14,8 @@ import numpy as np
 from ..motion import Floats
 from . import style
 from .findings import (
-    all_ratios, headline, held_by_stability, stalls, to_error, to_range, to_time, under_headline, without_answer,
+    adaptive, dominated, headline, held_by_stability, program_ratios, stalls, to_error, to_ratio, to_time, under_headline,
+    without_answer,
 )  # fmt: skip
 from .measure import SceneResult
 
@@ -46,28 +47,40 @@ def _error_ticks(axes: Any, which: str = "x", every: int = 3) -> None:
     axis.set_major_formatter(FuncFormatter(lambda value, _: "1" if value == 1 else f"1e{round(math.log10(value))}"))
 
 
-def _curves(axes: Any, result: SceneResult) -> list[tuple[float, float, str, str]]:
-    """Draw all candidates; return where each one's name belongs: its most accurate end."""
-    ends = []
-    for name in result.names("method", "exact", "peer"):
-        points = result.of(name)
+Ends = list[tuple[float, float, str, str]]
+
+
+def _curves(axes: Any, result: SceneResult, spread: bool = False) -> Ends:
+    """Draw all candidates, those that others beat everywhere in grey; return where each one's name belongs: its most
+    accurate end. `spread`: with a bar from the fastest to the slowest repeat."""
+    ends: Ends = []
+    pale = dominated(result)
+    for name in result.names("method", "cheap", "peer", "exact", "plan"):
+        points = [p for p in result.of(name) if p.error < LOST or p.swept == ""]
+        if not points:
+            continue
         family = points[0].family
         x = [min(max(p.error, 1e-17), LOST) for p in points]
-        axes.plot(x, [p.seconds for p in points], **style.line(name, family))
+        look = style.line(name, family, name in pale)
+        axes.plot(x, [p.seconds for p in points], **look)
+        if spread:
+            axes.vlines(x, [p.fastest for p in points], [p.slowest for p in points], color=look["color"], linewidth=1.0,
+                        alpha=0.6, zorder=2)
         best = min(range(len(points)), key=lambda i: x[i])
-        ends.append((x[best], points[best].seconds, name, style.colour(name)))
+        ends.append((x[best], points[best].seconds, name, style.QUIET if name in pale else look["color"]))
     return ends
 
 
 def _frame(axes: Any, results: list[SceneResult]) -> None:
     """Log-log axes, with accuracy growing to the right."""
-    points = [p for r in results for p in r.points if p.answered]
+    points = [p for r in results for p in r.points if p.answered and (p.error < LOST or p.swept == "")]
     floors = [r.truth.floor for r in results if r.truth.floor]
-    least = min([p.error for p in points if p.error > 0] + floors)
+    least = min([p.error for p in points if p.error > 0] + floors, default=1e-15)
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlim(LOST * 2.5, 10.0 ** (math.floor(math.log10(max(least, 1e-17))) - 0.3))
-    low, high = (math.log10(f(p.seconds for p in points)) for f in (min, max))
+    times = [p.seconds for p in points] or [1e-6, 1.0]   # nobody may have answered
+    low, high = math.log10(min(times)), math.log10(max(times))
     air = max(0.35, 1.0 - (high - low) / 2)   # two decades at least, or a flat line would look rough
     axes.set_ylim(10 ** (low - air), 10 ** (high + air))
 
@@ -98,16 +111,18 @@ def _obstacles(axes: Any) -> Floats:
     return np.vstack(found)
 
 
-def _spread(axes: Any, ends: list[tuple[float, float, str, str]]) -> None:
-    """Write the names beside the ends of the curves, where they cover neither a curve nor a name."""
+def _spread(axes: Any, ends: Ends) -> None:
+    """Write the names beside the ends of the curves, where they cover neither a curve nor a name; grey ones smaller."""
     taken = _obstacles(axes)
-    for x, y, name, ink in sorted(ends, key=lambda end: -end[1]):
+    for x, y, name, ink in sorted(ends, key=lambda end: (end[3] == style.QUIET, -end[1])):
         px, py = axes.transData.transform((x, y))
-        left, right = px + 7, px + 12 + 7.4 * len(name)
+        quiet = ink == style.QUIET
+        left, right = px + 7, px + 12 + (5.6 if quiet else 7.4) * len(name)
         near = taken[(taken[:, 0] > left) & (taken[:, 0] < right)][:, 1]
-        shifts = sorted(range(-40, 41, 2), key=abs)
-        shift = next((dy for dy in shifts if not (np.abs(near - py - dy) < 9).any()), 0)
-        style.label(axes, x, y, name, ink, xytext=(8, shift * 72 / axes.figure.dpi))
+        shifts = sorted(range(-60, 61, 2), key=abs)
+        shift = next((dy for dy in shifts if not (np.abs(near - py - dy) < (7 if quiet else 9)).any()), 0)
+        changes = {"fontsize": 7, "fontweight": "normal", "bbox": None} if quiet else {}
+        style.label(axes, x, y, name, ink, xytext=(8, shift * 72 / axes.figure.dpi), **changes)
         own = np.column_stack([np.linspace(left, right, 12), np.full(12, py + shift)])
         taken = np.vstack([taken, own + (0, 5), own, own - (0, 5)])
 
@@ -116,14 +131,15 @@ def work_precision(result: SceneResult, folder: pathlib.Path) -> list[pathlib.Pa
     """One scene: time against error."""
     with style.used() as plt:
         title, under = _wrap(headline(result), 72), _wrap(under_headline(result), 125)
-        below = 5.2 - 0.62 - 0.25 * title.count("\n") - 0.18 * under.count("\n")
-        figure = plt.figure(figsize=(8.2, 5.2))
-        axes = figure.add_axes((0.105, 0.62 / 5.2, 0.74, (below - 0.9) / 5.2))
+        height = 5.9
+        below = height - 0.62 - 0.25 * title.count("\n") - 0.18 * under.count("\n")
+        figure = plt.figure(figsize=(8.6, height))
+        axes = figure.add_axes((0.1, 0.62 / height, 0.73, (below - 0.9) / height))
         _frame(axes, [result])
         _time_ticks(axes)
         _error_ticks(axes, every=2)
         _floor(axes, result, text=True)
-        _spread(axes, _curves(axes, result))
+        _spread(axes, _curves(axes, result, spread=True))
         axes.set_xlabel("largest error over all samples: rates relative, attitude in rad (more accurate to the right)")
         axes.set_ylabel("time for all samples")
         style.heading(figure, title, under, 0.03)
@@ -138,10 +154,13 @@ def overview(results: list[SceneResult], folder: pathlib.Path) -> list[pathlib.P
     rows = -(-len(results) // columns)
     with style.used() as plt:
         title = _wrap(_overview_title(results), 22 * columns)
-        top = 1.43 + 0.25 * title.count("\n")
-        width, height = 1.0 + 2.35 * columns, 0.32 + top + 2.3 * rows
+        shown = {n for r in results for n in r.names("method", "cheap", "plan", "peer", "exact")}
+        across = max(2, round(1.4 * columns))
+        legend_rows = -(-(len(shown) + 2) // across)   # at most
+        top = 1.2 + 0.2 * legend_rows + 0.25 * title.count("\n")
+        width, height = 1.25 + 2.35 * columns, 0.32 + top + 2.3 * rows
         figure, grid = plt.subplots(rows, columns, figsize=(width, height), sharex=True, sharey=True, squeeze=False)
-        figure.subplots_adjust(left=0.72 / width, right=1 - 0.15 / width, bottom=0.62 / height, top=1 - top / height,
+        figure.subplots_adjust(left=0.97 / width, right=1 - 0.15 / width, bottom=0.62 / height, top=1 - top / height,
                                wspace=0.09, hspace=0.28)
         for axes in grid.flat[len(results):]:
             axes.set_visible(False)
@@ -156,21 +175,23 @@ def overview(results: list[SceneResult], folder: pathlib.Path) -> list[pathlib.P
             if silent:
                 text = "\n".join(f"{name} {why.split(':')[0]}" for name, why in silent.items())
                 axes.text(0.04, 0.05, text, transform=axes.transAxes, fontsize=7.5, color=style.QUIET, linespacing=1.4)
-            names |= {p.candidate: p.family for p in result.points if p.answered}
+            pale = dominated(result)
+            names |= {p.candidate: p.family for p in result.points if p.answered and p.candidate not in pale}
             axes.set_title(f"{result.scene.name} {result.title}", fontsize=9)
         closed = [name for name, family in names.items() if family == "exact"]
         labels = {name: name for name in names if name not in closed[1:]}   # closed forms share one line here
         labels |= {name: f"closed form ({', '.join(closed)})" for name in closed[:1]}
         handles = [plt.Line2D([], [], label=text, **style.line(name, names[name])) for name, text in labels.items()]
+        handles.append(plt.Line2D([], [], color=style.PALE, linewidth=0.9, marker="o", markersize=3, label="beaten everywhere"))
         handles.append(plt.Line2D([], [], color=style.FLOOR, linestyle=(0, (1, 2)), label="rounding of the input"))
-        figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.6 / width, 1 - (top - 0.7) / height),
-                      fontsize=9, ncols=len(handles), frameon=False, borderaxespad=0, handlelength=2.2, columnspacing=1.6)
+        figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.3 / width, 1 - (0.72 + 0.25 * title.count("\n")) / height),
+                      fontsize=8.5, ncols=across, frameon=False, borderaxespad=0, handlelength=2.0, columnspacing=1.4)
         figure.supxlabel("largest error over all samples (more accurate to the right)", fontsize=9.5, color=style.QUIET,
                          y=0.1 / height)
         figure.supylabel("time for all samples", fontsize=9.5, color=style.QUIET, x=0.06 / width)
         style.heading(figure, title,
-                      "one thread; ratios are each peer's median over all scenes; lower and further right is better",
-                      0.72 / width)
+                      "one thread; lower and further right is better",
+                      0.3 / width)
         paths = style.save(figure, folder, "overview")
         plt.close(figure)
     return paths
@@ -178,22 +199,21 @@ def overview(results: list[SceneResult], folder: pathlib.Path) -> list[pathlib.P
 
 def _overview_title(results: list[SceneResult]) -> str:
     exact = [p for r in results for n in r.names("exact") for p in r.of(n)]
-    first = next((n for r in results for n in r.names("method")), "")
     parts = []
     if exact:
         worst, longest = max(p.error for p in exact), max(p.seconds for p in exact)
         parts.append(f"closed forms are right to {to_error(worst)} within {to_time(longest)}")
-    peers = dict.fromkeys(n for r in results for n in r.names("peer"))
-    medians = [statistics.median(ratios) for ratios in (all_ratios(results, peer) for peer in peers) if ratios]
+    medians = {program: statistics.median(ratios) for program, ratios in program_ratios(results).items()}
     if medians:
-        parts.append(f"at equal error {first} is {to_range(medians)} times as fast as SciPy")
+        words = [f"{program} {to_ratio(ratio)}" for program, ratio in medians.items()]
+        parts.append(f"times as long as the fastest stepper at equal error: {', '.join(words)}")
     text = "; ".join(parts) or "Time against error"
     return text[:1].upper() + text[1:]
 
 
 def limits(results: list[SceneResult], folder: pathlib.Path) -> list[pathlib.Path]:
     """Where steppers fail: errors that no tolerance brings down, and steps that stability dictates."""
-    stuck = [r for r in results if any(stalls(r, n) for n in r.names("method"))]
+    stuck = [r for r in results if adaptive(r) and all(stalls(r, n) for n in adaptive(r))]
     stiff = [r for r in results if any(held_by_stability(r, n) for n in r.names("method"))]
     panels: list[tuple[Any, SceneResult]] = [(_stalling, r) for r in stuck[:2]] + [(_stiff, r) for r in stiff[:2]]
     if not panels:
@@ -222,7 +242,7 @@ def _tolerance_axis(axes: Any) -> None:
 def _stalling(axes: Any, result: SceneResult, results: list[SceneResult]) -> None:
     """Error against tolerance, beside error = tolerance and the closed form."""
     _tolerance_axis(axes)
-    names = result.names("method", "peer")
+    names = [n for n in result.names("method", "peer") if result.of(n)[0].swept == "rtol"]
     points = [p for n in names for p in result.of(n)]
     tolerances = sorted({p.value for p in points})
     axes.plot(tolerances, tolerances, color=style.FLOOR, linewidth=1.2, linestyle=(0, (4, 3)), zorder=1)
@@ -242,7 +262,7 @@ def _stalling(axes: Any, result: SceneResult, results: list[SceneResult]) -> Non
     best = min(p.error for n in names for p in result.of(n))
     axes.set_title(f"{result.scene.name} {result.title}: rounding keeps the error\n"
                    f"above {to_error(best)}, whatever the tolerance")
-    axes.legend(loc="upper right", frameon=False, fontsize=9, ncols=2, borderaxespad=0.2)
+    axes.legend(loc="upper right", frameon=False, fontsize=8, ncols=3, borderaxespad=0.2)
 
 
 def _stiff(axes: Any, result: SceneResult, results: list[SceneResult]) -> None:

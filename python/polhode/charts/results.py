@@ -9,14 +9,16 @@ from importlib import metadata
 from typing import Any
 
 from .._core import build_info
-from .findings import headline
+from . import peers as peer_list
+from .findings import dominated, headline, without_answer
 from .measure import Point, SceneResult
 from .truth import to_json
 
-FORMAT = "polhode chart 1"
+FORMAT = "polhode chart 2"
 MEASURE = ("error: over all samples, the larger of |omega - truth| / max |truth| and the angle of the rotation between "
            "the attitudes [rad]; seconds: CPU time of the thread for all samples, median of the repeats, taken in turn "
-           "with all others; drift: largest move of each invariant from its start, relative")
+           "with all others, fastest and slowest among them; startups: wall seconds before and above the first answer, such "
+           "as for a compiler; drift: largest move of each invariant from its start, relative")
 
 
 def machine() -> dict[str, Any]:
@@ -32,14 +34,14 @@ def machine() -> dict[str, Any]:
 
 
 def versions() -> dict[str, str]:
-    """Return the versions of what took part, of those that are installed."""
+    """Return the versions of what took part, of those that are there."""
     found = {}
-    for name in ("numpy", "scipy", "matplotlib"):
+    for name in ("numpy", "matplotlib"):
         try:
             found[name] = metadata.version(name)
         except metadata.PackageNotFoundError:
             pass
-    return found
+    return found | peer_list.here()
 
 
 def _number(value: float) -> float | None:
@@ -48,22 +50,25 @@ def _number(value: float) -> float | None:
 
 def _point(point: Point) -> dict[str, Any]:
     return {
-        "candidate": point.candidate, "family": point.family, "setting": point.setting,
+        "candidate": point.candidate, "family": point.family, "setting": point.setting, "swept": point.swept,
+        "value": point.value,
         "status": "left out" if point.left_out else "failed" if point.why else "answered", "why": point.why,
         "error": _number(point.error), "error_omega": _number(point.error_omega),
-        "error_attitude": _number(point.error_attitude), "seconds": _number(point.seconds), "repeats": point.repeats,
+        "error_attitude": _number(point.error_attitude), "seconds": _number(point.seconds), "fastest": _number(point.fastest),
+        "slowest": _number(point.slowest), "repeats": point.repeats,
         "counts": dict(point.stats), "drift": {name: _number(value) for name, value in point.drift.items()},
     }
 
 
-def document(results: list[SceneResult], seconds: float, files: list[str]) -> dict[str, Any]:
+def document(results: list[SceneResult], seconds: float, files: list[str], with_peers: bool = True) -> dict[str, Any]:
     """Return the content of results.json; numbers that are not finite are null."""
     return {
         "format": FORMAT, "measure": MEASURE, "seconds": seconds, "polhode": build_info(), "machine": machine(),
-        "versions": versions(), "files": files,
+        "versions": versions(), "missing": peer_list.missing() if with_peers else {}, "files": files,
         "scenes": [
             {"name": r.scene.name, "title": r.title, "samples": int(r.scene.times.size),
              "span": float(r.scene.times[-1] - r.scene.t0), "reference": to_json(r.truth), "finding": headline(r),
+             "dominated": sorted(dominated(r)), "without_answer": without_answer(r), "startups": r.startups,
              "notes": r.notes, "seconds": r.seconds, "points": [_point(p) for p in r.points]}
             for r in results
         ],

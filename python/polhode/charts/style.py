@@ -14,27 +14,36 @@ if TYPE_CHECKING:
 INK, QUIET, GRID, PAPER = "#1d2733", "#66717d", "#e4e8ec", "#ffffff"
 FLOOR = "#9aa4ae"
 
-# Okabe and Ito's colours, distinguishable with every kind of colour vision; a candidate keeps its own on every picture.
+# Okabe and Ito's colours and a few more, apart with every kind of colour vision; a candidate keeps its own everywhere.
 _COLOURS = {
-    "rk45": "#0072b2", "dop853": "#009e73", "taylor": "#cc79a7",
-    "FreeMotion": "#d55e00", "HeavyTop": "#d55e00",
-    "SciPy RK45": "#7a8794", "SciPy DOP853": "#3f4a55", "SciPy RK45, NumPy": "#b3a08c",
+    "rk45": "#0072b2", "dop853": "#009e73", "taylor": "#cc79a7", "radau": "#e69f00", "symplectic": "#56b4e9",
+    "midpoint": "#8c6bb1", "rk4": "#a6761d", "plan": "#f0c000", "FreeMotion": "#d55e00", "HeavyTop": "#d55e00",
 }
-_SPARE = ["#e69f00", "#56b4e9", "#8c6bb1", "#a6761d", "#1b7837"]
-_MARKERS = {"method": "o", "exact": "D", "peer": "s"}
+_PEERS = {   # by the first word: quieter than polhode's own, each program with a mark of its own
+    "SciPy": ("#3f4a55", "s"), "heyoka": ("#6a3d9a", "^"), "Odeint": ("#5b7a3a", "v"), "numbalsoda": ("#2c7f86", "P"),
+    "SUNDIALS": ("#8a6d3b", "X"), "MuJoCo": ("#8c3b3b", "h"), "Orekit": ("#1f3b73", "d"),
+}
+_SPARE = ["#1b7837", "#b3006b", "#00798c", "#7a5195", "#ef5675", "#5f7d00", "#bc5090", "#003f5c"]
+_MARKERS = {"method": "o", "cheap": ".", "exact": "D", "plan": "*"}
+_SIZES = {"exact": 7.0, "plan": 15.0}
+PALE = "#c3cad1"
 
 
 def colour(name: str) -> str:
     """Return the colour of a candidate; one that is not in the table gets a spare one, always the same."""
-    return _COLOURS.get(name) or _SPARE[sum(map(ord, name)) % len(_SPARE)]
+    peer = _PEERS.get(name.split()[0])
+    return _COLOURS.get(name) or (peer[0] if peer else _SPARE[sum(map(ord, name)) % len(_SPARE)])
 
 
-def line(name: str, family: str) -> dict[str, Any]:
-    """Return how a candidate's curve is drawn."""
+def line(name: str, family: str, pale: bool = False) -> dict[str, Any]:
+    """Return how a candidate's curve is drawn; a pale one stays in the background."""
     peer = family == "peer"
-    return {"color": colour(name), "marker": _MARKERS.get(family, "o"), "markersize": 7 if family == "exact" else 4.2,
-            "linewidth": 1.3 if peer else 2.0, "linestyle": (0, (4, 2)) if peer else "-", "markeredgecolor": PAPER,
-            "markeredgewidth": 0.7, "zorder": 3 if peer else 4, "solid_capstyle": "round"}
+    marker = _PEERS.get(name.split()[0], ("", "s"))[1] if peer else _MARKERS.get(family, "o")
+    edge = {"markeredgecolor": INK if family == "plan" else PAPER, "markeredgewidth": 0.7}
+    return {"color": PALE if pale else colour(name), "marker": marker, "markersize": _SIZES.get(family, 3.2 if pale else 4.4),
+            "linewidth": 0 if family == "plan" else 0.9 if pale else 1.3 if peer else 2.0,
+            "linestyle": (0, (4, 2)) if peer else "-", "solid_capstyle": "round",
+            "zorder": 5 if family == "plan" else 2.5 if pale else 3 if peer else 4} | edge
 
 
 @contextmanager
@@ -73,9 +82,9 @@ HALO: dict[str, Any] = {"boxstyle": "square,pad=0.08", "facecolor": PAPER, "edge
 
 def label(axes: Axes, x: float, y: float, text: str, colour_: str, **changes: Any) -> Any:
     """Write a curve's name beside a point of it."""
-    options: dict[str, Any] = {"xytext": (7, 0), "ha": "left", "va": "center"} | changes
-    return axes.annotate(text, (x, y), textcoords="offset points", color=colour_, fontsize=9, fontweight="bold",
-                         zorder=6, bbox=HALO, **options)
+    options: dict[str, Any] = {"xytext": (7, 0), "ha": "left", "va": "center", "fontsize": 9, "fontweight": "bold",
+                               "bbox": HALO} | changes
+    return axes.annotate(text, (x, y), textcoords="offset points", color=colour_, zorder=6, **options)
 
 
 def save(figure: Figure, folder: pathlib.Path, name: str) -> list[pathlib.Path]:

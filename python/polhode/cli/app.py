@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import json
 import pathlib
+import re
 import sys
 from collections.abc import Callable
 from typing import Annotated, Any
@@ -46,6 +47,21 @@ def _command(function: Callable[..., int | None]) -> Callable[..., None]:
 
 def _print_json(content: Any) -> None:
     print(json.dumps(content, indent=1, allow_nan=False))
+
+
+def _need_matplotlib(what: str) -> None:
+    try:
+        import matplotlib  # noqa: F401
+    except ImportError:
+        raise InvalidInput(f"{what} need matplotlib: pip install 'polhode[plot]'") from None
+
+
+def _seconds(text: str) -> float:
+    """Read 90, 90s or 1.5min."""
+    found = re.fullmatch(r"\s*(\d+\.?\d*|\.\d+)\s*(s|min|)\s*", text)
+    if not found or float(found[1]) == 0:
+        raise InvalidInput(f"budget: must be a time such as 90s or 5min, got {text!r}")
+    return float(found[1]) * (60 if found[2] == "min" else 1)
 
 
 @app.callback(invoke_without_command=True)
@@ -123,22 +139,21 @@ def chart(
     output: Annotated[
         pathlib.Path, typer.Option("-o", "--output", help="The folder for all files.")] = pathlib.Path("charts"),
     budget: Annotated[
-        float, typer.Option(help="About how long it may take [s]; what does not fit is left out and listed.")] = 130.0,
-    peers: Annotated[bool, typer.Option(help="Run SciPy beside, where it is installed.")] = True,
+        str, typer.Option(help="About how long it may take, such as 60s or 5min; what does not fit is left out and listed.")
+    ] = "130s",
+    peers: Annotated[bool, typer.Option(help="Run other programs beside, where they are installed.")] = True,
     as_json: Json = False,
 ) -> int:
     """Chart speed against accuracy.
 
-    All methods, closed forms and SciPy on the scenes given, against their stored truth, in one run.
+    All methods, the plan's choice, closed forms and other programs on the scenes given, against their truth, in one run.
     """
-    try:
-        import matplotlib  # noqa: F401
-    except ImportError:
-        raise InvalidInput("charts need matplotlib: pip install 'polhode[plot]'") from None
+    _need_matplotlib("charts")
     from ..charts import chart as make_chart
 
+    seconds = _seconds(budget)
     with show.Bar("charting", len(scenes)) as bar:
-        _, content = make_chart(scenes, output, budget=budget, peers=peers, progress=bar.step,
+        _, content = make_chart(scenes, output, budget=seconds, peers=peers, progress=bar.step,
                                 show=(lambda result: None) if as_json else (lambda result: bar.print_above(result)))
     if as_json:
         _print_json(content)

@@ -143,21 +143,22 @@ def _drifts(point: Point) -> tuple[str, str]:
 
 def scene(result: SceneResult) -> None:
     """The table of one scene of a chart."""
-    from ..charts.findings import headline, to_time
+    from ..charts.findings import dominated, headline, to_time
 
     out = console()
     truth = result.truth
     known = f"input rounding {truth.floor:.0e}" if truth.floor is not None else f"uncertain by {truth.uncertainty:.0e}"
     out.print(Text(f"\n{result.scene.name} {result.title}: {headline(result)}"))
     out.print(Text(f"reference: {truth.kind} ({truth.source}), {known}"))
-    table = _table("method", "setting", "error", "time", "repeats", "steps", "derivatives", "drift of energy",
-                   "of momentum", left=2)
+    table = _table("method", "setting", "error", "time", "fastest", "slowest", "of", "steps", "derivatives",
+                   "drift of energy", "of momentum", left=2)
     for point in result.points:
         if not point.answered:
             continue
         counts = [f"{point.stats[key]:,}" if key in point.stats else "-" for key in ("steps", "derivatives")]
-        table.add_row(point.candidate, point.setting, f"{point.error:.1e}", to_time(point.seconds), str(point.repeats),
-                      *counts, *_drifts(point))
+        times = [to_time(seconds) for seconds in (point.seconds, point.fastest, point.slowest)]
+        table.add_row(point.candidate, point.setting, f"{point.error:.1e}", *times, str(point.repeats), *counts,
+                      *_drifts(point))
     out.print(table)
     missing: dict[tuple[str, str], list[str]] = {}
     for point in result.points:
@@ -166,6 +167,11 @@ def scene(result: SceneResult) -> None:
             missing.setdefault((point.candidate, why), []).append(point.setting)
     for (name, why), settings in missing.items():
         out.print(Text(f"{name} {', '.join(settings)}: {why}"))
+    starts = [f"{name} {to_time(seconds)}" for name, seconds in result.startups.items() if seconds > 1e-3]
+    if starts:
+        out.print(Text(f"start-up and warm-up before the first answer: {', '.join(starts)}"))
+    if beaten := sorted(dominated(result)):
+        out.print(Text(f"beaten everywhere, in grey: {', '.join(beaten)}"))
     for note in result.notes:
         out.print(Text(note))
 
@@ -176,6 +182,8 @@ def chart_end(content: dict[str, Any], folder: pathlib.Path) -> None:
     count = len(content["scenes"])
     scenes = f"{count} scene{'s' if count > 1 else ''}"
     out.print(Text(f"\n{scenes} in {content['seconds']:.0f} s on {machine['processor']}"))
+    for name, how in content["missing"].items():
+        out.print(Text(f"{name} is not here: {how}"))
     for name in content["files"]:
         if not name.endswith(".svg"):
             out.print(Text(f"{folder / name}"))

@@ -1,0 +1,55 @@
+"""numbalsoda: LSODA and DOP853 in compiled code, on a right-hand side compiled by Numba."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ...scene import Scene
+from ..candidate import Answer, Candidate, Failure, Run, refuses_times, tolerances
+from ..equations import STATE, source, unwritten
+from .found import version
+
+NAME, INSTALL = "numbalsoda", "pip install numbalsoda (and a Fortran compiler)"
+
+
+def found() -> str:
+    """The version, or ""."""
+    return version("numbalsoda") and version("numba")
+
+
+def _start(scene: Scene, method: str) -> Run:
+    import numba
+    import numbalsoda as nb  # type: ignore[import-not-found,import-untyped,unused-ignore]
+    from math import cos, sin
+
+    steps, names = source(scene)
+    lines = [f"{name} = u[{i}]" for i, name in enumerate(STATE)] + [f"{name} = {text}" for name, text in steps]
+    lines += [f"f[{i}] = {name}" for i, name in enumerate(names)]
+    space: dict[str, Any] = {"cos": cos, "sin": sin}
+    exec("def function(t, u, f, p):\n " + "\n ".join(lines), space)   # made of floats and the names above alone
+    pointer = numba.cfunc(nb.lsoda_sig)(space["function"]).address
+    start = np.concatenate([scene.omega, scene.attitude])
+    times = np.array(scene.times) if scene.times[0] == scene.t0 else np.concatenate([[scene.t0], scene.times])
+    solve = getattr(nb, method)
+
+    def run(rtol: float, limit: float | None) -> Answer:
+        size = float(np.linalg.norm(scene.omega)) or 1.0
+        # Without mxstep, dop853 ends after 10000 steps and says so only in its flag.
+        y, success = solve(pointer, start, times, rtol=rtol, atol=rtol * min(size, 1.0), mxstep=10_000_000)
+        if not success:
+            raise Failure("numbalsoda says success=False")
+        y = y[-scene.times.size:]
+        return Answer(y[:, :3].copy(), y[:, 3:].copy(), {})
+
+    return run
+
+
+def candidates() -> list[Candidate]:
+    """Both of its solvers; lsoda refuses tolerances below 1e-13."""
+    def one(method: str) -> Candidate:
+        return Candidate(f"numbalsoda {method}", "peer", f"numbalsoda.{method}", tolerances(3, 13, 2),
+                         lambda scene: _start(scene, method), lambda scene: unwritten(scene) or refuses_times(scene))
+
+    return [one("lsoda"), one("dop853")]

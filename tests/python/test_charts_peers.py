@@ -1,0 +1,156 @@
+"""Other programs in the charts: one right-hand side for all, each program's answer, and what a crash or a hang does."""
+
+import math
+import os
+import signal
+import time
+
+import numpy as np
+import pytest
+
+import polhode as ph
+from polhode.charts import equations, peers
+from polhode.charts.candidate import Answer, Candidate, Failure, tolerances
+from polhode.charts.candidates import candidates
+from polhode.charts.measure import measure
+from polhode.charts.stage import Apart, Here, make_stage
+from polhode.charts.truth import compute_errors, find_truth
+
+TINY = ph.Scene(inertia=(1.0, 2.0, 2.5), omega=(1.0, 2.0, 3.0), times=np.linspace(0, 1, 5), name="tiny")
+TORQUES = {
+    "none": (),
+    "gravity": ph.torques.Gravity(2.0, (0.3, 0.2, 0.5)),
+    "gravity gradient": ph.torques.GravityGradient(1.5, 0.7),
+    "damping": ph.torques.Damping(np.array([[0.5, 0.1, 0.2], [0.3, 0.4, 0.0], [0.1, 0.6, 0.3]])),
+    "thruster": ph.torques.Constant((0.3, -0.2, 0.1)),
+    "wind": ph.torques.Constant((0.3, -0.2, 0.1), "space"),
+    "two": (ph.torques.Gravity(2.0, (0.0, 0.0, 1.0)), ph.torques.Constant((0.0, 0.0, 0.1))),
+}
+TURN = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]])
+
+
+@pytest.mark.parametrize("tensor", [np.diag([1.0, 2.0, 2.5]), TURN @ np.diag([1.0, 2.0, 2.5]) @ TURN.T], ids=["diagonal", "full"])
+@pytest.mark.parametrize("torque", TORQUES)
+def test_the_right_hand_side_is_the_derivative_of_the_motion(torque, tensor):
+    h, q = 1e-4, np.array([0.1, 0.7, 0.3, 0.5])
+    scene = ph.Scene(inertia=tensor, omega=(1.0, 2.0, 3.0), attitude=q / np.linalg.norm(q), torques=TORQUES[torque], t0=0.4,
+                     times=[0.4 - h, 0.4 + h])
+    motion = ph.solve(scene, method="rk45", rtol=1e-14)
+    y = np.hstack([motion.omega, motion.attitude])
+    start = np.concatenate([scene.omega, scene.attitude])
+    f = equations.in_floats(scene)(0.4, start)
+    np.testing.assert_allclose(f, (y[1] - y[0]) / (2 * h), atol=1e-6)   # the third derivative times h^2 / 6
+    np.testing.assert_allclose(equations.derivatives(scene, 0.4, start.tolist()), f, rtol=1e-13, atol=1e-13)
+
+
+def test_the_text_holds_nothing_that_is_not_used():
+    steps, names = equations.source(ph.Scene.load("S4"))
+    text = " ".join([*(t for _, t in steps), *names])
+    assert all(name in text.split() or f"({name})" in text for name, _ in steps)
+    assert len(steps) < 50   # the full rotation matrix alone would take 30
+
+
+def test_a_torque_nobody_else_knows_is_refused():
+    custom = TINY.replace(torques=[ph.torques.Custom(lambda t, w, q: (0.0, 0.0, 0.0))])
+    assert "Custom" in equations.unwritten(custom)
+    assert all(c.refuses(custom) for c in peers.candidates())
+
+
+@pytest.mark.parametrize("name", [peer.NAME for peer in peers.PEERS])
+def test_a_peer_is_there_or_named_as_missing(name):
+    assert (name in peers.here()) != (name in peers.missing())
+
+
+@pytest.mark.parametrize("scene", ["S1", "S5"])
+@pytest.mark.parametrize("name", [c.name for c in peers.candidates()])
+def test_peers_answer_the_same_question(name, scene):
+    candidate = next(c for c in candidates() if c.name == name)
+    if name.startswith("Odeint") and scene == "S1":
+        pytest.skip("it is compiled for S5")
+    scene = ph.Scene.load(scene)
+    scene = scene.replace(times=scene.times[:11], name="short")
+    if candidate.refuses(scene):
+        pytest.skip(candidate.refuses(scene))
+    if name in ("MuJoCo Euler", "MuJoCo RK4"):
+        value, wanted = (1e-3, 1e-8) if name == "MuJoCo RK4" else (1e-4, 1e-2)
+    else:
+        value, wanted = 1e-9, 1e-6
+    truth = find_truth(scene)
+    run = candidate.start(scene)
+    answers = [run(value, None), run(value, 60.0)]
+    assert compute_errors(answers[0].omega, answers[0].attitude, truth).largest < wanted
+    np.testing.assert_array_equal(answers[0].omega, answers[1].omega)
+
+
+def test_scipys_counts_do_not_depend_on_the_unit_of_time():
+    pytest.importorskip("scipy")
+    peer = next(c for c in candidates() if c.name == "SciPy RK45")
+    fast = TINY.replace(times=20 * TINY.times)
+    slow = fast.replace(omega=1e-3 * fast.omega, times=1e3 * fast.times)
+    counts = [peer.run(scene, 1e-6, None).stats["derivatives"] for scene in (fast, slow)]
+    assert counts[1] == pytest.approx(counts[0], rel=0.05)   # SciPy's first step is not free of the unit
+
+
+def test_peers_want_their_times_in_order():
+    backwards = TINY.replace(times=[1.0, 0.5])
+    assert all("in order" in c.refuses(backwards) for c in peers.candidates() if c.name.startswith(("SciPy RK", "heyoka", "Odeint")))
+
+
+# a process apart
+
+
+def test_a_process_apart_gives_the_same_bits():
+    scene = ph.Scene.load("S5")
+    stages = Here(candidates()), Apart()
+    replies = []
+    for stage in stages:
+        stage.enter(scene)
+        stage.start("rk45")
+        replies.append(stage.run("rk45", 1e-6, 5.0))
+        assert stage.clock("rk45", 1e-6, 2) > 0
+        stage.close()
+    np.testing.assert_array_equal(replies[0].answer.omega, replies[1].answer.omega)
+    assert replies[0].answer.stats == replies[1].answer.stats
+
+
+def test_a_crash_and_a_hang_are_points_and_the_others_go_on(monkeypatch):
+    stage = Apart()
+    stage.enter(TINY)
+    stage.start("rk45")
+    os.kill(stage._process.pid, signal.SIGSEGV)   # as a program with a bug would end it
+    with pytest.raises(Failure, match="by signal 11"):
+        stage.run("rk45", 1e-6, 1.0)
+    assert stage.run("rk45", 1e-6, 1.0).seconds > 0   # in a new one
+    os.kill(stage._process.pid, signal.SIGSTOP)
+    monkeypatch.setattr("polhode.charts.stage.GRACE", 0.2)
+    begin = time.monotonic()
+    with pytest.raises(Failure, match="hung: not back after"):
+        stage.run("rk45", 1e-6, 0.01)
+    assert time.monotonic() - begin < 5
+    stage.close()
+
+
+def test_what_cannot_be_sent_stays_here():
+    scene = TINY.replace(torques=[ph.torques.Custom(lambda t, w, q: (0.0, 0.0, 0.0))])
+    stage, why = make_stage([], [scene])
+    assert isinstance(stage, Here) and "cannot be sent" in why
+
+
+def test_an_answer_that_never_comes_is_left_out_for_tighter_settings():
+    def run(scene):
+        def one(value, limit):
+            raise Failure("hung: not back after 15 s")
+        return one
+
+    result = measure(TINY, "", [Candidate("slow", "peer", "", tolerances(3, 5), run, lambda scene: "")], 1.0, lambda text: None)
+    assert [p.left_out for p in result.points] == [False, True, True]
+
+
+def test_startups_are_told():
+    def start(scene):
+        time.sleep(0.05)
+        return lambda value, limit: Answer(*ph.FreeMotion(scene.inertia, scene.omega).at(scene.times), {})
+
+    result = measure(TINY, "", [Candidate("late", "method", "", tolerances(3, 4), start, lambda scene: "")], 1.0, lambda text: None)
+    assert 0.05 <= result.startups["late"] < 1 and all(p.seconds < 0.01 for p in result.points)
+    assert math.isfinite(result.points[0].slowest)
