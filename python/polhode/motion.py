@@ -12,6 +12,8 @@ import numpy.typing as npt
 from . import _core
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from .attitude import Rotation
     from .scene import Scene
 
@@ -172,6 +174,29 @@ class Motion:
             raise _core.InvalidInput("motion(t): must be solved with dense=True, which keeps the continuous extension")
         omega, attitude = self._answer(t)
         return omega, attitude
+
+    def plot(self, *parts: str) -> Figure:
+        """Draw the motion: polhode, herpolhode or the path of the axis, z-x-z angles, and what should not have moved.
+
+        Parameters
+        ----------
+        *parts : {"polhode", "herpolhode", "axis", "angles", "invariants"}
+            What is drawn; without any, what suits the scene. Where the samples are too far apart for a line, curves come
+            from the continuous extension, or from solving the scene again.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            Shown by notebooks; ``.savefig(path)`` writes it.
+
+        Raises
+        ------
+        InvalidInput
+            For another part, for one whose omega or attitude was not wanted, and without matplotlib.
+        """
+        from .charts.motion_picture import plot
+
+        return plot(self, *parts)
 
     def __len__(self) -> int:
         return int(self.t.size)

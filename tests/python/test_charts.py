@@ -2,6 +2,7 @@
 
 import json
 import re
+import sys
 from pathlib import Path
 
 import mpmath
@@ -176,8 +177,11 @@ def test_what_does_not_fit_the_budget_is_left_out_and_says_so():
     result = measure(ph.Scene.load("S1"), "", candidates(with_peers=False), 0.1, silent)
     left_out = [p for p in result.points if p.left_out]
     assert left_out and all("s were left" in p.why or "not done in time" in p.why for p in left_out)
-    assert all(p.why.startswith("not done within") for p in result.points if not p.answered and not p.left_out)
+    failed = [p for p in result.points if not p.answered and not p.left_out]
+    assert all(p.why.startswith("not done within") or "not finite" in p.why for p in failed)
     assert result.seconds < 4 and result.of("rk45")
+    assert any(note.startswith("leapfrog: ") for note in result.notes)
+    assert "leapfrog" not in {p.candidate for p in result.points}   # refused by the run, not failed
 
 
 def test_time_is_the_median_of_what_the_clock_says(monkeypatch):
@@ -276,11 +280,17 @@ def test_numbers_in_words(found, text):
 # the whole
 
 
+def three(peers):
+    return [c for c in candidates(False) if c.name in ("FreeMotion", "rk45", "rk4")]
+
+
 @pytest.fixture(scope="module")
 def charted(tmp_path_factory):
     folder = tmp_path_factory.mktemp("charts")
     said = []
-    results, content = chart(["S5", TINY], folder, budget=3, peers=False, progress=lambda i, text: said.append(text))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sys.modules["polhode.charts.chart"], "candidates", three)
+        results, content = chart(["S5", TINY], folder, budget=12, peers=False, progress=lambda i, text: said.append(text))
     return folder, results, content, said
 
 
@@ -333,17 +343,18 @@ def test_failing_scenes_have_their_picture(tmp_path):
     assert pictures.limits([made_up(curve("rk45", "method", VALUES, VALUES, times))], tmp_path) == []
 
 
-def test_the_command_prints_tables_uncut(tmp_path):
+def test_the_command_prints_tables_uncut(tmp_path, monkeypatch):
     from typer.testing import CliRunner
 
     from polhode.cli.app import app
 
-    result = CliRunner().invoke(app, ["chart", "S5", "-o", str(tmp_path), "--budget", "1", "--no-peers"])
+    monkeypatch.setattr(sys.modules["polhode.charts.chart"], "candidates", three)
+    result = CliRunner().invoke(app, ["chart", "S5", "-o", str(tmp_path), "--budget", "6s", "--no-peers"])
     assert result.exit_code == 0, result.output
     row = next(line for line in result.stdout.splitlines() if re.match(r"rk45 +1e-09", line))
     assert re.fullmatch(r"rk45 +1e-09 +\d\.\de-\d\d( +[\d.]+ (µs|ms)){3} +\d +[\d,]+ +[\d,]+ +\de-\d\d +\de-\d\d *", row)
     assert str(Path(tmp_path) / "overview.png") in result.stdout and "input rounding 2e-14" in result.stdout
-    content = CliRunner().invoke(app, ["chart", "S5", "-o", str(tmp_path), "--budget", "1", "--no-peers", "--json"])
+    content = CliRunner().invoke(app, ["chart", "S5", "-o", str(tmp_path), "--budget", "0.1min", "--no-peers", "--json"])
     assert json.loads(content.stdout)["scenes"][0]["name"] == "S5"
 
 

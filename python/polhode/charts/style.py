@@ -47,14 +47,11 @@ def line(name: str, family: str, pale: bool = False) -> dict[str, Any]:
 
 
 @contextmanager
-def used() -> Iterator[Any]:
-    """Use the style, without a display, and hand out pyplot."""
+def settings() -> Iterator[None]:
+    """Use the style."""
     import matplotlib
 
-    matplotlib.use("Agg", force=False)
-    import matplotlib.pyplot as plt
-
-    settings: Any = {
+    chosen: Any = {
         "figure.facecolor": PAPER, "figure.dpi": 100, "savefig.dpi": 160, "font.family": "DejaVu Sans",
         "font.size": 9.5,
         "text.color": INK, "axes.labelcolor": QUIET, "axes.edgecolor": FLOOR, "axes.linewidth": 0.8,
@@ -64,7 +61,19 @@ def used() -> Iterator[Any]:
         "xtick.major.size": 3, "ytick.major.size": 3, "xtick.minor.size": 0, "ytick.minor.size": 0,
         "svg.fonttype": "none", "svg.hashsalt": "polhode",
     }
-    with plt.rc_context(settings):
+    with matplotlib.rc_context(chosen):
+        yield
+
+
+@contextmanager
+def used() -> Iterator[Any]:
+    """Use the style, without a display, and hand out pyplot."""
+    import matplotlib
+
+    matplotlib.use("Agg", force=False)
+    import matplotlib.pyplot as plt
+
+    with settings():
         yield plt
 
 

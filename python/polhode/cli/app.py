@@ -59,7 +59,7 @@ def _need_matplotlib(what: str) -> None:
 def _seconds(text: str) -> float:
     """Read 90, 90s or 1.5min."""
     found = re.fullmatch(r"\s*(\d+\.?\d*|\.\d+)\s*(s|min|)\s*", text)
-    if not found or float(found[1]) == 0:
+    if not found:
         raise InvalidInput(f"budget: must be a time such as 90s or 5min, got {text!r}")
     return float(found[1]) * (60 if found[2] == "min" else 1)
 
@@ -82,6 +82,8 @@ def run(
     max_steps: Annotated[int, typer.Option(help="Give up after so many.")] = 10_000_000,
     output: Annotated[
         pathlib.Path | None, typer.Option("-o", "--output", help="Write all samples: .csv, .npz or .json.")] = None,
+    picture: Annotated[
+        pathlib.Path | None, typer.Option("--plot", help="Draw polhode, angles and invariants: .png, .svg or .pdf.")] = None,
     as_json: Json = False,
 ) -> int:
     """Turn the body of a scene.
@@ -90,6 +92,9 @@ def run(
     """
     if output is not None:
         files.check(output)
+    if picture is not None:
+        _need_matplotlib("pictures")
+        files.check(picture, (".png", ".svg", ".pdf"), "plot")
     with show.Bar("turning") as bar:
         motion = solve(Scene.load(scene), accuracy, method=method, rtol=rtol, atol=atol, step=step, max_steps=max_steps,
                        progress=bar.fraction)
@@ -100,6 +105,9 @@ def run(
     if output is not None:
         files.write(output, motion)
         print(f"wrote {output}", file=sys.stderr if as_json else sys.stdout)
+    if picture is not None:
+        motion.plot().savefig(picture, dpi=160)
+        print(f"wrote {picture}", file=sys.stderr if as_json else sys.stdout)
     return 0 if motion.success else 1
 
 

@@ -17,12 +17,12 @@ COLUMNS = {"t": ("t",), "omega": ("omega_x", "omega_y", "omega_z"),
            "attitude": ("attitude_x", "attitude_y", "attitude_z", "attitude_w")}
 
 
-def check(path: pathlib.Path) -> None:
+def check(path: pathlib.Path, endings: tuple[str, ...] = (".csv", ".npz", ".json"), option: str = "output") -> None:
     """Refuse, before anything is computed, a file that cannot be written."""
-    if path.suffix not in (".csv", ".npz", ".json"):
-        raise InvalidInput(f"output: must end in .csv, .npz or .json, got {str(path)!r}")
+    if path.suffix not in endings:
+        raise InvalidInput(f"{option}: must end in {', '.join(endings[:-1])} or {endings[-1]}, got {str(path)!r}")
     if path.is_dir() or not path.parent.is_dir() or not os.access(path.parent, os.W_OK):
-        raise InvalidInput(f"output: {path} cannot be written: no such folder, or not writable")
+        raise InvalidInput(f"{option}: {path} cannot be written: no such folder, or not writable")
 
 
 def _arrays(motion: Motion) -> dict[str, Any]:
