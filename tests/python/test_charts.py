@@ -290,7 +290,7 @@ def charted(tmp_path_factory):
     said = []
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(sys.modules["polhode.charts.chart"], "candidates", three)
-        results, content = chart(["S5", TINY], folder, budget=12, peers=False, progress=lambda i, text: said.append(text))
+        results, content = chart(["S5", TINY], folder, budget=6.5, peers=False, progress=lambda i, text: said.append(text))
     return folder, results, content, said
 
 
@@ -349,12 +349,12 @@ def test_the_command_prints_tables_uncut(tmp_path, monkeypatch):
     from polhode.cli.app import app
 
     monkeypatch.setattr(sys.modules["polhode.charts.chart"], "candidates", three)
-    result = CliRunner().invoke(app, ["chart", "S5", "-o", str(tmp_path), "--budget", "6s", "--no-peers"])
+    result = CliRunner().invoke(app, ["chart", "S5", "-o", str(tmp_path), "--budget", "4s", "--no-peers"])
     assert result.exit_code == 0, result.output
     row = next(line for line in result.stdout.splitlines() if re.match(r"rk45 +1e-09", line))
     assert re.fullmatch(r"rk45 +1e-09 +\d\.\de-\d\d( +[\d.]+ (µs|ms)){3} +\d +[\d,]+ +[\d,]+ +\de-\d\d +\de-\d\d *", row)
     assert str(Path(tmp_path) / "overview.png") in result.stdout and "input rounding 2e-14" in result.stdout
-    content = CliRunner().invoke(app, ["chart", "S5", "-o", str(tmp_path), "--budget", "0.1min", "--no-peers", "--json"])
+    content = CliRunner().invoke(app, ["chart", "S5", "-o", str(tmp_path), "--budget", "0.06min", "--no-peers", "--json"])
     assert json.loads(content.stdout)["scenes"][0]["name"] == "S5"
 
 

@@ -61,7 +61,7 @@ def fixed(label: str) -> Callable[[Scene], Settings]:
     return lambda scene: ((label, 0.0),)
 
 
-def steps(scene: Scene, count: int = 13, factor: int = 2) -> Settings:
+def steps(scene: Scene, count: int = 11, factor: int = 2) -> Settings:
     """Fixed steps that land on the samples: their interval over 1, 2, 4, ..., from about a radian of turn on."""
     gaps = np.diff(np.concatenate([[scene.t0], scene.times]))
     gap = float(np.abs(gaps[gaps != 0]).min()) if gaps.any() else 1.0
