@@ -25,7 +25,7 @@ struct Itinerary {
 
 }  // namespace
 
-Motion run(const Scene& scene, const SolveOptions& options, const double* y0, Unpack unpack,
+Motion run(const Scene& scene, const SolveOptions& options, const double* y0, const Unpack& unpack,
            const MakeStepper& make_stepper) {
   Motion motion;
   const std::vector<double>& times = scene.times();
@@ -38,7 +38,7 @@ Motion run(const Scene& scene, const SolveOptions& options, const double* y0, Un
   motion.unpack = unpack;
   motion.has_dense = options.dense;
 
-  const auto to_state = [unpack](double t, const double* y) {
+  const auto to_state = [&unpack](double t, const double* y) {
     State state;
     double attitude[4] = {NAN, NAN, NAN, NAN};
     state.t = t;

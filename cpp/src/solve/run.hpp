@@ -14,12 +14,13 @@ struct RunOptions {
   ode::Tolerances tolerances;
 };
 
-using Unpack = void (*)(const double* y, double* omega, double* attitude);
+/// omega and the unit attitude of a state; outlives the run where the dense output is kept.
+using Unpack = std::function<void(const double* y, double* omega, double* attitude)>;
 /// A stepper from the start state towards t_end.
 using MakeStepper = std::function<std::unique_ptr<ode::Stepper>(const double* y0, double t_end)>;
 
 /// Both directions of time, samples, events and dense output into a Motion, whatever the method and the problem.
-Motion run(const Scene& scene, const SolveOptions& options, const double* y0, Unpack unpack,
+Motion run(const Scene& scene, const SolveOptions& options, const double* y0, const Unpack& unpack,
            const MakeStepper& make_stepper);
 
 }  // namespace polhode

@@ -11,8 +11,6 @@
 namespace polhode {
 namespace {
 
-constexpr double least_rtol = 4 * std::numeric_limits<double>::epsilon();
-
 void require_positive(const char* where, const std::optional<double>& value) {
   if (value && !(std::isfinite(*value) && *value > 0.0)) throw InvalidInput(where, "positive and finite", to_text(*value));
 }
@@ -70,8 +68,8 @@ Motion solve(const Scene& scene, const SolveOptions& options) {
   const double asked = !adaptive ? std::numeric_limits<double>::infinity()
                                  : (options.accuracy ? *options.accuracy : options.rtol.value_or(1e-9));
   double rtol = options.rtol ? *options.rtol : asked / 10;
-  const bool raised = rtol < least_rtol;
-  if (raised) rtol = least_rtol;
+  const bool raised = rtol < method.record.least_rtol;
+  if (raised) rtol = method.record.least_rtol;
   const RunOptions run_options{options, {rtol, options.atol.value_or(0.0), options.step.value_or(0.0)}};
 
   const auto begin = std::chrono::steady_clock::now();

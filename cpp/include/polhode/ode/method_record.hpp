@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string_view>
 
 namespace polhode::ode {
@@ -12,6 +13,8 @@ struct MethodRecord {
   int driven_order = 0;             ///< of the same when a torque acts; 0: the same
   int dense_order;                  ///< of the continuous extension
   bool adaptive;                    ///< chooses its own steps by rtol and atol; else step= is asked for
+  bool adaptive_order = false;      ///< chooses its order too, by the tolerance, up to `order`
+  double least_rtol = 4 * std::numeric_limits<double>::epsilon();   ///< a finer tolerance gains nothing in float64
   bool implicit = false;            ///< solves equations within a step: stable where rates are stiff
   bool cheap = false;               ///< a game engine's step, here to be compared with: never chosen by a plan
   std::string_view keeps;           ///< without torques, to rounding: "nothing" or some of "energy, |L|, L, L_z"

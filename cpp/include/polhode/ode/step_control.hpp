@@ -7,19 +7,24 @@
 
 namespace polhode::ode {
 
-/// x^y for 0 < x < infinity to 1e-3, which is plenty for a step size and a tenth of the price of std::pow: the exponent
-/// is exact, the mantissa's logarithm and the power of two are cubics.
-inline double rough_power(double x, double y) {
+/// log2(x) for 0 < x < infinity to 1e-3: the exponent is exact, the mantissa's logarithm a cubic.
+inline double rough_log2(double x) {
   const auto bits = std::bit_cast<std::uint64_t>(x);
   const double m = std::bit_cast<double>((bits & 0x000fffffffffffffu) | 0x3ff0000000000000u) - 1.0;
-  const double log2x = static_cast<double>(static_cast<int>(bits >> 52) - 1023) +
-                       m * (1.4249 + m * (-0.5797 + m * 0.1548));
-  const double p = std::clamp(y * log2x, -1000.0, 1000.0);
+  return static_cast<double>(static_cast<int>(bits >> 52) - 1023) + m * (1.4249 + m * (-0.5797 + m * 0.1548));
+}
+
+/// 2^x to 1e-3, for |x| <= 1000 and as there beyond.
+inline double rough_exp2(double x) {
+  const double p = std::clamp(x, -1000.0, 1000.0);
   const int whole = static_cast<int>(p + 1024.0) - 1024;   // floor, without a call
   const double f = p - whole;
   const double scale = std::bit_cast<double>(static_cast<std::uint64_t>(whole + 1023) << 52);
   return scale * (1.0 + f * (0.6951 + f * (0.2276 + f * 0.0773)));
 }
+
+/// x^y for 0 < x < infinity to 1e-3, which is plenty for a step size and a tenth of the price of std::pow.
+inline double rough_power(double x, double y) { return rough_exp2(y * rough_log2(x)); }
 
 /// The size of the next step from the error of the last: proportional-integral control, written once for every
 /// embedded pair. Gustafsson 1991, ACM TOMS 17, 533; constants as in Hairer & Wanner 1996, Solving ODEs II, (IV.2.43).

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <memory>
 #include <string>
@@ -46,7 +47,7 @@ struct Motion {
   ode::DenseOutput dense_forward, dense_backward;
   bool has_dense = false;
   std::shared_ptr<const ClosedForm> closed_form = nullptr;   ///< in place of dense output, where there is one
-  void (*unpack)(const double* y, double* omega, double* attitude) = nullptr;   ///< a dense state as omega and attitude
+  std::function<void(const double* y, double* omega, double* attitude)> unpack;   ///< a dense state as omega and attitude
   State start;
   double t_reached = 0.0;
   double t_begin = 0.0;                  ///< of a closed form's span

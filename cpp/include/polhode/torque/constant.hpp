@@ -16,6 +16,9 @@ class Constant {
   static Constant from_values(std::span<const TorqueValue> values);
   TorqueValues values() const;
 
+  const Vector3d& torque() const { return torque_; }
+  Frame frame() const { return frame_; }
+
   TorqueTraits traits() const {
     return {.uses_attitude = frame_ == Frame::space,
             .keeps_vertical = frame_ == Frame::space && torque_[2] == 0.0,

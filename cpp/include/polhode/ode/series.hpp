@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+
+#include "polhode/core/simd.hpp"
+#include "polhode/ode/step_control.hpp"
+
+namespace polhode::ode {
+
+/// Numbers of one row of a series: the k-th Taylor coefficients of up to eight components. Unused ones are zero.
+inline constexpr int series_width = 8;
+inline constexpr int most_series_order = 40;
+
+/// Evaluates a series at many points at once, compiled for one instruction set; avx2 and avx512 give the same bits.
+struct SeriesKernels {
+  /// out_i = rest + sum over k >= 1 of rows[k] s_i^k, n rows of eight: all but the value at s = 0.
+  void (*increments)(const double* rows, int order, const double* rest, const double* s, std::size_t n, double* out);
+};
+
+/// Those of simd_level(), decided once.
+const SeriesKernels& series_kernels();
+const SeriesKernels& series_kernels(SimdLevel level);
+
+}  // namespace polhode::ode

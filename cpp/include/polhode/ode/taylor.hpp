@@ -1,0 +1,189 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <limits>
+
+#include "polhode/math/double_double.hpp"
+#include "polhode/ode/method_record.hpp"
+#include "polhode/ode/problem.hpp"
+#include "polhode/ode/series.hpp"
+#include "polhode/ode/stepper.hpp"
+
+namespace polhode::ode {
+
+/// y' = f(t, y) whose solution's Taylor coefficients are known by recurrences. A state is `dimension` <= series_width
+/// numbers y and what rounding took from them, `carry`.
+template <class P>
+concept SeriesProblem = requires(const P& problem, math::DD t, double unit, const double* y, int order, double* out) {
+  { P::dimension } -> std::convertible_to<int>;
+  /// Rows 0..order of series_width numbers: the coefficients of y(t + unit s) in powers of s.
+  problem.compute_series(t, unit, y, y, order, out);
+  /// Sizes of a row's blocks: what has a unit of its own is measured by itself.
+  { P::blocks } -> std::convertible_to<int>;
+  problem.compute_sizes(y, out);
+  /// How many leading coefficients tell a block's size: more than one where a start at rest is nothing special.
+  { P::heads[0] } -> std::convertible_to<int>;
+  /// A time in which the solution changes; only its order of magnitude counts.
+  { problem.compute_time_scale(t, y) } -> std::convertible_to<double>;
+  problem.start_carry(out);
+  /// Brings state and carry back to what is known to hold; called after each step.
+  problem.correct(t, out, out);
+};
+
+/// The Taylor series of the solution itself. Order and step after Jorba & Zou 2005, Experimental Mathematics 14, 99,
+/// with the sizes in blocks; the sum is compensated from step to step (Kahan), in time too.
+struct Taylor {
+  static constexpr MethodRecord record{
+      .name = "taylor",
+      .order = most_series_order - 2,
+      .dense_order = most_series_order - 2,
+      .adaptive = true,
+      .adaptive_order = true,
+      .least_rtol = 1e-16,
+      .keeps = "nothing",
+      .needs = "torques of the library, not Custom",
+      .doc = "The Taylor series of the solution by recurrences, order and step by the tolerance: the one for tight accuracies.",
+      .source = "Jorba & Zou 2005, Exp. Math. 14, 99",
+  };
+  static constexpr int least_order = 4;
+
+  /// With n terms of equal price the cheapest order is -ln(tolerance), with a price that grows as n^2 half of it.
+  static int choose_order(double tolerance) {
+    const int order = static_cast<int>(std::ceil(1.0 - order_factor * std::log(tolerance)));
+    return std::clamp(order, least_order, most_series_order - 2);
+  }
+  static constexpr double order_factor = 0.5;
+
+  template <SeriesProblem P>
+  class Stepper;
+};
+
+template <SeriesProblem P>
+class Taylor::Stepper final : public ode::Stepper {
+  static constexpr int W = series_width;
+
+ public:
+  Stepper(const P& problem, double t0, const double* y0, double t_end, const Tolerances& tolerances)
+      : ode::Stepper(P::dimension, header + W * (choose_order(tolerances.rtol + tolerances.atol) + 1), &evaluate_segment, t0),
+        problem_(problem),
+        tolerances_(tolerances),
+        order_(choose_order(tolerances.rtol + tolerances.atol)),
+        time_(t0) {
+    std::copy_n(y0, P::dimension, y_);
+    problem.start_carry(carry_);
+    unit_ = power_of_two(std::min(problem.compute_time_scale(time_, y_), std::abs(t_end - t0)));
+  }
+
+  const double* y() const override { return y_; }
+
+  StepResult advance(double t_end) override {
+    const double rest = (t_end - time_.hi) - time_.lo;
+    double fraction = expand();
+    for (int attempt = 0; !(fraction > 0.0) && attempt < 8; ++attempt) {
+      unit_ *= 0x1p-16;
+      fraction = expand();
+    }
+    if (!(fraction > 0.0)) return StepResult::not_finite;
+    const bool last = fraction * unit_ * 1.01 >= std::abs(rest);
+    const double s = last ? rest / unit_ : std::copysign(fraction, rest), h = s * unit_;
+    if (!last && !(std::abs(h) > 8 * std::numeric_limits<double>::epsilon() * std::abs(time_.hi))) return StepResult::underflow;
+
+    std::copy_n(y_, W, y_old_);
+    std::copy_n(carry_, W, carry_old_);
+    double increment[W];
+    series_kernels().increments(rows_, order_, carry_, &s, 1, increment);
+    for (int i = 0; i < W; ++i) {
+      const math::DD sum = math::two_sum(y_[i], increment[i]);
+      y_[i] = sum.hi, carry_[i] = sum.lo;
+    }
+    time_old_ = time_;
+    unit_old_ = unit_;
+    time_ = last ? math::DD(t_end) : time_ + h;
+    problem_.correct(time_, y_, carry_);
+    t_old_ = time_old_.hi;
+    t_ = time_.hi;
+    // A step cut short by the end says little about the next one.
+    unit_ = power_of_two(fraction * unit_);
+    ++counts_.steps;
+    counts_.derivatives += order_;
+    return StepResult::accepted;
+  }
+
+  void interpolate(double t, double* out) override {
+    const double s = ((t - time_old_.hi) - time_old_.lo) / unit_old_;
+    double increment[W];
+    series_kernels().increments(rows_, order_, carry_old_, &s, 1, increment);
+    for (int i = 0; i < P::dimension; ++i) out[i] = y_old_[i] + increment[i];
+  }
+
+  const double* segment() override {
+    segment_[0] = order_;
+    segment_[1] = P::dimension;
+    segment_[2] = (t_ - t_old_) / unit_old_;
+    segment_[3] = -time_old_.lo / unit_old_;
+    std::copy_n(carry_old_, W, segment_.data() + W);
+    std::copy_n(y_old_, W, segment_.data() + header);
+    std::copy_n(rows_ + W, W * order_, segment_.data() + header + W);
+    return segment_.data();
+  }
+
+  static void evaluate_segment(const double* segment, double fraction, double* out) {
+    const double s = fraction * segment[2] + segment[3];
+    double increment[W];
+    series_kernels().increments(segment + header, static_cast<int>(segment[0]), segment + W, &s, 1, increment);
+    for (int i = 0; i < static_cast<int>(segment[1]); ++i) out[i] = segment[header + i] + increment[i];
+  }
+
+ private:
+  static constexpr int header = 2 * W;
+
+  /// The power of two below; in this unit of time the coefficients neither overflow nor underflow.
+  static double power_of_two(double t) { return math::power_of_two_below(std::clamp(t, 0x1p-900, 0x1p900)); }
+
+  /// The series, and how much of `unit_` it may be used for: for each block the radius of convergence as its last two
+  /// coefficients show it, and of that the part which leaves a remainder of the tolerance. Infinite when the last
+  /// coefficients vanish, not a number when the series is none.
+  double expand() {
+    problem_.compute_series(time_, unit_, y_, carry_, order_, rows_);
+    double size[5][P::blocks];
+    const int row[5] = {0, 1, 2, order_ - 1, order_};
+    bool finite = true;
+    for (int k = 0; k < 5; ++k) {
+      problem_.compute_sizes(rows_ + W * row[k], size[k]);
+      for (int b = 0; b < P::blocks; ++b) finite = finite && size[k][b] < std::numeric_limits<double>::infinity();
+    }
+    if (!finite) return std::numeric_limits<double>::quiet_NaN();
+    double least = std::numeric_limits<double>::infinity();
+    for (int b = 0; b < P::blocks; ++b) {
+      double head[3];
+      for (int j = 0; j < P::heads[b]; ++j) head[j] = size[j][b] > 0.0 ? rough_log2(size[j][b]) : -1e4;
+      // rtol size + atol, as a part of the size
+      const double tolerance = tolerances_.atol == 0.0 || !(size[0][b] > 0.0) ? tolerances_.rtol
+                                                                              : tolerances_.rtol + tolerances_.atol / size[0][b];
+      const double part = (rough_log2(tolerance) - 1.01) / (order_ - 1);
+      for (int m = order_ - 1; m <= order_; ++m) {
+        const double tail = size[3 + m - (order_ - 1)][b];
+        if (!(tail > 0.0)) continue;
+        const double log_tail = rough_log2(tail);
+        double radius = -std::numeric_limits<double>::infinity();
+        for (int j = 0; j < P::heads[b]; ++j) radius = std::max(radius, (head[j] - log_tail) / (m - j));
+        least = std::min(least, radius + std::min(part, 0.0));
+      }
+    }
+    return least > 1000.0 ? std::numeric_limits<double>::infinity() : rough_exp2(least);
+  }
+
+  const P& problem_;
+  Tolerances tolerances_;
+  int order_;
+  math::DD time_, time_old_;
+  double unit_ = 1.0, unit_old_ = 1.0;
+  alignas(64) double y_[W] = {}, carry_[W] = {}, y_old_[W] = {}, carry_old_[W] = {};
+  alignas(64) double rows_[W * (most_series_order + 1)] = {};
+  std::array<double, header + W * (most_series_order + 1)> segment_ = {};
+};
+
+}  // namespace polhode::ode

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "polhode/math/double_double.hpp"
+#include "polhode/scene/scene.hpp"
+#include "polhode/solve/series_terms.hpp"
+
+namespace polhode {
+
+struct SeriesStart;
+
+/// Why a scene's motion has no Taylor recurrences, or "" when it has.
+std::string compute_series_refusal(const Scene& scene);
+
+/// A body and its torques as a ode::SeriesProblem, in its principal axes P. State: the rate variables (r0, r1, r2, 0)
+/// and, as the scene needs, the quaternion q_WP, a vector fixed in space seen from the body, or nothing.
+class BodySeries {
+ public:
+  static constexpr int dimension = 8;
+  static constexpr int blocks = 2;
+  static constexpr int heads[blocks] = {3, 1};
+
+  /// @param attitude  whether the quaternion is wanted even if no torque sees it
+  BodySeries(const Scene& scene, bool attitude);
+
+  bool has_attitude() const { return attitude_; }
+  const SeriesTerms& terms() const { return terms_; }
+  const double* start() const { return start_; }
+  std::string describe_state() const;   ///< what is carried, for the plan
+
+  /// w_B and, where it is carried, q_WB.
+  void unpack(const double* y, double* omega, double* attitude) const;
+
+  void compute_series(math::DD t, double unit, const double* y, const double* carry, int order, double* rows) const;
+  void compute_sizes(const double* row, double* sizes) const;
+  double compute_time_scale(math::DD t, const double* y) const;
+  void start_carry(double* carry) const;
+  void correct(math::DD t, double* y, double* carry) const;
+
+ private:
+  void choose_variables(const Vector3d& omega_P);
+  void add_torques(const Scene& scene);
+  void set_column(double* column, const Vector3d& torque_P) const;   ///< torque over inertia, in the rate variables
+  void compute_rates(const double* r, double* omega_P) const;
+
+  Matrix3d R_BP_ = Matrix3d::Identity();
+  Quat q_PB_ = {};
+  bool turned_ = false, attitude_ = true;
+  Vector3d I_ = Vector3d::Zero();
+  double k_ = 0.0;
+  SeriesTerms terms_;
+  double start_[8] = {}, start_carry_[8] = {};
+  Vector3d space_[2] = {};                 ///< the fixed vectors, space axes
+  double orbit_rate_ = 0.0, orbit_phase_ = 0.0;
+  void (*kernel_)(const SeriesTerms&, const SeriesStart&, int, double*) = nullptr;
+};
+
+}  // namespace polhode

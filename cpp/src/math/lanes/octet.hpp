@@ -1,0 +1,117 @@
+#pragma once
+
+#include "polhode/math/number.hpp"
+
+#if defined(__AVX2__)
+#include <immintrin.h>
+#endif
+
+// Four and eight doubles that belong to one body: its components side by side, for whatever the file is built for.
+// POLHODE_ISA names the namespace. Sums run in one order at every level, so that avx2 and avx512 give the same bits.
+namespace polhode::POLHODE_ISA {
+
+#if defined(__AVX2__)
+
+struct Quad {
+  __m256d v;
+};
+POLHODE_INLINE Quad load4(const double* p) { return {_mm256_loadu_pd(p)}; }
+POLHODE_INLINE void store4(double* p, Quad a) { _mm256_storeu_pd(p, a.v); }
+POLHODE_INLINE Quad all4(double a) { return {_mm256_set1_pd(a)}; }
+POLHODE_INLINE Quad set4(double a, double b, double c, double d) { return {_mm256_setr_pd(a, b, c, d)}; }
+POLHODE_INLINE Quad operator+(Quad a, Quad b) { return {_mm256_add_pd(a.v, b.v)}; }
+POLHODE_INLINE Quad operator-(Quad a, Quad b) { return {_mm256_sub_pd(a.v, b.v)}; }
+POLHODE_INLINE Quad operator*(Quad a, Quad b) { return {_mm256_mul_pd(a.v, b.v)}; }
+POLHODE_INLINE Quad operator/(Quad a, Quad b) { return {_mm256_div_pd(a.v, b.v)}; }
+POLHODE_INLINE Quad operator^(Quad a, Quad signs) { return {_mm256_xor_pd(a.v, signs.v)}; }
+POLHODE_INLINE Quad madd(Quad a, Quad b, Quad c) { return {_mm256_fmadd_pd(a.v, b.v, c.v)}; }
+template <int a, int b, int c, int d>
+POLHODE_INLINE Quad permute(Quad q) {
+  return {_mm256_permute4x64_pd(q.v, a | b << 2 | c << 4 | d << 6)};
+}
+/// Lanes of `b` where the bit of `mask` is set, else of `a`.
+template <int mask>
+POLHODE_INLINE Quad blend(Quad a, Quad b) {
+  return {_mm256_blend_pd(a.v, b.v, mask)};
+}
+
+#else
+
+struct Quad {
+  double v[4];
+};
+POLHODE_INLINE Quad load4(const double* p) { return {{p[0], p[1], p[2], p[3]}}; }
+POLHODE_INLINE void store4(double* p, Quad a) {
+  for (int i = 0; i < 4; ++i) p[i] = a.v[i];
+}
+POLHODE_INLINE Quad all4(double a) { return {{a, a, a, a}}; }
+POLHODE_INLINE Quad set4(double a, double b, double c, double d) { return {{a, b, c, d}}; }
+#define POLHODE_EACH(name, expression)                 \
+  POLHODE_INLINE Quad name(Quad a, Quad b) {           \
+    Quad r;                                            \
+    for (int i = 0; i < 4; ++i) r.v[i] = expression;   \
+    return r;                                          \
+  }
+POLHODE_EACH(operator+, a.v[i] + b.v[i])
+POLHODE_EACH(operator-, a.v[i] - b.v[i])
+POLHODE_EACH(operator*, a.v[i] * b.v[i])
+POLHODE_EACH(operator/, a.v[i] / b.v[i])
+POLHODE_EACH(operator^, __builtin_signbit(b.v[i]) ? -a.v[i] : a.v[i])
+#undef POLHODE_EACH
+POLHODE_INLINE Quad madd(Quad a, Quad b, Quad c) { return a * b + c; }
+template <int a, int b, int c, int d>
+POLHODE_INLINE Quad permute(Quad q) {
+  return {{q.v[a], q.v[b], q.v[c], q.v[d]}};
+}
+template <int mask>
+POLHODE_INLINE Quad blend(Quad a, Quad b) {
+  Quad r;
+  for (int i = 0; i < 4; ++i) r.v[i] = (mask >> i & 1) != 0 ? b.v[i] : a.v[i];
+  return r;
+}
+
+#endif
+
+#if defined(__AVX512DQ__)
+
+struct Octet {
+  __m512d v;
+};
+POLHODE_INLINE Octet load8(const double* p) { return {_mm512_loadu_pd(p)}; }
+POLHODE_INLINE void store8(double* p, Octet a) { _mm512_storeu_pd(p, a.v); }
+POLHODE_INLINE Octet all8(double a) { return {_mm512_set1_pd(a)}; }
+POLHODE_INLINE Octet operator+(Octet a, Octet b) { return {_mm512_add_pd(a.v, b.v)}; }
+POLHODE_INLINE Octet operator*(Octet a, Octet b) { return {_mm512_mul_pd(a.v, b.v)}; }
+POLHODE_INLINE Octet operator^(Octet a, Octet signs) { return {_mm512_xor_pd(a.v, signs.v)}; }
+POLHODE_INLINE Octet madd(Octet a, Octet b, Octet c) { return {_mm512_fmadd_pd(a.v, b.v, c.v)}; }
+POLHODE_INLINE Quad low(Octet a) { return {_mm512_castpd512_pd256(a.v)}; }
+POLHODE_INLINE Quad high(Octet a) { return {_mm512_extractf64x4_pd(a.v, 1)}; }
+POLHODE_INLINE Octet join(Quad a, Quad b) { return {_mm512_insertf64x4(_mm512_castpd256_pd512(a.v), b.v, 1)}; }
+template <int a, int b, int c, int d, int e, int f, int g, int h>
+POLHODE_INLINE Octet spread(Quad q) {
+  return {_mm512_permutexvar_pd(_mm512_setr_epi64(a, b, c, d, e, f, g, h), _mm512_castpd256_pd512(q.v))};
+}
+
+#else
+
+struct Octet {
+  Quad a, b;
+};
+POLHODE_INLINE Octet load8(const double* p) { return {load4(p), load4(p + 4)}; }
+POLHODE_INLINE void store8(double* p, Octet o) { store4(p, o.a), store4(p + 4, o.b); }
+POLHODE_INLINE Octet all8(double a) { return {all4(a), all4(a)}; }
+POLHODE_INLINE Octet operator+(Octet a, Octet b) { return {a.a + b.a, a.b + b.b}; }
+POLHODE_INLINE Octet operator*(Octet a, Octet b) { return {a.a * b.a, a.b * b.b}; }
+POLHODE_INLINE Octet operator^(Octet a, Octet signs) { return {a.a ^ signs.a, a.b ^ signs.b}; }
+POLHODE_INLINE Octet madd(Octet a, Octet b, Octet c) { return {madd(a.a, b.a, c.a), madd(a.b, b.b, c.b)}; }
+POLHODE_INLINE Quad low(Octet o) { return o.a; }
+POLHODE_INLINE Quad high(Octet o) { return o.b; }
+POLHODE_INLINE Octet join(Quad a, Quad b) { return {a, b}; }
+template <int a, int b, int c, int d, int e, int f, int g, int h>
+POLHODE_INLINE Octet spread(Quad q) {
+  return {permute<a, b, c, d>(q), permute<e, f, g, h>(q)};
+}
+
+#endif
+
+}  // namespace polhode::POLHODE_ISA

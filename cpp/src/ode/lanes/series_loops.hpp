@@ -1,0 +1,40 @@
+#pragma once
+
+#include "math/lanes/octet.hpp"
+#include "polhode/ode/series.hpp"
+
+namespace polhode::POLHODE_ISA {
+
+/// The even and the odd powers each by Horner's rule in s^2: half as long to wait as one chain, and the first term,
+/// which decides the rounding, is added last.
+template <int points>
+POLHODE_INLINE void evaluate_points(const double* rows, int order, Octet rest, const double* s, double* out) {
+  constexpr int W = ode::series_width;
+  Octet even[points], odd[points], s2[points];
+  const int last_odd = (order - 1) / 2 * 2 + 1, last_even = order / 2 * 2;
+  for (int p = 0; p < points; ++p) {
+    s2[p] = all8(s[p] * s[p]);
+    odd[p] = load8(rows + W * last_odd);
+    even[p] = last_even >= 2 ? load8(rows + W * last_even) : all8(0.0);
+  }
+  for (int k = last_odd - 2; k >= 1; k -= 2) {
+    const Octet row = load8(rows + W * k);
+    for (int p = 0; p < points; ++p) odd[p] = madd(odd[p], s2[p], row);
+  }
+  for (int k = last_even - 2; k >= 2; k -= 2) {
+    const Octet row = load8(rows + W * k);
+    for (int p = 0; p < points; ++p) even[p] = madd(even[p], s2[p], row);
+  }
+  for (int p = 0; p < points; ++p) store8(out + W * p, madd(odd[p], all8(s[p]), madd(even[p], s2[p], rest)));
+}
+
+void increments(const double* rows, int order, const double* rest, const double* s, std::size_t n, double* out) {
+  const Octet constant = load8(rest);
+  std::size_t i = 0;
+  for (; i + 4 <= n; i += 4) evaluate_points<4>(rows, order, constant, s + i, out + ode::series_width * i);
+  for (; i < n; ++i) evaluate_points<1>(rows, order, constant, s + i, out + ode::series_width * i);
+}
+
+constexpr ode::SeriesKernels series_kernels{&increments};
+
+}  // namespace polhode::POLHODE_ISA

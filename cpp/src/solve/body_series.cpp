@@ -1,0 +1,256 @@
+#include "polhode/solve/body_series.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "polhode/attitude/matrix.hpp"
+#include "polhode/core/simd.hpp"
+#include "solve/lanes/levels.hpp"
+
+namespace polhode {
+namespace {
+
+using math::DD;
+
+/// How k, which tells how the separatrix lies, may differ from 1: far from 1 the two variables of one size mix rates
+/// of two, which pays only where the motion stays near the separatrix.
+constexpr double widest_k = 8.0;
+
+/// Components in the body of a unit quaternion's rows of R: R^T e_x, R^T e_y or R^T e_z.
+Vector3d to_body(const double* q, const Vector3d& v_W) { return rotate({-q[0], -q[1], -q[2], q[3]}, v_W); }
+
+}  // namespace
+
+std::string compute_series_refusal(const Scene& scene) {
+  const torques::GravityGradient* first = nullptr;
+  for (const AnyTorque& torque : scene.torques()) {
+    if (std::holds_alternative<torques::Custom>(torque)) {
+      return "a Custom torque, whose derivatives are not known: dop853 and rk45 take it";
+    }
+    if (const auto* gradient = std::get_if<torques::GravityGradient>(&torque)) {
+      if (first != nullptr && (gradient->mean_motion() != first->mean_motion() || gradient->phase() != first->phase())) {
+        return "gravity gradients of two orbits: dop853 and rk45 take them";
+      }
+      first = gradient;
+    }
+  }
+  return "";
+}
+
+BodySeries::BodySeries(const Scene& scene, bool attitude) {
+  const InertiaTensor& inertia = scene.inertia_B();
+  const Quat& q_WB = scene.attitude();
+  Vector3d omega_P = scene.omega();
+  I_ = inertia.moments();
+  const bool triaxial = I_[0] < I_[1] && I_[1] < I_[2];
+  turned_ = !inertia.is_diagonal() || triaxial;
+  if (turned_) {
+    R_BP_ = inertia.axes();
+    turned_ = R_BP_ != Matrix3d::Identity();
+  } else {
+    I_ = inertia.matrix().diagonal();
+  }
+  Quat q_WP = q_WB;
+  if (turned_) {
+    const Quat q_BP = quat_from_matrix(R_BP_, "inertia.axes");
+    q_PB_ = conjugate(q_BP);
+    q_WP = q_WB * q_BP;
+    omega_P = R_BP_.transpose() * scene.omega();
+  }
+  if (triaxial) choose_variables(omega_P);
+  if (terms_.variables == RateVariables::plain) {
+    for (int i = 0; i < 3; ++i) {
+      const DD product = math::two_diff(I_[(i + 1) % 3], I_[(i + 2) % 3]) / DD(I_[i]);
+      terms_.product[i] = product.hi, terms_.product_low[i] = product.lo;
+      start_[i] = omega_P[i];
+    }
+  }
+  add_torques(scene);
+  attitude_ = attitude || terms_.gradient || terms_.fixed_vectors > 1;
+  if (attitude_) {
+    start_[4] = q_WP.x, start_[5] = q_WP.y, start_[6] = q_WP.z, start_[7] = q_WP.w;
+  } else if (terms_.fixed_vectors == 1) {
+    const Vector3d seen = rotate(conjugate(q_WP), space_[0]);
+    for (int i = 0; i < 3; ++i) start_[4 + i] = seen[i];
+  }
+  kernel_ = find_series_kernel(terms_, attitude_);
+}
+
+void BodySeries::choose_variables(const Vector3d& w) {
+  // Lengths of 1e-120 and 1e120 kg m^2 must not underflow in products of two.
+  const double scale = math::power_of_two_below(I_[2]);
+  const DD I1 = I_[0] / scale, I2 = I_[1] / scale, I3 = I_[2] / scale;
+  const DD lower = I2 - I1, upper = I3 - I2;
+  const DD k = math::sqrt((I1 * lower) / (I3 * upper));
+  const DD kw = k * DD(w[0]), u = DD(w[2]) - kw, v = DD(w[2]) + kw;
+  if (!(k.hi > 1.0 / widest_k && k.hi < widest_k)) {
+    // Far from the separatrix the plain rates do better; 1 there where |w3| or |k w1| is the larger by far.
+    const double size = w.squaredNorm(), near = std::min(k.hi, 1.0 / k.hi);
+    if (!(std::abs(u.hi * v.hi) < near * near * size)) return;
+  }
+  k_ = k.hi;
+  terms_.variables = RateVariables::separatrix;
+  const DD half_over_k = DD(0.5) / k;
+  terms_.to_rates[0] = half_over_k.hi, terms_.to_rates[1] = 1.0, terms_.to_rates[2] = 0.5;
+  const DD rate = math::sqrt((lower * upper) / (I1 * I3));
+  // w1 comes out with 1/2k rounded; the product takes that back.
+  const DD middle = (I3 - I1) / I2 * (half_over_k / DD(half_over_k.hi));
+  const DD product[3] = {rate, -rate, middle};
+  for (int i = 0; i < 3; ++i) terms_.product[i] = product[i].hi, terms_.product_low[i] = product[i].lo;
+  start_[0] = u.hi, start_[1] = v.hi, start_[2] = w[1];
+  start_carry_[0] = u.lo, start_carry_[1] = v.lo;
+}
+
+void BodySeries::set_column(double* column, const Vector3d& torque_P) const {
+  const double a[3] = {torque_P[0] / I_[0], torque_P[1] / I_[1], torque_P[2] / I_[2]};
+  if (terms_.variables == RateVariables::plain) {
+    for (int i = 0; i < 3; ++i) column[i] += a[i];
+  } else {
+    column[0] += a[2] - k_ * a[0], column[1] += a[2] + k_ * a[0], column[2] += a[1];
+  }
+}
+
+void BodySeries::add_torques(const Scene& scene) {
+  const Matrix3d R_PB = R_BP_.transpose();
+  Vector3d moment = Vector3d::Zero(), space = Vector3d::Zero();
+  int gradients = 0;
+  for (const AnyTorque& torque : scene.torques()) {
+    if (const auto* constant = std::get_if<torques::Constant>(&torque)) {
+      if (constant->frame() == torques::Constant::Frame::space) {
+        space += constant->torque();
+      } else {
+        set_column(terms_.torque, R_PB * constant->torque());
+      }
+    } else if (const auto* gravity = std::get_if<torques::Gravity>(&torque)) {
+      moment += gravity->weight() * gravity->arm();
+    } else if (const auto* damping = std::get_if<torques::Damping>(&torque)) {
+      const Matrix3d C_P = R_PB * damping->matrix() * R_BP_;
+      for (int j = 0; j < 3; ++j) set_column(terms_.damping[j], -C_P.col(j));
+      terms_.damped = true;
+    } else if (const auto* gradient = std::get_if<torques::GravityGradient>(&torque)) {
+      ++gradients;
+      orbit_rate_ = gradient->mean_motion(), orbit_phase_ = gradient->phase();
+    }
+  }
+  // Gravity pulls with -moment x (R^T e_z), a space torque with R^T tau: linear in one vector each.
+  const Vector3d moment_P = R_PB * moment;
+  if (moment_P != Vector3d::Zero()) {
+    space_[terms_.fixed_vectors] = {0, 0, 1};
+    for (int j = 0; j < 3; ++j) set_column(terms_.pull[terms_.fixed_vectors][j], -moment_P.cross(Vector3d::Unit(j)));
+    ++terms_.fixed_vectors;
+  }
+  if (const double size = space.cwiseAbs().maxCoeff(); size > 0.0) {
+    space_[terms_.fixed_vectors] = space / size;
+    for (int j = 0; j < 3; ++j) set_column(terms_.pull[terms_.fixed_vectors][j], size * Vector3d::Unit(j));
+    ++terms_.fixed_vectors;
+  }
+  if (gradients > 0) {
+    terms_.gradient = true;
+    terms_.orbit_rate = orbit_rate_;
+    const double strength = 3.0 * gradients * orbit_rate_ * orbit_rate_;
+    double a[3];
+    for (int i = 0; i < 3; ++i) a[i] = strength * ((I_[(i + 2) % 3] - I_[(i + 1) % 3]) / I_[i]);
+    double *first = terms_.tidal[0], *second = terms_.tidal[1];
+    if (terms_.variables == RateVariables::plain) {
+      std::copy_n(a, 3, first);
+    } else {
+      first[0] = first[1] = a[2], first[2] = a[1];
+      second[0] = -k_ * a[0], second[1] = k_ * a[0];
+    }
+  }
+}
+
+std::string BodySeries::describe_state() const {
+  std::string state = terms_.variables == RateVariables::plain ? "omega" : "separatrix variables";
+  if (attitude_) return state + ", attitude";
+  return terms_.fixed_vectors == 1 ? state + ", vertical" : state;
+}
+
+void BodySeries::compute_rates(const double* r, double* w) const {
+  if (terms_.variables == RateVariables::plain) {
+    std::copy_n(r, 3, w);
+  } else {
+    w[0] = (r[1] - r[0]) * terms_.to_rates[0], w[1] = r[2], w[2] = (r[0] + r[1]) * 0.5;
+  }
+}
+
+void BodySeries::unpack(const double* y, double* omega, double* attitude) const {
+  double w[3];
+  compute_rates(y, turned_ ? w : omega);
+  if (turned_) {
+    for (int i = 0; i < 3; ++i) omega[i] = R_BP_(i, 0) * w[0] + R_BP_(i, 1) * w[1] + R_BP_(i, 2) * w[2];
+  }
+  if (!attitude_) return;
+  const double n = y[4] * y[4] + y[5] * y[5] + y[6] * y[6] + y[7] * y[7];
+  const double s = std::abs(n - 1.0) < 1e-8 ? 1.5 - 0.5 * n : 1.0 / std::sqrt(n);
+  Quat q{s * y[4], s * y[5], s * y[6], s * y[7]};
+  if (turned_) q = q * q_PB_;
+  attitude[0] = q.x, attitude[1] = q.y, attitude[2] = q.z, attitude[3] = q.w;
+}
+
+void BodySeries::compute_series(DD t, double unit, const double* y, const double*, int order, double* rows) const {
+  alignas(64) double vectors[16] = {};
+  int n = 0;
+  if (!attitude_) {
+    std::copy_n(y + 4, 3, vectors);
+  } else {
+    for (; n < terms_.fixed_vectors; ++n) {
+      const Vector3d seen = to_body(y + 4, space_[n]);
+      std::copy_n(seen.data(), 3, vectors + 4 * n);
+    }
+  }
+  if (terms_.gradient) {
+    // n t without its rounding: the angle's own error would grow with the number of orbits.
+    const DD product = math::two_prod(orbit_rate_, t.hi), angle = math::two_sum(product.hi, orbit_phase_);
+    const double low = angle.lo + product.lo + orbit_rate_ * t.lo;
+    const double s0 = std::sin(angle.hi), c0 = std::cos(angle.hi), s = s0 + c0 * low, c = c0 - s0 * low;
+    const Vector3d radius = to_body(y + 4, {c, s, 0}), tangent = to_body(y + 4, {-s, c, 0});
+    std::copy_n(radius.data(), 3, vectors + 4 * n);
+    std::copy_n(tangent.data(), 3, vectors + 4 * (n + 1));
+  }
+  kernel_(terms_, {y, vectors, unit}, order, rows);
+}
+
+void BodySeries::compute_sizes(const double* row, double* sizes) const {
+  double w[3];
+  compute_rates(row, w);
+  const auto largest = [](double a, double b, double c) { return std::max({std::abs(a), std::abs(b), std::abs(c)}); };
+  // A sum as well, since a comparison lets what is not a number pass.
+  sizes[0] = largest(w[0], w[1], w[2]) + 0.0 * (w[0] + w[1] + w[2]);
+  sizes[1] = std::max(largest(row[4], row[5], row[6]), std::abs(row[7])) + 0.0 * (row[4] + row[5] + row[6] + row[7]);
+}
+
+double BodySeries::compute_time_scale(DD, const double* y) const {
+  double rate = std::max({std::abs(y[0]), std::abs(y[1]), std::abs(y[2]), orbit_rate_});
+  const auto grow = [&](const double* column, bool root) {
+    for (int i = 0; i < 3; ++i) rate = std::max(rate, root ? std::sqrt(std::abs(column[i])) : std::abs(column[i]));
+  };
+  grow(terms_.torque, true);
+  for (const auto& column : terms_.damping) grow(column, false);
+  for (const auto& vector : terms_.pull)
+    for (const auto& column : vector) grow(column, true);
+  for (const auto& column : terms_.tidal) grow(column, true);
+  return rate > 0.0 ? 1.0 / rate : 0x1p900;
+}
+
+void BodySeries::start_carry(double* carry) const { std::copy_n(start_carry_, 8, carry); }
+
+void BodySeries::correct(DD, double* y, double* carry) const {
+  if (!attitude_) return;
+  // |q| = 1, put into the carry: that leaves the direction of q with its extra digits.
+  double norm = 0.0, cross = 0.0;
+  for (int i = 4; i < 8; ++i) norm += y[i] * y[i], cross += y[i] * carry[i];
+  const double lack = 0.5 * (1.0 - norm) - cross;
+  for (int i = 4; i < 8; ++i) carry[i] += lack * y[i];
+}
+
+SeriesKernel find_series_kernel(const SeriesTerms& terms, bool attitude) {
+  SeriesKernel found = nullptr;
+  const SimdLevel level = simd_level();
+  if (level == SimdLevel::avx512) found = avx512_series_kernel(terms, attitude);
+  if (found == nullptr && level != SimdLevel::baseline) found = avx2_series_kernel(terms, attitude);
+  return found != nullptr ? found : baseline_series_kernel(terms, attitude);
+}
+
+}  // namespace polhode

@@ -1,0 +1,8 @@
+// For any processor.
+#define POLHODE_ISA isa_baseline
+#include "solve/lanes/levels.hpp"
+#include "solve/lanes/series_loops.hpp"
+
+namespace polhode {
+SeriesKernel baseline_series_kernel(const SeriesTerms& terms, bool attitude) { return POLHODE_ISA::choose(terms, attitude); }
+}  // namespace polhode
