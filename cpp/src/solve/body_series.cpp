@@ -146,6 +146,7 @@ void BodySeries::add_torques(const Scene& scene) {
     ++terms_.fixed_vectors;
   }
   if (gradients > 0) {
+    if (terms_.fixed_vectors == 1) terms_.fixed_vectors = 2;   // beside an orbit the kernels know none or two
     terms_.gradient = true;
     terms_.orbit_rate = orbit_rate_;
     const double strength = 3.0 * gradients * orbit_rate_ * orbit_rate_;

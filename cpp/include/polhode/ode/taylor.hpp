@@ -158,8 +158,11 @@ class Taylor::Stepper final : public ode::Stepper {
     if (!finite) return std::numeric_limits<double>::quiet_NaN();
     double least = std::numeric_limits<double>::infinity();
     for (int b = 0; b < P::blocks; ++b) {
-      double head[3];
-      for (int j = 0; j < P::heads[b]; ++j) head[j] = size[j][b] > 0.0 ? rough_log2(size[j][b]) : -1e4;
+      double head[3], largest = 0.0;
+      for (int j = 0; j < P::heads[b]; ++j) largest = std::max(largest, size[j][b]);
+      if (!(largest > 0.0)) largest = std::max(size[3][b], size[4][b]);
+      const double scale = 1.0 / math::power_of_two_below(largest);   // logarithms of ratios: no unit has a say
+      for (int j = 0; j < P::heads[b]; ++j) head[j] = size[j][b] > 0.0 ? rough_log2(scale * size[j][b]) : -1e4;
       // rtol size + atol, as a part of the size
       const double tolerance = tolerances_.atol == 0.0 || !(size[0][b] > 0.0) ? tolerances_.rtol
                                                                               : tolerances_.rtol + tolerances_.atol / size[0][b];
@@ -167,7 +170,7 @@ class Taylor::Stepper final : public ode::Stepper {
       for (int m = order_ - 1; m <= order_; ++m) {
         const double tail = size[3 + m - (order_ - 1)][b];
         if (!(tail > 0.0)) continue;
-        const double log_tail = rough_log2(tail);
+        const double log_tail = rough_log2(scale * tail);
         double radius = -std::numeric_limits<double>::infinity();
         for (int j = 0; j < P::heads[b]; ++j) radius = std::max(radius, (head[j] - log_tail) / (m - j));
         least = std::min(least, radius + std::min(part, 0.0));

@@ -52,7 +52,7 @@ class BodySeries {
   double k_ = 0.0;
   SeriesTerms terms_;
   double start_[8] = {}, start_carry_[8] = {};
-  Vector3d space_[2] = {};                 ///< the fixed vectors, space axes
+  Vector3d space_[2] = {Vector3d::Zero(), Vector3d::Zero()};   ///< the fixed vectors, space axes
   double orbit_rate_ = 0.0, orbit_phase_ = 0.0;
   void (*kernel_)(const SeriesTerms&, const SeriesStart&, int, double*) = nullptr;
 };
