@@ -40,9 +40,8 @@ double check_body(const FreeMotionBatch& b, std::size_t body) {
   return std::max({std::abs(w[0]), std::abs(w[1]), std::abs(w[2])});
 }
 
-void check_times(const double* t, std::size_t n, double speed, std::size_t body) {
-  const double most = 1e25 / speed;
-  if (within(t, n, most < 1e308 ? most : 1e308)) return;
+void check_times(const double* t, std::size_t n, double reach, double speed, std::size_t body) {
+  if (reach * speed <= 1e25) return;
   double longest = 0.0;
   for (std::size_t i = 0; i < n; ++i) longest = std::abs(t[i]) > longest && !std::isinf(t[i]) ? std::abs(t[i]) : longest;
   if (longest * speed > 1e25) {
@@ -54,7 +53,8 @@ void check_times(const double* t, std::size_t n, double speed, std::size_t body)
 /// One run of bodies, on one thread.
 class Run {
  public:
-  Run(const FreeMotionBatch& batch, double* omega, double* attitude) : b_(batch), rows_{batch.t, batch.times, batch.own_times, omega, attitude} {}
+  Run(const FreeMotionBatch& batch, const exact::TimeGrid& shared, double reach, double* omega, double* attitude)
+      : b_(batch), rows_{batch.t, batch.times, batch.own_times ? nullptr : &shared, !batch.own_times && std::isfinite(reach), omega, attitude}, reach_(reach) {}
 
   /// Bodies [first, last); returns how many rows are poisoned.
   std::size_t operator()(std::size_t first, std::size_t last) {
@@ -72,7 +72,8 @@ class Run {
       const std::size_t body = begin + i;
       sound[i] = finite(b_.moments + 3 * body, 3) && finite(b_.omega + 3 * body, 3) && finite(b_.attitude + 4 * body, 4);
       if (!sound[i]) continue;
-      check_times(rows_.times_of(body), b_.times, check_body(b_, body), body);
+      const double* t = rows_.times_of(body);
+      check_times(t, b_.times, b_.own_times ? kernels.times.reach(t, b_.times) : reach_, check_body(b_, body), body);
     }
     const exact::FreeStarts starts{b_.moments + 3 * begin, b_.omega + 3 * begin, b_.attitude + 4 * begin};
     std::size_t left[block], remaining = 0;
@@ -92,10 +93,10 @@ class Run {
         poisoned += rows_.poison(body, 0, b_.times);
       } else if (by_itself) {
         const FreeMotion motion = single(body);
-        poisoned += rows_.each_run(body, [&](const double* t, std::size_t count, double* w, double* q) { motion.at(t, count, w, q); });
+        poisoned += rows_.each_run(body, [&](const exact::TimeGrid& t, double* w, double* q) { motion.at(t, w, q); });
       } else {
-        poisoned += rows_.each_run(body, [&](const double* t, std::size_t count, double* w, double* q) {
-          if (!once) kernels.trig(trig_[i], frames_[i], t, count, w, q);
+        poisoned += rows_.each_run(body, [&](const exact::TimeGrid& t, double* w, double* q) {
+          if (!once) kernels.trig(trig_[i], frames_[i], t, w, q);
         });
       }
     }
@@ -109,28 +110,37 @@ class Run {
 
   const FreeMotionBatch& b_;
   Rows rows_;
+  double reach_;
   std::vector<exact::FreeTrig<double>> trig_;
   std::vector<exact::FreeFrame> frames_;
 };
 
 }  // namespace
 
-std::size_t free_motion(const FreeMotionBatch& batch, double* omega, double* attitude, int threads) {
-  if (batch.bodies == 0 || batch.times == 0) return 0;
+std::size_t free_motion(const FreeMotionBatch& given, double* omega, double* attitude, int threads) {
+  if (given.bodies == 0 || given.times == 0) return 0;
+  FreeMotionBatch batch = given;
+  batch.own_times = given.own_times && given.bodies > 1;  // one body's are those of all
   std::atomic<std::size_t> poisoned{0};
   const std::size_t states = batch.bodies * batch.times;
+  const std::size_t common = batch.own_times ? 0 : batch.times;
+  const SharedTimes shared(exact::free_kernels().times, batch.t, common, batch.bodies > 1);
   if (batch.bodies == 1 && batch.times > 4096) {
-    // One body: its times are cut, each piece at a multiple of the longest vector.
+    // One body: its times are cut, at blocks of the grid.
     const std::size_t team = thread_count(threads, states, 20000);
-    parallel_for(batch.times, team, 1024, [&](std::size_t begin, std::size_t end) {
+    parallel_for(batch.times, team, 8 * exact::TimeGrid::block, [&](std::size_t begin, std::size_t end) {
       FreeMotionBatch piece = batch;
       piece.t = batch.t + begin, piece.times = end - begin;
-      poisoned += Run(piece, omega ? omega + 3 * begin : nullptr, attitude ? attitude + 4 * begin : nullptr)(0, 1);
+      const exact::TimeGrid times = shared.grid.piece(begin, end - begin);
+      double *w = omega ? omega + 3 * begin : nullptr, *q = attitude ? attitude + 4 * begin : nullptr;
+      poisoned += Run(piece, times, shared.reach, w, q)(0, 1);
     });
     return poisoned;
   }
   const std::size_t team = thread_count(threads, states, 2000);
-  parallel_for(batch.bodies, team, block, [&](std::size_t begin, std::size_t end) { poisoned += Run(batch, omega, attitude)(begin, end); });
+  parallel_for(batch.bodies, team, block, [&](std::size_t begin, std::size_t end) {
+    poisoned += Run(batch, shared.grid, shared.reach, omega, attitude)(begin, end);
+  });
   return poisoned;
 }
 

@@ -5,6 +5,7 @@
 #include "polhode/batch/parallel.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/exact/heavy_top.hpp"
+#include "polhode/exact/heavy_top_kernels.hpp"
 #include "rows.hpp"
 
 namespace polhode {
@@ -29,28 +30,32 @@ std::size_t run(const HeavyTopBatch& b, const Rows& rows, std::size_t first, std
       continue;
     }
     const HeavyTop top = make_top(b, body);
-    poisoned += rows.each_run(body, [&](const double* t, std::size_t n, double* omega, double* attitude) {
-      top.at(t, n, omega, attitude);
-    });
+    poisoned += rows.each_run(body, [&](const exact::TimeGrid& t, double* omega, double* attitude) { top.at(t, omega, attitude); });
   }
   return poisoned;
 }
 
 }  // namespace
 
-std::size_t heavy_top(const HeavyTopBatch& batch, double* omega, double* attitude, int threads) {
-  if (batch.bodies == 0 || batch.times == 0) return 0;
+std::size_t heavy_top(const HeavyTopBatch& given, double* omega, double* attitude, int threads) {
+  if (given.bodies == 0 || given.times == 0) return 0;
+  HeavyTopBatch batch = given;
+  batch.own_times = given.own_times && given.bodies > 1;  // one top's are those of all
   std::atomic<std::size_t> poisoned{0};
+  const std::size_t common = batch.own_times ? 0 : batch.times;
+  const SharedTimes shared(exact::heavy_top_kernels().times, batch.t, common, batch.bodies > 1);
+  const bool finite = !batch.own_times && std::isfinite(shared.reach);
   if (batch.bodies == 1 && batch.times > 4096) {
-    // One top: its times are cut, each piece at a multiple of the longest vector.
-    parallel_for(batch.times, thread_count(threads, batch.times, 20000), 1024, [&](std::size_t begin, std::size_t end) {
-      const Rows rows{batch.t + begin, end - begin, false, omega ? omega + 3 * begin : nullptr,
+    // One top: its times are cut, at blocks of the grid.
+    parallel_for(batch.times, thread_count(threads, batch.times, 20000), 8 * exact::TimeGrid::block, [&](std::size_t begin, std::size_t end) {
+      const exact::TimeGrid piece = shared.grid.piece(begin, end - begin);
+      const Rows rows{batch.t + begin, end - begin, &piece, finite, omega ? omega + 3 * begin : nullptr,
                       attitude ? attitude + 4 * begin : nullptr};
       poisoned += run(batch, rows, 0, 1);
     });
     return poisoned;
   }
-  const Rows rows{batch.t, batch.times, batch.own_times, omega, attitude};
+  const Rows rows{batch.t, batch.times, batch.own_times ? nullptr : &shared.grid, finite, omega, attitude};
   parallel_for(batch.bodies, thread_count(threads, batch.bodies * batch.times + 100 * batch.bodies, 5000), 16,
                [&](std::size_t begin, std::size_t end) { poisoned += run(batch, rows, begin, end); });
   return poisoned;

@@ -5,6 +5,9 @@
 #include <cstddef>
 #include <limits>
 #include <string>
+#include <vector>
+
+#include "polhode/exact/time_grid.hpp"
 
 namespace polhode {
 
@@ -20,14 +23,43 @@ inline std::string row_name(const char* what, std::size_t body) {
   return std::string(what) + "[" + std::to_string(body) + "]";
 }
 
+/// Times that all bodies share, looked at once.
+class SharedTimes {
+ public:
+  /// With `keep`, what every body needs of a grid is kept; without, it is found again on the way.
+  SharedTimes(const exact::TimeKernels& kernels, const double* t, std::size_t n, bool keep)
+      : grid(t, n), reach(kernels.reach(t, n)) {
+    if (!std::isfinite(reach)) grid = any_times(t, n);
+    if (!keep || !grid.uniform()) return;
+    rest_.resize(n), largest_.resize((n - 1) / exact::TimeGrid::block + 1);
+    kernels.measure(t, n, grid.stride, rest_.data(), largest_.data());
+    grid.rest = rest_.data(), grid.largest = largest_.data();
+  }
+  SharedTimes(const SharedTimes&) = delete;
+  SharedTimes& operator=(const SharedTimes&) = delete;
+
+  static exact::TimeGrid any_times(const double* t, std::size_t n) {
+    exact::TimeGrid times;
+    times.t = t, times.n = n;
+    return times;
+  }
+
+  exact::TimeGrid grid;
+  double reach;  ///< the largest |t|; infinity where one is not finite
+
+ private:
+  std::vector<double> rest_, largest_;
+};
+
 /// Where the results of a batch go: omega (bodies, times, 3) and attitude (bodies, times, 4); either may be null.
 struct Rows {
   const double* t;
   std::size_t times;
-  bool own_times;
+  const exact::TimeGrid* shared;  ///< the times of all bodies; null where each has its own
+  bool finite;                    ///< the shared times are
   double *omega, *attitude;
 
-  const double* times_of(std::size_t body) const { return t + (own_times ? body * times : 0); }
+  const double* times_of(std::size_t body) const { return t + (shared ? 0 : body * times); }
   double* omega_of(std::size_t body, std::size_t i = 0) const {
     return omega ? omega + 3 * (body * times + i) : nullptr;
   }
@@ -42,12 +74,13 @@ struct Rows {
     return count;
   }
 
-  /// evaluate(t, count, omega, attitude) for each run of finite times; the rows between are poisoned and counted.
+  /// evaluate(times, omega, attitude) for each run of finite times; the rows between are poisoned and counted. Times of
+  /// which some are not finite are no grid, wherever threads cut them.
   template <class Evaluate>
   std::size_t each_run(std::size_t body, const Evaluate& evaluate) const {
     const double* own = times_of(body);
-    if (within(own, times)) {
-      evaluate(own, times, omega_of(body), attitude_of(body));
+    if (finite || within(own, times)) {
+      evaluate(shared ? *shared : exact::TimeGrid(own, times), omega_of(body), attitude_of(body));
       return 0;
     }
     std::size_t poisoned = 0;
@@ -55,7 +88,7 @@ struct Rows {
       const bool good = std::isfinite(own[i]);
       for (end = i; end < times && std::isfinite(own[end]) == good;) ++end;
       if (good) {
-        evaluate(own + i, end - i, omega_of(body, i), attitude_of(body, i));
+        evaluate(SharedTimes::any_times(own + i, end - i), omega_of(body, i), attitude_of(body, i));
       } else {
         poisoned += poison(body, i, end - i);
       }

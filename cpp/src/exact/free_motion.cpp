@@ -192,17 +192,19 @@ State FreeMotion::at(double t) const {
 }
 
 void FreeMotion::at(const double* t, std::size_t n, double* omega, double* attitude) const {
+  at(exact::TimeGrid(t, n), omega, attitude);
+}
+
+void FreeMotion::at(const exact::TimeGrid& times, double* omega, double* attitude) const {
+  const exact::FreeKernels& kernels = exact::free_kernels();
   const double longest = form_ == Form::rest ? std::numeric_limits<double>::max() : longest_;
   const double scale = form_ == Form::rest ? 1.0 : frame_.time_scale;
-  std::size_t fine = 0;
-  for (std::size_t i = 0; i < n; ++i) fine += std::abs(t[i] * scale) <= longest;
-  if (fine != n) {
-    for (std::size_t i = 0; i < n; ++i) checked_time(t[i]);
+  if (!(kernels.times.reach(times.t, times.n) * scale <= longest)) {
+    for (std::size_t i = 0; i < times.n; ++i) checked_time(times.t[i]);
   }
-  const exact::FreeKernels& kernels = exact::free_kernels();
-  if (form_ == Form::trig) return kernels.trig(trig_, frame_, t, n, omega, attitude);
-  if (form_ == Form::hyper) return kernels.hyper(hyper_, frame_, t, n, omega, attitude);
-  write_constant(t, n, omega, attitude);
+  if (form_ == Form::trig) return kernels.trig(trig_, frame_, times, omega, attitude);
+  if (form_ == Form::hyper) return kernels.hyper(hyper_, frame_, times, omega, attitude);
+  write_constant(times.t, times.n, omega, attitude);
 }
 
 double FreeMotion::period() const {

@@ -170,7 +170,10 @@ void HeavyTop::set_up() {
     const Quat q = constants_.q_SB;
     constants_.q_SB = {-q.w, q.z, -q.y, q.x};  // (-1, 0, 0; 0) q
   }
-  const exact::HeavyTopMotion motion = exact::set_up_heavy_top(s, constants_);
+  exact::HeavyTopMotion motion;
+  exact::heavy_top_kernels().set_up(s, constants_, motion);
+  require(motion.lost_within == 0.0, "attitude", "further from the unstable upright position, or exactly in it",
+          "a tilt or kick of " + to_text(motion.lost_within) + " beside 1", "float64 cannot follow it from there");
 
   const Matrix3d R_SB = to_matrix(constants_.q_SB);
   for (int i = 0; i < 3; ++i)
@@ -198,13 +201,20 @@ double HeavyTop::p_phi() const { return from_scaled(scaled_[1], scale_of_A_ + sc
 double HeavyTop::p_psi() const { return from_scaled(scaled_[2], scale_of_A_ + scale_of_rate_, "p_psi"); }
 
 void HeavyTop::at(const double* t, std::size_t n, double* omega, double* attitude) const {
-  for (std::size_t i = 0; i < n; ++i) {
-    if (!(std::abs(t[i]) <= largest_time_)) {
-      throw InvalidInput("t", "finite and at most " + to_text(largest_time_) + " s in size", to_text(t[i]),
-                         "beyond it the phase has fewer than 7 digits");
+  at(exact::TimeGrid(t, n), omega, attitude);
+}
+
+void HeavyTop::at(const exact::TimeGrid& times, double* omega, double* attitude) const {
+  const exact::HeavyTopKernels& kernels = exact::heavy_top_kernels();
+  if (!(kernels.times.reach(times.t, times.n) <= largest_time_)) {
+    for (std::size_t i = 0; i < times.n; ++i) {
+      if (!(std::abs(times.t[i]) <= largest_time_)) {
+        throw InvalidInput("t", "finite and at most " + to_text(largest_time_) + " s in size", to_text(times.t[i]),
+                           "beyond it the phase has fewer than 7 digits");
+      }
     }
   }
-  exact::heavy_top_loop()(constants_, t, n, omega, attitude);
+  kernels.at(constants_, times, omega, attitude);
 }
 
 State HeavyTop::at(double t) const {

@@ -4,15 +4,15 @@
 
 namespace polhode::exact {
 
-HeavyTopLoop heavy_top_loop(SimdLevel level) {
-  HeavyTopLoop found = nullptr;
-  if (level == SimdLevel::avx512) found = avx512_heavy_top_loop();
-  if (found == nullptr && level != SimdLevel::baseline) found = avx2_heavy_top_loop();
-  return found != nullptr ? found : baseline_heavy_top_loop();
+const HeavyTopKernels& heavy_top_kernels(SimdLevel level) {
+  const HeavyTopKernels* found = nullptr;
+  if (level == SimdLevel::avx512) found = avx512_heavy_top_kernels();
+  if (found == nullptr && level != SimdLevel::baseline) found = avx2_heavy_top_kernels();
+  return found != nullptr ? *found : *baseline_heavy_top_kernels();
 }
 
-HeavyTopLoop heavy_top_loop() {
-  static const HeavyTopLoop chosen = heavy_top_loop(simd_level());
+const HeavyTopKernels& heavy_top_kernels() {
+  static const HeavyTopKernels& chosen = heavy_top_kernels(simd_level());
   return chosen;
 }
 

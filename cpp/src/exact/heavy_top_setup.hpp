@@ -22,9 +22,7 @@ struct HeavyTopMotion {
   double period = 0;                             ///< of the tilt; inf when it never returns or never leaves
   double precession = 0;                         ///< mean d(phi)/dt
   math::DD energy, p_phi, p_psi;
+  double lost_within = 0;  ///< where not 0: too near the unstable vertical for float64; nothing else is filled
 };
-
-/// Fills c (all but rate_scale, q_SB and R_BS, which it leaves) from the start, in double-double throughout.
-HeavyTopMotion set_up_heavy_top(const HeavyTopStart& start, HeavyTopConstants& c);
 
 }  // namespace polhode::exact

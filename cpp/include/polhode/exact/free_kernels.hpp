@@ -4,6 +4,7 @@
 
 #include "polhode/core/simd.hpp"
 #include "polhode/exact/free_setup.hpp"
+#include "polhode/exact/time_grid.hpp"
 
 namespace polhode::exact {
 
@@ -23,12 +24,14 @@ struct FreeStarts {
   const double* attitude;
 };
 
-/// The loops, compiled for one instruction set. omega (n, 3) and attitude (n, 4) row by row; either may be null. A
-/// row's bits depend neither on n nor on its place; avx2 and avx512 give the same.
+/// The loops, compiled for one instruction set. omega (n, 3) and attitude (n, 4) row by row; either may be null.
+/// avx2 and avx512 give the same bits.
 struct FreeKernels {
-  /// One body at many times.
-  void (*trig)(const FreeTrig<double>&, const FreeFrame&, const double* t, std::size_t n, double* omega, double* attitude);
-  void (*hyper)(const FreeHyper<double>&, const FreeFrame&, const double* t, std::size_t n, double* omega, double* attitude);
+  TimeKernels times;
+
+  /// One body at many times. A row's bits depend neither on n nor, off a grid, on its place.
+  void (*trig)(const FreeTrig<double>&, const FreeFrame&, const TimeGrid&, double* omega, double* attitude);
+  void (*hyper)(const FreeHyper<double>&, const FreeFrame&, const TimeGrid&, double* omega, double* attitude);
 
   /// n bodies, each at its own time: set up and evaluated in lanes. `left` gets the indices of those that this cannot
   /// do (exactly on the separatrix or the unstable axis, at rest, out of range); returns how many they are.

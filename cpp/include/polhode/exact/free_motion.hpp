@@ -40,6 +40,8 @@ class FreeMotion {
 
   /// n states: omega 3 n and attitude 4 n numbers, row by row; either pointer may be null.
   void at(const double* t, std::size_t n, double* omega, double* attitude) const;
+  /// The same at times that were looked at before.
+  void at(const exact::TimeGrid& times, double* omega, double* attitude) const;
 
   FreeKind kind() const { return kind_; }
   double period() const;            ///< of omega [s]; infinite on the separatrix, 0 where omega is constant

@@ -56,22 +56,40 @@ POLHODE_INLINE void turn_and_normalise(T re_a, T im_a, T re_b, T im_b, T scale, 
   out.y = madd(re_b, s, im_b * c);
 }
 
+/// alpha and beta before the turn by kappa t, and what makes the pair unit.
+template <class T>
+struct FreePair {
+  T re_a, im_a, re_b, im_b, scale;
+};
+
+/// From the sine and cosine of phi.
+template <class T, class C>
+POLHODE_INLINE FreePair<T> evaluate_pair(const FreeTrig<C>& body, T s, T c) {
+  const T X = (c - s) * (c + s), sin2 = (s + s) * c;
+  const T re_a = polynomial(body.even_cos, X), im_a = sin2 * polynomial(body.even_sin, X);
+  const T re_b = c * polynomial(body.odd_cos, X), im_b = s * polynomial(body.odd_sin, X);
+  const T size2 = madd(re_a, re_a, im_a * im_a) + madd(re_b, re_b, im_b * im_b);
+  return {re_a, im_a, re_b, im_b, T(1.0) / sqrt(size2)};
+}
+
+/// From the pair, the sines and cosines of phi (s, c) and of kappa t (ks, kc).
+template <class T, class C>
+POLHODE_INLINE FreeState<T> evaluate(const FreeTrig<C>& body, const FreePair<T>& pair, T s, T c, T ks, T kc) {
+  FreeState<T> out;
+  turn_and_normalise(pair.re_a, pair.im_a, pair.re_b, pair.im_b, pair.scale, ks, kc, out);
+  const T X = (c - s) * (c + s), inverse = pair.scale * pair.scale;
+  out.omega[0] = s * polynomial(body.omega1, X) * inverse;
+  out.omega[1] = c * polynomial(body.omega2, X) * inverse;
+  out.omega[2] = polynomial(body.omega3, X) * inverse;
+  return out;
+}
+
 template <class T, class C>
 POLHODE_INLINE FreeState<T> evaluate(const FreeTrig<C>& body, T t) {
   T s, c, ks, kc;
   sincos_cycles(cycle_fraction(t, T(body.nu_hi), T(body.nu_lo), T(body.phi0)), s, c);
   sincos_cycles(cycle_fraction(t, T(body.kappa_hi), T(body.kappa_lo), T(0.0)), ks, kc);
-  const T X = (c - s) * (c + s), sin2 = (s + s) * c;
-  const T re_a = polynomial(body.even_cos, X), im_a = sin2 * polynomial(body.even_sin, X);
-  const T re_b = c * polynomial(body.odd_cos, X), im_b = s * polynomial(body.odd_sin, X);
-  const T size2 = madd(re_a, re_a, im_a * im_a) + madd(re_b, re_b, im_b * im_b);
-  FreeState<T> out;
-  const T scale = T(1.0) / sqrt(size2), inverse = scale * scale;
-  turn_and_normalise(re_a, im_a, re_b, im_b, scale, ks, kc, out);
-  out.omega[0] = s * polynomial(body.omega1, X) * inverse;
-  out.omega[1] = c * polynomial(body.omega2, X) * inverse;
-  out.omega[2] = polynomial(body.omega3, X) * inverse;
-  return out;
+  return evaluate(body, evaluate_pair(body, s, c), s, c, ks, kc);
 }
 
 template <class T, class C>

@@ -4,6 +4,7 @@
 
 #include "polhode/core/state.hpp"
 #include "polhode/exact/heavy_top_kernel.hpp"
+#include "polhode/exact/time_grid.hpp"
 #include "polhode/inertia/inertia_tensor.hpp"
 
 namespace polhode {
@@ -43,6 +44,8 @@ class HeavyTop {
   State at(double t) const;
   /// omega: n x 3, attitude: n x 4, row-major; either may be null.
   void at(const double* t, std::size_t n, double* omega, double* attitude) const;
+  /// The same at times that were looked at before.
+  void at(const exact::TimeGrid& times, double* omega, double* attitude) const;
 
   TopKind kind() const noexcept { return kind_; }
   /// Of the tilt [s] (a planar pendulum's is half its swing); inf for homoclinic, 0 where the tilt is constant.

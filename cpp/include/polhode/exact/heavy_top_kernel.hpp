@@ -126,63 +126,61 @@ POLHODE_INLINE HeavyTopSums<V> heavy_top_hyper(const HeavyTopConstants& c, V s, 
   return heavy_top_hyper_sums<V>(ca, sa, cb, sb, nome, copysign(V(1.0), v), E, g);
 }
 
-/// N1, N2 and the rotating part of omega: what the two forms give to the state.
+/// alpha and beta before their turns by the phases, and 1 / (|alpha|^2 + |beta|^2) with its root.
 template <class V>
-struct HeavyTopParts {
-  V n1_re, n1_im, n2_re, n2_im, s_re, s_im;
+struct HeavyTopPair {
+  V a_re, a_im, b_re, b_im, inverse2, inverse;
 };
 
-/// The trigonometric series, for k^2 <= 0.97.
 template <class V>
-POLHODE_INLINE HeavyTopParts<V> heavy_top_trig(const HeavyTopConstants& c, V s) {
-  V sz, cz;
-  sincos_cycles(cycle_fraction(s, V(c.rate_z.hi), V(c.rate_z.lo), V(c.start_z)), sz, cz);
-  const V X = (cz + sz) * (cz - sz);
-  return {sz * polynomial(c.p[0], X), cz * polynomial(c.p[1], X),
-          cz * polynomial(c.p[2], X), sz * polynomial(c.p[3], X),
-          polynomial(c.even, X),      (sz * cz) * polynomial(c.odd, X)};
+POLHODE_INLINE HeavyTopPair<V> heavy_top_pair(const HeavyTopConstants& c, V n1_re, V n1_im, V n2_re, V n2_im) {
+  const V ca_re = V(c.ca_re), ca_im = V(c.ca_im), cb_re = V(c.cb_re), cb_im = V(c.cb_im);
+  const V a_re = less(ca_re, n1_re, ca_im, n1_im), a_im = plus(ca_re, n1_im, ca_im, n1_re);
+  const V b_re = less(cb_re, n2_re, cb_im, n2_im), b_im = plus(cb_re, n2_im, cb_im, n2_re);
+  const V inverse2 = V(1.0) / (plus(a_re, a_re, a_im, a_im) + plus(b_re, b_re, b_im, b_im));
+  return {a_re, a_im, b_re, b_im, inverse2, sqrt(inverse2)};
 }
 
-/// The hyperbolic sums made parts.
+/// The trigonometric series, for k^2 <= 0.97, from the sine and cosine of z.
 template <class V>
-POLHODE_INLINE HeavyTopParts<V> heavy_top_parts(const HeavyTopConstants& c, const HeavyTopSums<V>& f) {
+POLHODE_INLINE HeavyTopPair<V> heavy_top_trig(const HeavyTopConstants& c, V sz, V cz) {
+  const V X = (cz + sz) * (cz - sz);
+  return heavy_top_pair(c, sz * polynomial(c.p[0], X), cz * polynomial(c.p[1], X), cz * polynomial(c.p[2], X),
+                        sz * polynomial(c.p[3], X));
+}
+
+/// The rotating part of omega.
+template <class V>
+struct HeavyTopTurning {
+  V re, im;
+};
+
+template <class V>
+POLHODE_INLINE HeavyTopTurning<V> heavy_top_trig_turning(const HeavyTopConstants& c, V sz, V cz) {
+  const V X = (cz + sz) * (cz - sz);
+  return {polynomial(c.even, X), (sz * cz) * polynomial(c.odd, X)};
+}
+
+/// The same from the hyperbolic sums.
+template <class V>
+POLHODE_INLINE HeavyTopTurning<V> heavy_top_turning(const HeavyTopConstants& c, const HeavyTopSums<V>& f) {
   const V t_re = plus(f.n1_re, f.d2_re, f.n1_im, f.d2_im) - plus(f.n2_re, f.d1_re, f.n2_im, f.d1_im);
   const V t_im = less(f.n1_re, f.d2_im, f.n1_im, f.d2_re) + less(f.n2_re, f.d1_im, f.n2_im, f.d1_re);
   const V q_re = plus(f.n1_re, f.n2_re, f.n1_im, f.n2_im), q_im = less(f.n1_re, f.n2_im, f.n1_im, f.n2_re);
   const V speed = V(c.speed), turn = V(c.turn);
-  return {f.n1_re, f.n1_im, f.n2_re, f.n2_im, less(speed, t_re, turn, q_im), plus(speed, t_im, turn, q_re)};
+  return {less(speed, t_re, turn, q_im), plus(speed, t_im, turn, q_re)};
 }
 
-/// The state at time t. `hyper` must be c.hyper, and `framed` may only be false where c.framed is: template arguments,
-/// so that lanes share one form.
-template <bool hyper, bool framed, class V>
-POLHODE_INLINE HeavyTopState<V> evaluate_heavy_top(const HeavyTopConstants& c, V t) {
-  const V s = t * V(c.rate_scale);
-  V phase_a = V(0.0), phase_b = V(0.0);
-  HeavyTopParts<V> f;
-  if constexpr (hyper) {
-    V passages;
-    f = heavy_top_parts(c, heavy_top_hyper(c, s, passages));
-    phase_a = cycle_fraction(passages, V(c.passage_a.hi), V(c.passage_a.lo), V(0.0));
-    phase_b = cycle_fraction(passages, V(c.passage_b.hi), V(c.passage_b.lo), V(0.0));
-  } else {
-    f = heavy_top_trig(c, s);
-  }
-  V ea_re, ea_im, eb_re, eb_im;
-  sincos_cycles(cycle_fraction(s, V(c.rate_a.hi), V(c.rate_a.lo), phase_a), ea_im, ea_re);
-  sincos_cycles(cycle_fraction(s, V(c.rate_b.hi), V(c.rate_b.lo), phase_b), eb_im, eb_re);
-
-  // alpha and beta in the working axes, not yet normalised
-  const V ca_re = V(c.ca_re), ca_im = V(c.ca_im), cb_re = V(c.cb_re), cb_im = V(c.cb_im);
-  const V fa_re = less(ca_re, f.n1_re, ca_im, f.n1_im), fa_im = plus(ca_re, f.n1_im, ca_im, f.n1_re);
-  const V fb_re = less(cb_re, f.n2_re, cb_im, f.n2_im), fb_im = plus(cb_re, f.n2_im, cb_im, f.n2_re);
-  const V inverse2 = V(1.0) / (plus(fa_re, fa_re, fa_im, fa_im) + plus(fb_re, fb_re, fb_im, fb_im));
-  const V inverse = sqrt(inverse2);
-  const V qw = inverse * less(fa_re, ea_re, fa_im, ea_im), qz = inverse * plus(fa_re, ea_im, fa_im, ea_re);
-  const V qx = inverse * less(fb_re, eb_re, fb_im, eb_im), qy = inverse * plus(fb_re, eb_im, fb_im, eb_re);
+/// The state from all this and e^{i a}, e^{i b}, the phases of alpha and beta. `framed` may only be false where
+/// c.framed is: a template argument, so that lanes share one form.
+template <bool framed, class V>
+POLHODE_INLINE HeavyTopState<V> heavy_top_state(const HeavyTopConstants& c, const HeavyTopPair<V>& f,
+                                                const HeavyTopTurning<V>& turning, V ea_re, V ea_im, V eb_re, V eb_im) {
+  const V qw = f.inverse * less(f.a_re, ea_re, f.a_im, ea_im), qz = f.inverse * plus(f.a_re, ea_im, f.a_im, ea_re);
+  const V qx = f.inverse * less(f.b_re, eb_re, f.b_im, eb_im), qy = f.inverse * plus(f.b_re, eb_im, f.b_im, eb_re);
 
   // w1 + i w2 = 2 (conj(alpha) beta' - beta conj(alpha')): the derivative of the common factor drops out
-  const V s_re = inverse2 * f.s_re, s_im = inverse2 * f.s_im;
+  const V s_re = f.inverse2 * turning.re, s_im = f.inverse2 * turning.im;
   const V r_re = plus(ea_re, eb_re, ea_im, eb_im), r_im = less(ea_re, eb_im, ea_im, eb_re);
   const V h_re = less(V(c.w12_re), r_re, V(c.w12_im), r_im), h_im = plus(V(c.w12_re), r_im, V(c.w12_im), r_re);
   const V w1 = less(h_re, s_re, h_im, s_im), w2 = plus(h_re, s_im, h_im, s_re), w3 = V(c.w3);
@@ -197,6 +195,32 @@ POLHODE_INLINE HeavyTopState<V> evaluate_heavy_top(const HeavyTopConstants& c, V
           plus(qw, V(b.y), qy, V(b.w)) + less(qz, V(b.x), qx, V(b.z)),
           plus(qw, V(b.z), qz, V(b.w)) + less(qx, V(b.y), qy, V(b.x)),
           less(qw, V(b.w), qx, V(b.x)) - plus(qy, V(b.y), qz, V(b.z))};
+}
+
+/// The state at time t. `hyper` must be c.hyper.
+template <bool hyper, bool framed, class V>
+POLHODE_INLINE HeavyTopState<V> evaluate_heavy_top(const HeavyTopConstants& c, V t) {
+  const V s = t * V(c.rate_scale);
+  V phase_a = V(0.0), phase_b = V(0.0);
+  HeavyTopPair<V> f;
+  HeavyTopTurning<V> turning;
+  if constexpr (hyper) {
+    V passages;
+    const HeavyTopSums<V> sums = heavy_top_hyper(c, s, passages);
+    f = heavy_top_pair(c, sums.n1_re, sums.n1_im, sums.n2_re, sums.n2_im);
+    turning = heavy_top_turning(c, sums);
+    phase_a = cycle_fraction(passages, V(c.passage_a.hi), V(c.passage_a.lo), V(0.0));
+    phase_b = cycle_fraction(passages, V(c.passage_b.hi), V(c.passage_b.lo), V(0.0));
+  } else {
+    V sz, cz;
+    sincos_cycles(cycle_fraction(s, V(c.rate_z.hi), V(c.rate_z.lo), V(c.start_z)), sz, cz);
+    f = heavy_top_trig(c, sz, cz);
+    turning = heavy_top_trig_turning(c, sz, cz);
+  }
+  V ea_re, ea_im, eb_re, eb_im;
+  sincos_cycles(cycle_fraction(s, V(c.rate_a.hi), V(c.rate_a.lo), phase_a), ea_im, ea_re);
+  sincos_cycles(cycle_fraction(s, V(c.rate_b.hi), V(c.rate_b.lo), phase_b), eb_im, eb_re);
+  return heavy_top_state<framed>(c, f, turning, ea_re, ea_im, eb_re, eb_im);
 }
 
 }  // namespace polhode::exact

@@ -1,21 +1,31 @@
 #pragma once
 
-#include <cstddef>
-
 #include "polhode/core/simd.hpp"
 #include "polhode/exact/heavy_top_kernel.hpp"
+#include "polhode/exact/time_grid.hpp"
 
 namespace polhode::exact {
 
-/// The loop, compiled for one instruction set: one top at many times, omega (n, 3) and attitude (n, 4) row by row;
-/// either may be null. A row's bits depend neither on n nor on its place; avx2 and avx512 give the same.
-using HeavyTopLoop = void (*)(const HeavyTopConstants&, const double* t, std::size_t n, double* omega,
-                              double* attitude);
+struct HeavyTopStart;
+struct HeavyTopMotion;
 
-/// That of a level; of the next lower one that was compiled.
-HeavyTopLoop heavy_top_loop(SimdLevel level);
+/// What is compiled for one instruction set; avx2 and avx512 give the same bits.
+struct HeavyTopKernels {
+  TimeKernels times;
 
-/// That of simd_level(), decided once.
-HeavyTopLoop heavy_top_loop();
+  /// One top at many times, omega (n, 3) and attitude (n, 4) row by row; either may be null. A row's bits depend
+  /// neither on n nor, off a grid, on its place.
+  void (*at)(const HeavyTopConstants&, const TimeGrid&, double* omega, double* attitude);
+
+  /// Fills the constants (all but rate_scale, q_SB and R_BS, which it leaves) and what else is known of the motion, in
+  /// double-double throughout.
+  void (*set_up)(const HeavyTopStart&, HeavyTopConstants&, HeavyTopMotion&);
+};
+
+/// Those of a level; of the next lower one that was compiled.
+const HeavyTopKernels& heavy_top_kernels(SimdLevel level);
+
+/// Those of simd_level(), decided once.
+const HeavyTopKernels& heavy_top_kernels();
 
 }  // namespace polhode::exact

@@ -10,11 +10,11 @@
 
 namespace polhode::exact {
 const FreeKernels* avx512_free_kernels() { return &POLHODE_ISA::kernels; }
-HeavyTopLoop avx512_heavy_top_loop() { return &POLHODE_ISA::heavy_top; }
+const HeavyTopKernels* avx512_heavy_top_kernels() { return &POLHODE_ISA::heavy_top_kernels; }
 }  // namespace polhode::exact
 #else
 namespace polhode::exact {
 const FreeKernels* avx512_free_kernels() { return nullptr; }
-HeavyTopLoop avx512_heavy_top_loop() { return nullptr; }
+const HeavyTopKernels* avx512_heavy_top_kernels() { return nullptr; }
 }  // namespace polhode::exact
 #endif

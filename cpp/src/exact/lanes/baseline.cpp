@@ -13,6 +13,6 @@ using Wide = One;
 namespace polhode::exact {
 
 const FreeKernels* baseline_free_kernels() { return &POLHODE_ISA::kernels; }
-HeavyTopLoop baseline_heavy_top_loop() { return &POLHODE_ISA::heavy_top; }
+const HeavyTopKernels* baseline_heavy_top_kernels() { return &POLHODE_ISA::heavy_top_kernels; }
 
 }  // namespace polhode::exact

@@ -209,6 +209,7 @@ inline void prepare(const exact::FreeStart<double>& start, exact::FreeConstants<
   }
 }
 
-inline constexpr exact::FreeKernels kernels = {&at_times<FreeTrig<double>>, &at_times<exact::FreeHyper<double>>, &once, &set_up, &prepare};
+inline constexpr exact::FreeKernels kernels = {
+    .times = time_kernels, .trig = &on_times, .hyper = &on_times, .once = &once, .set_up = &set_up, .prepare = &prepare};
 
 }  // namespace polhode::POLHODE_ISA

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "math/lanes/scalar.hpp"
+#include "exact/lanes/grid_loops.hpp"
 #include "polhode/exact/free_kernels.hpp"
 
 // The loops themselves, for one lane type `Wide`; included once by each file that is built for one instruction set.
@@ -13,9 +13,9 @@ struct Rows {
   T omega[3], attitude[4];
 };
 
-template <class T, class Body, class Frame>
-POLHODE_INLINE Rows<T> rows_at(const Body& body, const Frame& frame, T t) {
-  const exact::FreeState<T> s = exact::evaluate(body, t * T(frame.time_scale));
+/// A state of the working frames, brought to the caller's.
+template <class T, class Frame>
+POLHODE_INLINE Rows<T> brought_back(const Frame& frame, const exact::FreeState<T>& s) {
   Rows<T> rows;
   for (int c = 0; c < 3; ++c) {
     const auto* m = frame.omega + 3 * c;
@@ -28,11 +28,20 @@ POLHODE_INLINE Rows<T> rows_at(const Body& body, const Frame& frame, T t) {
   return rows;
 }
 
-template <bool want_omega, bool want_attitude, class T, class Body>
-POLHODE_INLINE void write_at(const Body& body, const FreeFrame& frame, const double* t, double* omega, double* attitude) {
-  const Rows<T> rows = rows_at(body, frame, T::load(t));
+template <class T, class Body, class Frame>
+POLHODE_INLINE Rows<T> rows_at(const Body& body, const Frame& frame, T t) {
+  return brought_back(frame, exact::evaluate(body, t * T(frame.time_scale)));
+}
+
+template <bool want_omega, bool want_attitude, class T>
+POLHODE_INLINE void write(const Rows<T>& rows, double* omega, double* attitude) {
   if constexpr (want_omega) store3(omega, rows.omega[0], rows.omega[1], rows.omega[2]);
   if constexpr (want_attitude) store4(attitude, rows.attitude[0], rows.attitude[1], rows.attitude[2], rows.attitude[3]);
+}
+
+template <bool want_omega, bool want_attitude, class T, class Body>
+POLHODE_INLINE void write_at(const Body& body, const FreeFrame& frame, const double* t, double* omega, double* attitude) {
+  write<want_omega, want_attitude>(rows_at(body, frame, T::load(t)), omega, attitude);
 }
 
 template <bool want_omega, bool want_attitude, class Body>
@@ -53,6 +62,39 @@ void at_times(const Body& body, const FreeFrame& frame, const double* t, std::si
   if (omega && attitude) return loop<true, true>(body, frame, t, n, omega, attitude);
   if (omega) return loop<true, false>(body, frame, t, n, omega, attitude);
   if (attitude) return loop<false, true>(body, frame, t, n, omega, attitude);
+}
+
+template <bool want_omega, bool want_attitude>
+void trig_loop(const exact::FreeTrig<double>& body_in, const FreeFrame& frame_in, const TimeGrid& grid, double* omega,
+               double* attitude) {
+  if (grid.n < TimeGrid::row)
+    return loop<want_omega, want_attitude>(body_in, frame_in, grid.t, grid.n, omega, attitude);
+  const exact::FreeTrig<double> body = body_in;  // of our own, as above
+  const FreeFrame frame = frame_in;
+  const Rates<2> rates{frame.time_scale, {body.nu_hi, body.kappa_hi}, {body.nu_lo, body.kappa_lo}, {body.phi0, 0.0}};
+  const auto pair = [&]<class T>(const Angle<T>(&now)[2], T(&kept)[5]) __attribute__((always_inline)) {
+    const auto p = exact::evaluate_pair(body, now[0].sine, now[0].cosine);
+    kept[0] = p.re_a, kept[1] = p.im_a, kept[2] = p.re_b, kept[3] = p.im_b, kept[4] = p.scale;
+  };
+  const auto finish = [&]<class T>(const Angle<T>(&now)[2], const T(&p)[5], std::size_t k)
+                          __attribute__((always_inline)) {
+    const auto state = exact::evaluate(body, exact::FreePair<T>{p[0], p[1], p[2], p[3], p[4]}, now[0].sine, now[0].cosine,
+                                       now[1].sine, now[1].cosine);
+    write<want_omega, want_attitude>(brought_back(frame, state), omega + 3 * k, attitude + 4 * k);
+  };
+  at_phases<5>(rates, grid, pair, finish);
+}
+
+inline void on_times(const exact::FreeTrig<double>& body, const FreeFrame& frame, const TimeGrid& grid, double* omega,
+                     double* attitude) {
+  if (omega && attitude) return trig_loop<true, true>(body, frame, grid, omega, attitude);
+  if (omega) return trig_loop<true, false>(body, frame, grid, omega, attitude);
+  if (attitude) return trig_loop<false, true>(body, frame, grid, omega, attitude);
+}
+
+inline void on_times(const exact::FreeHyper<double>& body, const FreeFrame& frame, const TimeGrid& grid, double* omega,
+                     double* attitude) {
+  at_times(body, frame, grid.t, grid.n, omega, attitude);
 }
 
 }  // namespace polhode::POLHODE_ISA

@@ -9,8 +9,8 @@ namespace polhode::exact {
 const FreeKernels* baseline_free_kernels();
 const FreeKernels* avx2_free_kernels();
 const FreeKernels* avx512_free_kernels();
-HeavyTopLoop baseline_heavy_top_loop();
-HeavyTopLoop avx2_heavy_top_loop();
-HeavyTopLoop avx512_heavy_top_loop();
+const HeavyTopKernels* baseline_heavy_top_kernels();
+const HeavyTopKernels* avx2_heavy_top_kernels();
+const HeavyTopKernels* avx512_heavy_top_kernels();
 
 }  // namespace polhode::exact

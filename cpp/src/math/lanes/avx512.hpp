@@ -28,7 +28,7 @@ POLHODE_INLINE Wide operator+(Wide a, Wide b) { return _mm512_add_pd(a.v, b.v); 
 POLHODE_INLINE Wide operator-(Wide a, Wide b) { return _mm512_sub_pd(a.v, b.v); }
 POLHODE_INLINE Wide operator*(Wide a, Wide b) { return _mm512_mul_pd(a.v, b.v); }
 POLHODE_INLINE Wide operator/(Wide a, Wide b) { return _mm512_div_pd(a.v, b.v); }
-POLHODE_INLINE Wide operator-(Wide a) { return _mm512_xor_pd(a.v, _mm512_set1_pd(-0.0)); }
+POLHODE_INLINE Wide operator-(Wide a) { return -a.v; }  // the compiler makes it part of a fused multiply-add
 POLHODE_INLINE WideMask operator<(Wide a, Wide b) { return {_mm512_cmp_pd_mask(a.v, b.v, _CMP_LT_OQ)}; }
 POLHODE_INLINE WideMask operator>(Wide a, Wide b) { return {_mm512_cmp_pd_mask(a.v, b.v, _CMP_GT_OQ)}; }
 POLHODE_INLINE WideMask operator<=(Wide a, Wide b) { return {_mm512_cmp_pd_mask(a.v, b.v, _CMP_LE_OQ)}; }
@@ -39,6 +39,8 @@ POLHODE_INLINE Wide madd(Wide a, Wide b, Wide c) { return _mm512_fmadd_pd(a.v, b
 POLHODE_INLINE Wide rint(Wide a) { return _mm512_roundscale_pd(a.v, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC); }
 POLHODE_INLINE Wide sqrt(Wide a) { return _mm512_sqrt_pd(a.v); }
 POLHODE_INLINE Wide abs(Wide a) { return _mm512_andnot_pd(_mm512_set1_pd(-0.0), a.v); }
+/// The larger; for what is no number, either.
+POLHODE_INLINE Wide larger(Wide a, Wide b) { return _mm512_max_pd(a.v, b.v); }
 POLHODE_INLINE Wide copysign(Wide a, Wide b) {
   const __m512d sign = _mm512_set1_pd(-0.0);
   return _mm512_or_pd(_mm512_andnot_pd(sign, a.v), _mm512_and_pd(sign, b.v));

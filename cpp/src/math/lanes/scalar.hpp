@@ -28,6 +28,7 @@ POLHODE_INLINE One select(bool mask, One a, One b) { return mask ? a : b; }
 POLHODE_INLINE One rint(One a) { return math::rint(a.v); }
 POLHODE_INLINE One sqrt(One a) { return __builtin_sqrt(a.v); }
 POLHODE_INLINE One abs(One a) { return __builtin_fabs(a.v); }
+POLHODE_INLINE One larger(One a, One b) { return a.v > b.v ? a : b; }
 POLHODE_INLINE One copysign(One a, One b) { return __builtin_copysign(a.v, b.v); }
 POLHODE_INLINE One power_of_two(One n) { return math::power_of_two(n.v); }
 POLHODE_INLINE One power_of_two_below(One a) { return math::power_of_two_below(a.v); }

@@ -1,15 +1,25 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-
+#include "math/lanes/scalar.hpp"
 #include "polhode/exact/heavy_top_kernel.hpp"
-#include "polhode/math/double_double.hpp"
+#include "polhode/math/dd_functions.hpp"
 
 // Complex numbers in double-double, as far as the set-up of the top needs them.
-namespace polhode::exact {
+namespace polhode::POLHODE_ISA {
 
-using math::DD;
+using exact::Cycles;
+using math::DD, math::abs, math::sqrt;
+
+// Transcendental functions as number types of this file's own, so that no other file's copy is made or taken.
+inline DD narrow(math::DoubleDouble<One> a) { return {a.hi.v, a.lo.v}; }
+inline math::DoubleDouble<One> widen(DD a) { return {One(a.hi), One(a.lo)}; }
+inline DD angle_of(DD y, DD x) { return narrow(math::atan2_dd(widen(y), widen(x))); }
+/// Of any x > 0.
+inline DD logarithm(DD x) {
+  const DD ln2{0.6931471805599453, 2.3190468138462996e-17};
+  const double power = x.hi < 0x1p-800 ? -512.0 : x.hi > 0x1p800 ? 512.0 : 0.0;
+  return narrow(math::log_dd(widen(math::scaled(x, math::power_of_two(-power))))) + ln2 * DD(power);
+}
 
 inline DD squared(DD a) { return a * a; }
 
@@ -23,10 +33,9 @@ inline Complex operator-(Complex a, Complex b) { return {a.re - b.re, a.im - b.i
 inline Complex conj(Complex a) { return {a.re, -a.im}; }
 inline Complex times_i(Complex a) { return {-a.im, a.re}; }
 
-
 /// a times a power of two, so that its larger part is near 1; 0 stays 0.
 inline Complex balanced(Complex a) {
-  const double scale = 1.0 / math::power_of_two_below(std::max(std::abs(a.re.hi), std::abs(a.im.hi)));
+  const double scale = 1.0 / math::power_of_two_below(math::max(abs(a.re.hi), abs(a.im.hi)));
   return {math::scaled(a.re, scale), math::scaled(a.im, scale)};
 }
 
@@ -47,4 +56,4 @@ inline Cycles in_cycles(DD angle) {
   return {cycles.hi, cycles.lo};
 }
 
-}  // namespace polhode::exact
+}  // namespace polhode::POLHODE_ISA

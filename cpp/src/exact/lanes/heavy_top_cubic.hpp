@@ -1,8 +1,11 @@
 #pragma once
 
-#include "heavy_top_setup.hpp"
+#include "exact/heavy_top_setup.hpp"
+#include "exact/lanes/heavy_top_complex.hpp"
 
-namespace polhode::exact {
+namespace polhode::POLHODE_ISA {
+
+using exact::HeavyTopConstants, exact::HeavyTopMotion, exact::HeavyTopStart;
 
 /// The start seen by the tilt, u = cos(tilt), and the cubic f(d) = u'^2 = bt d^3 + c2 d^2 + c1 d + c0 in d = u - u0:
 /// shifted to the start, so that small motions keep their digits.
@@ -31,4 +34,4 @@ struct TiltCubic {
   explicit TiltCubic(const TiltStart& t);
 };
 
-}  // namespace polhode::exact
+}  // namespace polhode::POLHODE_ISA

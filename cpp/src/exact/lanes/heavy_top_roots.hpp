@@ -1,18 +1,13 @@
-#include "heavy_top_cubic.hpp"
+#pragma once
 
-#include <algorithm>
 #include <cmath>
 
-namespace polhode::exact {
-namespace {
+#include "exact/lanes/heavy_top_cubic.hpp"
 
-using math::DD;
-using math::sqrt;
-
-DD squared(DD a) { return a * a; }
+namespace polhode::POLHODE_ISA {
 
 /// sqrt(a^2 + b^2) from the larger of the two, so that no square underflows.
-DD hypot(DD a, DD b) {
+inline DD hypot(DD a, DD b) {
   a = abs(a), b = abs(b);
   const DD large = a < b ? b : a, small = a < b ? a : b;
   if (large.hi == 0.0) return DD(0.0);
@@ -21,13 +16,13 @@ DD hypot(DD a, DD b) {
 
 /// The root of c3 x^3 + c2 x^2 + c1 x + c0 next to `start`, which lies outside all of them: Newton's steps are then
 /// monotone. In double until they turn back, then two in double-double.
-DD far_root(DD c3, DD c2, DD c1, DD c0, double start) {
+inline DD far_root(DD c3, DD c2, DD c1, DD c0, double start) {
   double x = start;
   for (int i = 0; i < 200; ++i) {
     const double f = ((c3.hi * x + c2.hi) * x + c1.hi) * x + c0.hi;
     const double slope = (3.0 * c3.hi * x + 2.0 * c2.hi) * x + c1.hi;
     const double next = x - f / slope;
-    if (!(std::abs(next) < std::abs(x)) || std::abs(x - next) < 1e-15 * std::abs(x)) break;
+    if (!(abs(next) < abs(x)) || abs(x - next) < 1e-15 * abs(x)) break;
     x = next;
   }
   DD root = x;
@@ -40,9 +35,7 @@ DD far_root(DD c3, DD c2, DD c1, DD c0, double start) {
   return root;
 }
 
-}  // namespace
-
-TiltStart::TiltStart(const HeavyTopStart& s) {
+inline TiltStart::TiltStart(const HeavyTopStart& s) {
   a = s.C * s.w3 / s.A;
   bt = (s.M + s.M) / s.A;
   wp2 = squared(s.w1) + squared(s.w2);
@@ -60,14 +53,14 @@ TiltStart::TiltStart(const HeavyTopStart& s) {
   c0 = du0 * du0;
 }
 
-TiltCubic::TiltCubic(const TiltStart& t) : ab(t.ab), ba(t.ba) {
+inline TiltCubic::TiltCubic(const TiltStart& t) : ab(t.ab), ba(t.ba) {
   const DD &bt = t.bt, &c2 = t.c2, &c1 = t.c1, &c0 = t.c0;
   const DD b1 = bt * c1, b0 = bt * bt * c0;
   const DD bend = DD(2.0) * c2 * c2 * c2 / DD(27.0) - c2 * b1 / DD(3.0) + b0;
   DD Sg, f;
   const bool upper = bend.hi < 0.0;  // the far root is d3, else d1
   if (upper) {
-    const double start = 2.0 * std::max({std::abs(c2.hi), std::sqrt(std::abs(b1.hi)), std::cbrt(b0.hi / 2.0)});
+    const double start = 2.0 * math::max(abs(c2.hi), math::max(sqrt(abs(b1.hi)), std::cbrt(b0.hi / 2.0)));
     e3 = far_root(DD(1.0), c2, b1, b0, start);
     const DD G = t.du0 / sqrt(e3), F = -(bt * squared(G) + c1) / e3;  // d1 d2 = -G^2, d1 + d2 = -F
     D = hypot(F, G + G);
@@ -86,8 +79,8 @@ TiltCubic::TiltCubic(const TiltStart& t) : ab(t.ab), ba(t.ba) {
     } else {
       const double b = bt.hi;
       const double start =
-          -std::min(t.op.hi * 1.0000001,
-                    2.0 * std::max({std::abs(c2.hi / b), std::sqrt(std::abs(c1.hi / b)), std::cbrt(c0.hi / b / 2.0)}));
+          -math::min(t.op.hi * 1.0000001,
+                     2.0 * math::max(abs(c2.hi / b), math::max(sqrt(abs(c1.hi / b)), std::cbrt(c0.hi / b / 2.0))));
       d1 = far_root(bt, c2, c1, c0, start);
     }
     const double size = bt.hi * -(d1.hi * d1.hi * d1.hi);
@@ -118,4 +111,4 @@ TiltCubic::TiltCubic(const TiltStart& t) : ab(t.ab), ba(t.ba) {
   kc2_E = upper ? e3 - bt * d2 : R;
 }
 
-}  // namespace polhode::exact
+}  // namespace polhode::POLHODE_ISA

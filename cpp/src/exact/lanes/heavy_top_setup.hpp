@@ -1,33 +1,32 @@
-#include "heavy_top_setup.hpp"
+#pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "heavy_top_complex.hpp"
-#include "heavy_top_cubic.hpp"
-#include "heavy_top_enlargement.hpp"
+#include "exact/lanes/heavy_top_complex.hpp"
+#include "exact/lanes/heavy_top_enlargement.hpp"
+#include "exact/lanes/heavy_top_roots.hpp"
 #include "polhode/math/landen.hpp"
 
 // Names follow docs/heavy_top.md: a = C w3 / A, b = p_phi / A, bt (there mu) = 2 M / A, u = cos(tilt),
 // u1 <= u <= u2 <= u3.
-namespace polhode::exact {
-namespace {
+namespace polhode::POLHODE_ISA {
 
-using math::sqrt;
+using exact::degree_12;
 using Chain = math::LandenChain<DD>;
 
 constexpr int most_terms = 7;  // of the theta sums in the set-up: q^42 for q <= 0.21
 
 /// As many as double-double needs for a nome.
-int terms_for(double q) {
+inline int terms_for(double q) {
   int n = 1;
   for (double left = q; left > 1e-34 && n < most_terms; ++n) left *= std::pow(q, 2 * n + 1);
   return n;
 }
-DD root_of(DD a) { return a.hi > 0.0 ? sqrt(a) : DD(0.0); }
-double sign(DD a) { return a.hi < 0.0 ? -1.0 : 1.0; }
-const double infinity = std::numeric_limits<double>::infinity();
+inline DD root_of(DD a) { return a.hi > 0.0 ? sqrt(a) : DD(0.0); }
+inline double sign(DD a) { return a.hi < 0.0 ? -1.0 : 1.0; }
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
 /// Coefficients q^(n(n+1)) rho^(2n+1) (cosh, sinh)((2n+1) zeta) / rho^(2n) of one theta quotient, from the descent.
 struct Series {
@@ -78,7 +77,7 @@ struct Monomials {
 };
 
 /// sum += factor (shift + slope X) a b, as far as the degree goes.
-void add_product(double (&sum)[degree_12 + 1], double factor, double shift, double slope, const Monomials& a,
+inline void add_product(double (&sum)[degree_12 + 1], double factor, double shift, double slope, const Monomials& a,
                  const Monomials& b) {
   for (int i = 0; i < 5; ++i)
     for (int j = 0; j < 5; ++j) {
@@ -109,14 +108,14 @@ struct AtStart {
 
 /// The direction of the constant c in value = c N, slope = c (i k N + speed (D - N theta' / theta)), from whichever
 /// is not small.
-Complex direction(bool by_slope, Complex value, Complex slope, Complex N, Complex D, DD k, DD speed, const AtStart& f) {
+inline Complex direction(bool by_slope, Complex value, Complex slope, Complex N, Complex D, DD k, DD speed, const AtStart& f) {
   if (!by_slope) return unit(balanced(value) * conj(N));
   const Complex slope_N = k * times_i(N) + speed * (D - (f.d_theta / f.theta) * N);
   return unit(balanced(slope) * conj(balanced(slope_N)));
 }
 
 /// The two factors in front, of given size, so that the attitude at t = 0 is the start's.
-void set_factors(HeavyTopConstants& c, const HeavyTopStart& s, DD ca, DD cb, DD kA, DD kB, DD speed, const AtStart& f) {
+inline void set_factors(HeavyTopConstants& c, const HeavyTopStart& s, DD ca, DD cb, DD kA, DD kB, DD speed, const AtStart& f) {
   const Complex alpha{s.w, s.z}, beta{s.x, s.y}, wp{s.w1, s.w2};
   const DD half = DD(0.5);
   const Complex alpha_slope = half * (s.w3 * times_i(alpha) - conj(wp) * beta);
@@ -129,10 +128,10 @@ void set_factors(HeavyTopConstants& c, const HeavyTopStart& s, DD ca, DD cb, DD 
 }
 
 /// Half circles by which N1 and N2 turn over a nutation; none when they pass 0 on the way.
-double turns_of_a(const Common& m) { return m.cubic.mu1.hi == 0.0 ? 0.0 : m.sA; }
-double turns_of_b(const Common& m) { return m.cubic.x2.hi == 0.0 ? 0.0 : m.sB; }
+inline double turns_of_a(const Common& m) { return m.cubic.mu1.hi == 0.0 ? 0.0 : m.sA; }
+inline double turns_of_b(const Common& m) { return m.cubic.x2.hi == 0.0 ? 0.0 : m.sB; }
 
-void set_up_trig(HeavyTopConstants& c, HeavyTopMotion& motion, const Common& m) {
+inline void set_up_trig(HeavyTopConstants& c, HeavyTopMotion& motion, const Common& m) {
   const Chain chain(m.k, m.kc);
   const DD nome = chain.nome(), nu = m.p / chain.two_K_over_pi();
   const auto z = math::descend_real(chain, m.sn, m.cn, DD(1.0), m.dn);
@@ -186,7 +185,7 @@ void set_up_trig(HeavyTopConstants& c, HeavyTopMotion& motion, const Common& m) 
   c.hyper = false;
   c.rate_z = in_cycles(nu), c.rate_a = in_cycles(kA), c.rate_b = in_cycles(kB);
   // within an eighth of a cycle of a quadrant, so that the rounding is that of a small angle
-  const bool along = std::abs(z0.re.hi) >= std::abs(z0.im.hi);
+  const bool along = abs(z0.re.hi) >= abs(z0.im.hi);
   const double quadrant = along ? (z0.re.hi > 0 ? 0.0 : 0.5) : (z0.im.hi > 0 ? 0.25 : -0.25);
   const double ratio = along ? (z0.im / z0.re).hi : -(z0.re / z0.im).hi;
   c.start_z = quadrant + std::atan(ratio) * 0.15915494309189535;
@@ -196,7 +195,8 @@ void set_up_trig(HeavyTopConstants& c, HeavyTopMotion& motion, const Common& m) 
   const M N2r(b.cosh, 1, false, M::V, 1), N2i(b.sinh, 1, false, M::W, m.sB);     // cos z, sin z
   const M D2r(b.cosh, 1, true, M::W, -1), D2i(b.sinh, 1, true, M::V, m.sB);      // sin z, cos z
   const M* const parts[] = {&N1r, &N1i, &N2r, &N2i};
-  for (int i = 0; i < 4; ++i) std::copy(parts[i]->p, parts[i]->p + 5, c.p[i]);
+  for (int i = 0; i < 4; ++i)
+    for (int k = 0; k < 5; ++k) c.p[i][k] = parts[i]->p[k];
   // speed (conj(N1) D2 - N2 conj(D1)) + i turn conj(N1) N2, with sin^2 z, cos^2 z = (1 -+ X)/2
   const double half = 0.5 * c.speed;
   add_product(c.even, half, 1, -1, N1r, D2r);
@@ -217,13 +217,13 @@ void set_up_trig(HeavyTopConstants& c, HeavyTopMotion& motion, const Common& m) 
 }
 
 /// cos and sin of the multiples of an angle, `first` and then steps of 2.
-void multiples(Complex e, int first, DD (&cosine)[4], DD (&sine)[4]) {
+inline void multiples(Complex e, int first, DD (&cosine)[4], DD (&sine)[4]) {
   const Complex twice = e * e;
   Complex turn = first == 0 ? Complex{DD(1.0), DD(0.0)} : e;
   for (int n = 0; n < 4; ++n, turn = turn * twice) cosine[n] = turn.re, sine[n] = turn.im;
 }
 
-void set_up_hyper(HeavyTopConstants& c, HeavyTopMotion& motion, const Common& m) {
+inline void set_up_hyper(HeavyTopConstants& c, HeavyTopMotion& motion, const Common& m) {
   const Chain chain(m.kc, m.k);
   const bool closed = m.kc.hi > 0.0;  // else homoclinic exactly
   const DD nome = chain.nome(), speed = m.p / chain.two_K_over_pi();
@@ -236,7 +236,7 @@ void set_up_hyper(HeavyTopConstants& c, HeavyTopMotion& motion, const Common& m)
   multiples(eta_a, 1, cos_a, sin_a);
   multiples(eta_b, 0, cos_b, sin_b);
   const auto sums = [&](double sg, DD E, DD g) {
-    return heavy_top_hyper_sums<DD>(cos_a, sin_a, cos_b, sin_b, nome, DD(sg), E, g);
+    return exact::heavy_top_hyper_sums<DD>(cos_a, sin_a, cos_b, sin_b, nome, DD(sg), E, g);
   };
   const auto theta = [&](DD E, DD g, double sg, DD* slope) {  // of the same argument, times E
     DD u = DD(1.0), d = E * E, sum = u + d, q_n = nome;
@@ -274,7 +274,7 @@ void set_up_hyper(HeavyTopConstants& c, HeavyTopMotion& motion, const Common& m)
   f.theta = theta(E0, g0, side, &f.d_theta);
   set_factors(c, m.start, ca, cb, kA, kB, speed, f);
 
-  const DD v0 = DD(-side) * math::log(E0);
+  const DD v0 = DD(-side) * logarithm(E0);
   c.hyper = true;
   c.rate_a = in_cycles(kA), c.rate_b = in_cycles(kB);
   c.v_rate_hi = speed.hi, c.v_rate_lo = speed.lo;
@@ -284,16 +284,16 @@ void set_up_hyper(HeavyTopConstants& c, HeavyTopMotion& motion, const Common& m)
     c.cos_a[n] = cos_a[n].hi, c.sin_a[n] = sin_a[n].hi, c.cos_b[n] = cos_b[n].hi, c.sin_b[n] = sin_b[n].hi;
   }
   motion.period = infinity;
-  motion.precession = std::numeric_limits<double>::quiet_NaN();
+  motion.precession = no_number;
   if (!closed) return;
 
-  const DD passage = -math::log(nome);  // 2 vK
+  const DD passage = -logarithm(nome);  // 2 vK
   const DD rate = speed / passage, half = math::scaled(math::pi<DD>(), 0.5);
   c.v_passage_hi = passage.hi, c.v_passage_lo = passage.lo;
   c.rate_z = {rate.hi, rate.lo};
   c.start_z = (v0 / passage).hi;
   // each passage turns alpha and beta by -2 eta; the half circle makes the quaternion go on without a change of sign
-  const DD angle_a = math::atan2(eta_a.im, eta_a.re), angle_b = math::atan2(eta_b.im, eta_b.re);
+  const DD angle_a = angle_of(eta_a.im, eta_a.re), angle_b = angle_of(eta_b.im, eta_b.re);
   const DD pass_a = DD(m.sA) * half - angle_a, pass_b = DD(m.sB) * half - angle_b;
   c.passage_a = in_cycles(pass_a + pass_a), c.passage_b = in_cycles(pass_b + pass_b);
   motion.period = (DD(1.0) / rate).hi;
@@ -302,7 +302,7 @@ void set_up_hyper(HeavyTopConstants& c, HeavyTopMotion& motion, const Common& m)
 }
 
 /// The tilt never changes: alpha and beta only turn. Written as the trig form with z at a quarter cycle for ever.
-void set_up_steady(HeavyTopConstants& c, HeavyTopMotion& motion, const HeavyTopStart& s, const TiltStart& t) {
+inline void set_up_steady(HeavyTopConstants& c, HeavyTopMotion& motion, const HeavyTopStart& s, const TiltStart& t) {
   const DD kA = math::scaled(s.w3 - t.a + (t.op.hi > 0.0 ? t.ab / t.op : DD(0.0)), 0.5);
   const DD kB = math::scaled(t.a - s.w3 + (t.om.hi > 0.0 ? t.ba / t.om : DD(0.0)), 0.5);
   c.hyper = false;
@@ -318,13 +318,13 @@ void set_up_steady(HeavyTopConstants& c, HeavyTopMotion& motion, const HeavyTopS
   motion.cos_low = motion.cos_high = root_of(t.op).hi;
   motion.period = 0.0;
   const bool vertical = t.om.hi == 0.0 || t.op.hi == 0.0;
-  motion.precession = vertical ? std::numeric_limits<double>::quiet_NaN() : (kA + kB).hi;
+  motion.precession = vertical ? no_number : (kA + kB).hi;
   motion.kind = t.om.hi == 0.0   ? TopKind::sleeping
                 : t.op.hi == 0.0 ? TopKind::hanging
                                  : TopKind::steady_precession;
 }
 
-TopKind kind_of(const HeavyTopStart& s, const TiltStart& t, const TiltCubic& cubic, DD kc) {
+inline TopKind kind_of(const HeavyTopStart& s, const TiltStart& t, const TiltCubic& cubic, DD kc) {
   if (kc.hi == 0.0) return TopKind::homoclinic;
   if (s.w3.hi == 0.0) {
     const bool planar = t.sv.hi * t.sv.hi <= 1e-31 * t.wp2.hi;
@@ -333,21 +333,19 @@ TopKind kind_of(const HeavyTopStart& s, const TiltStart& t, const TiltCubic& cub
   if (t.ab.hi == 0.0 || t.ba.hi == 0.0) return TopKind::monotone;  // through the vertical: phi' = a / (1 +- u)
   // phi' has the sign of b - a u, at the turning points
   const DD high = t.sv - t.a * cubic.d2, low = t.sv - t.a * cubic.d1;
-  const double size = std::abs(t.sv.hi) + std::abs(t.a.hi) * (std::abs(cubic.d1.hi) + std::abs(cubic.d2.hi));
-  if (std::abs(high.hi) <= 4e-16 * size) return TopKind::cuspidal;
+  const double size = abs(t.sv.hi) + abs(t.a.hi) * (abs(cubic.d1.hi) + abs(cubic.d2.hi));
+  if (abs(high.hi) <= 4e-16 * size) return TopKind::cuspidal;
   return (high.hi < 0.0) == (low.hi < 0.0) ? TopKind::monotone : TopKind::looping;
 }
 
-}  // namespace
-
-HeavyTopMotion set_up_heavy_top(const HeavyTopStart& given, HeavyTopConstants& c) {
+inline void set_up_top(const HeavyTopStart& given, HeavyTopConstants& c, HeavyTopMotion& motion) {
   HeavyTopStart s = given;
   const DD n = sqrt(squared(s.x) + squared(s.y) + squared(s.z) + squared(s.w));
   s.x = s.x / n, s.y = s.y / n, s.z = s.z / n, s.w = s.w / n;
 
-  HeavyTopMotion motion;
   const TiltStart given_tilt(s);
-  const Enlargement enlargement(s, given_tilt);
+  const Enlargement enlargement(s, given_tilt, motion);
+  if (motion.lost_within > 0.0) return;
   const TiltStart t(s);
   motion.energy = math::scaled(s.A * given_tilt.wp2 + s.C * s.w3 * s.w3, 0.5) + s.M * given_tilt.u0;
   motion.p_phi = s.A * (given_tilt.sv + given_tilt.a * given_tilt.u0);
@@ -378,7 +376,6 @@ HeavyTopMotion set_up_heavy_top(const HeavyTopStart& given, HeavyTopConstants& c
   }
   enlargement.undo(c, motion);
   if (s.M.hi == 0.0) motion.kind = TopKind::free;
-  return motion;
 }
 
-}  // namespace polhode::exact
+}  // namespace polhode::POLHODE_ISA
