@@ -316,6 +316,16 @@ void bind_shapes(py::module_& m) {
         return record.make(shape_numbers(record, values).data());
       },
       py::arg("name"), py::arg("values"), "The body from all its parameters, in the record's order.");
+  m.def(
+      "shape_volume",
+      [](const std::string& name, const py::sequence& values) {
+        const shapes::Record& record = shapes::find(name);
+        if (record.volume == nullptr) throw InvalidInput("shape", "one with a volume", name, "a thin body: give its mass");
+        const std::vector<double> numbers = shape_numbers(record, values);
+        record.make(numbers.data());  // refuses what is no body
+        return static_cast<double>(record.volume(numbers.data() + 1));
+      },
+      py::arg("name"), py::arg("values"), "The volume of a body, from all its parameters, in the record's order.");
 }
 
 py::typing::Tuple<Array, Array, py::int_> principal_axes(py::handle value) {

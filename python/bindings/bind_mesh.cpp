@@ -242,6 +242,7 @@ InvalidInput
         return found;
       },
       py::arg("vertices"), py::arg("faces"), "What the check of a surface found; see polhode.mesh.report.");
+  m.def("unit_in_metres", &to_unit, py::arg("unit"), "Length of a unit, given by its name or in metres.");
   m.def(
       "mesh_is_refined",
       [](py::handle vertices, py::handle faces) {

@@ -63,24 +63,15 @@ def model(name: str, check: Callable[[Any], None] | None = None, extra: str = "f
                           __validators__={"checked": p.model_validator(mode="after")(checked)}, **fields)
 
 
-def _one_of(table: Any, *choices: str) -> None:
+def one_of(table: Any, *choices: str) -> None:
+    """Raise ValueError unless one of these keys is given, and one alone."""
     given = [name for name in choices if getattr(table, name) is not None]
     if len(given) != 1:
         raise ValueError(f"give one of {', '.join(choices)}; got {' and '.join(given) or 'none of them'}")
 
 
-def _check_body(body: Any) -> None:
-    _one_of(body, "moments", "matrix", "shape")
-    if body.shape is not None:
-        wrong, beside = {"physical"} & body.model_fields_set, "a shape"
-    else:
-        wrong, beside = {"about"} & body.model_fields_set | set(body.model_extra), "moments or a matrix"
-    if wrong:
-        raise ValueError(f"unknown key {min(wrong)!r} beside {beside}")
-
-
 def _check_start(start: Any) -> None:
-    _one_of(start, "omega", "omega_deg")
+    one_of(start, "omega", "omega_deg")
     if start.attitude is not None and start.euler is not None:
         raise ValueError("give attitude or euler, not both")
 
@@ -92,21 +83,21 @@ def _check_times(times: Any) -> None:
 
 
 @cache
-def body_model() -> Any:
-    """Return the pydantic model of a [body] table; what it does not know is a parameter of the shape."""
+def euler_model() -> Any:
+    """Return the pydantic model of an attitude given by angles."""
     kind = kinds()
-    return model("Body", _check_body, "allow", moments=(kind.vector | None, None), matrix=(kind.matrix | None, None),
-                  shape=(str | None, None), about=(kind.vector | None, None), physical=(bool, True))
+    return model("Euler", lambda table: one_of(table, "angles", "angles_deg"), sequence=(str, ...),
+                 angles=(kind.numbers | None, None), angles_deg=(kind.numbers | None, None))
 
 
 @cache
 def scene_model() -> Any:
     """Return the pydantic model of a scene file; its JSON Schema is `scene_model().model_json_schema()`."""
+    from .bodies import body_model
+
     kind = kinds()
-    euler = model("Euler", lambda table: _one_of(table, "angles", "angles_deg"), sequence=(str, ...),
-                   angles=(kind.numbers | None, None), angles_deg=(kind.numbers | None, None))
     start = model("Start", _check_start, omega=(kind.vector | None, None), omega_deg=(kind.vector | None, None),
-                   attitude=(kind.quaternion | None, None), euler=(euler | None, None), t0=(kind.number, 0.0))
+                   attitude=(kind.quaternion | None, None), euler=(euler_model() | None, None), t0=(kind.number, 0.0))
     times = model("Times", _check_times, span=(kind.number | None, None), values=(kind.numbers | None, None),
                    samples=(Annotated[int, _pydantic().Field(ge=1)] | None, None))
     any_torque: Any = Union[tuple(_torque_models())]
@@ -198,30 +189,6 @@ def validate(table: Any, data: dict[str, Any], where: str) -> Any:
         raise InvalidInput(f"{where}: {'; '.join(lines[:3])}{more}") from None
 
 
-def body_properties(body: Any) -> Any:
-    """Return the MassProperties of a [body] table that names a shape."""
-    from . import shapes
-
-    names = [record[0] for record in _core.shape_records()]
-    if body.shape not in names:
-        raise InvalidInput(f"body.shape: must be one of {', '.join(names)}; got {body.shape!r}")
-    try:
-        return getattr(shapes, body.shape)(**body.model_extra)
-    except TypeError as error:
-        raise InvalidInput(f"body: {error}") from None
-
-
-def body_inertia(body: Any) -> _core.InertiaTensor:
-    """Return the InertiaTensor that a [body] table describes."""
-    if body.shape is not None:
-        properties = body_properties(body)
-        tensor: _core.InertiaTensor = properties.inertia if body.about is None else properties.about(body.about)
-        return tensor
-    if body.moments is not None:
-        return _core.InertiaTensor.from_moments(body.moments, physical=body.physical)
-    return _core.InertiaTensor(body.matrix, physical=body.physical)
-
-
 def _torque(entry: Any) -> Any:
     record = next(r for r in torques.records() if r["key"] == entry.kind)
     values = entry.model_dump(exclude={"kind", "diagonal"})
@@ -232,7 +199,8 @@ def _torque(entry: Any) -> Any:
     return getattr(torques, record["name"])(**values)
 
 
-def _attitude(start: Any) -> Any:
+def attitude_of(start: Any) -> Any:
+    """Return the attitude that a table gives as quaternion or angles, or else none at all."""
     if start.euler is None:
         return (0.0, 0.0, 0.0, 1.0) if start.attitude is None else start.attitude
     from .attitude import Rotation
@@ -244,6 +212,8 @@ def _attitude(start: Any) -> Any:
 
 def make_scene(data: dict[str, Any], where: str = "scene") -> Scene:
     """Build a scene from the content of a scene file."""
+    from .bodies import body_inertia
+
     entry = validate(scene_model(), data, where)
     start, times = entry.start, entry.times
     grid = times.values
@@ -253,7 +223,7 @@ def make_scene(data: dict[str, Any], where: str = "scene") -> Scene:
         return Scene(
             inertia=body_inertia(entry.body),
             omega=np.radians(start.omega_deg) if start.omega is None else start.omega,
-            attitude=_attitude(start),
+            attitude=attitude_of(start),
             torques=[_torque(one) for one in entry.torques],
             times=grid,
             want=entry.want,
@@ -266,16 +236,22 @@ def make_scene(data: dict[str, Any], where: str = "scene") -> Scene:
 
 def load_scene(source: str | os.PathLike[str]) -> Scene:
     """Read a scene file; see `Scene.load`."""
+    from .bodies import place_meshes
+
     path = find_scene(source)
     data = read_toml(path)
     data.setdefault("name", path.stem)
+    place_meshes(data.get("body"), path.parent)
     return make_scene(data, path.name)
 
 
 def load_body(source: str | os.PathLike[str]) -> Any:
     """Return the checked [body] table of a scene file, or of a file that holds nothing else."""
+    from .bodies import body_model, place_meshes
+
     path = find_scene(source)
     data = read_toml(path)
     if not isinstance(data.get("body"), dict):
         raise InvalidInput(f"{path.name}: body: missing, or not a table")
+    place_meshes(data["body"], path.parent)
     return validate(body_model(), data["body"], f"{path.name}: body")

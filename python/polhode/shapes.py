@@ -26,27 +26,56 @@ def _docstring(doc: str, parameters: _Parameters) -> str:
     return "\n".join([*lines, "    A mass or a length that is not positive and finite, or a wrong shape."])
 
 
-def _make(name: str, doc: str, parameters: _Parameters) -> Callable[..., MassProperties]:
+def _signature(parameters: _Parameters) -> inspect.Signature:
     kind = inspect.Parameter.POSITIONAL_OR_KEYWORD
-    signature = inspect.Signature(
+    return inspect.Signature(
         [inspect.Parameter(p, kind, annotation="npt.ArrayLike" if size else float) for p, size, _ in parameters],
         return_annotation=MassProperties,
     )
 
+
+def _bind(name: str, parameters: _Parameters, args: tuple[Any, ...], named: dict[str, Any]) -> dict[str, Any]:
+    try:
+        return dict(_signature(parameters).bind(*args, **named).arguments)
+    except TypeError as error:
+        raise TypeError(f"{name}({', '.join(p for p, _, _ in parameters)}): {error}") from None
+
+
+def _make(name: str, doc: str, parameters: _Parameters) -> Callable[..., MassProperties]:
+    signature = _signature(parameters)
+
     def shape(*args: Any, **kwargs: Any) -> MassProperties:
-        try:
-            values = signature.bind(*args, **kwargs).arguments
-        except TypeError as error:
-            raise TypeError(f"{name}{signature_text}: {error}") from None
+        values = _bind(name, parameters, args, kwargs)
         return _core.make_shape(name, [values[p] for p, _, _ in parameters])
 
-    signature_text = "(" + ", ".join(p for p, _, _ in parameters) + ")"
     shape.__name__ = shape.__qualname__ = name
     shape.__doc__ = _docstring(doc, parameters)
     shape.__annotations__ = {p: parameter.annotation for p, parameter in signature.parameters.items()}
     shape.__annotations__["return"] = MassProperties
     shape.__signature__ = signature  # type: ignore[attr-defined]
     return shape
+
+
+def volume(shape: str, /, *sizes: Any, **named: Any) -> float:
+    """Volume of a shape [m^3], for its mass by a density: `box(2700 * volume("box", sides), sides)`.
+
+    Parameters
+    ----------
+    shape : str
+        Its name.
+    *sizes, **named
+        As the shape takes them after its mass.
+
+    Raises
+    ------
+    InvalidInput
+        A shape that is thin or unknown, and what the shape refuses.
+    """
+    for name, _, parameters in _core.shape_records():
+        if name == shape:
+            values = _bind(name, parameters, (1.0, *sizes), named)
+            return _core.shape_volume(name, [values[p] for p, _, _ in parameters])
+    raise _core.InvalidInput(f"shape: must be one of {', '.join(_functions)}; got {shape!r}")
 
 
 def table() -> str:
@@ -60,7 +89,7 @@ def table() -> str:
 
 _functions = {name: _make(name, doc, parameters) for name, doc, parameters in _core.shape_records()}
 globals().update(_functions)
-__all__ = [*_functions, "table"]
+__all__ = [*_functions, "table", "volume"]
 
 
 def __getattr__(name: str) -> Callable[..., MassProperties]:  # for type checkers; only wrong names come here

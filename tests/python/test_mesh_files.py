@@ -6,18 +6,12 @@ import tracemalloc
 
 import numpy as np
 import pytest
-from meshes import box, inward, join, soup
+from meshes import binary_stl, box, inward, join, soup
 
 import polhode as ph
 
 MESH = join(box((0, 0, 0), (1, 2, 3)), inward(box((0.25, 0.5, 0.5), (0.75, 1.5, 2.5))))
 BODY = ph.MassProperties.from_mesh(*MESH, density=2700)
-
-
-def binary_stl(mesh, count=None, head=b"made by a test"):
-    corners = mesh[0][mesh[1]].astype("<f4")
-    rows = b"".join(bytes(12) + c.tobytes() + bytes(2) for c in corners)
-    return head.ljust(80, b"\0") + struct.pack("<I", len(corners) if count is None else count) + rows
 
 
 def ascii_stl(mesh):

@@ -98,7 +98,7 @@ def test_damping_by_diagonal_or_matrix():
     ("start.omega", [1, 2, float("nan")], "start.omega.2: must be a finite number; got nan"),
     ("start.attitude", [0, 0, 0, 2.0], "attitude: must be a unit quaternion"),
     ("start.euler", {"sequence": "ZXZ"}, "start.euler: give one of angles, angles_deg; got none of them"),
-    ("body.shape", "box", "body: give one of moments, matrix, shape; got moments and shape"),
+    ("body.shape", "box", "body: give one of moments, matrix, shape, mesh, parts; got moments and shape"),
     ("body.colour", "red", "body: unknown key 'colour' beside moments or a matrix"),
     ("body.moments", [1.0, 1.0, 3.0], "a deficit of 33.33 %"),
     ("body", {"shape": "bx"}, "body.shape: must be one of box, sphere"),

@@ -1,5 +1,6 @@
 """Small closed surfaces, and their mass properties in exact fractions."""
 
+import struct
 from fractions import Fraction
 
 import numpy as np
@@ -54,6 +55,13 @@ def soup(mesh):
     """The same faces, each with three vertices of its own, as STL files have them."""
     vertices, faces = mesh
     return vertices[faces].reshape(-1, 3), np.arange(3 * len(faces)).reshape(-1, 3)
+
+
+def binary_stl(mesh, count=None, head=b"made by a test"):
+    """The bytes of an STL file, in float32; `count` is what it claims."""
+    corners = mesh[0][mesh[1]].astype("<f4")
+    rows = b"".join(bytes(12) + c.tobytes() + bytes(2) for c in corners)
+    return head.ljust(80, b"\0") + struct.pack("<I", len(corners) if count is None else count) + rows
 
 
 def exact(vertices, faces):

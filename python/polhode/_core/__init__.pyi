@@ -711,10 +711,18 @@ def shape_records() -> list[typing.Any]:
     """
     (name, doc, ((parameter, size, doc), ...)) of every shape.
     """
+def shape_volume(name: str, values: collections.abc.Sequence[typing.Any]) -> float:
+    """
+    The volume of a body, from all its parameters, in the record's order.
+    """
 def solve(scene: Scene, accuracy: typing.Any, method: typing.Any, rtol: typing.Any, atol: typing.Any, step: typing.Any, max_steps: typing.SupportsInt | typing.SupportsIndex, dense: bool, formulation: str, events: list[typing.Any], progress: typing.Any) -> Answer:
     ...
 def torque_records() -> list[typing.Any]:
     """
     The list of torques: name, scene-file key, doc, source, parameters.
+    """
+def unit_in_metres(unit: typing.Any) -> float:
+    """
+    Length of a unit, given by its name or in metres.
     """
 __version__: str

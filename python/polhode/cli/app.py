@@ -124,21 +124,38 @@ def methods(as_json: Json = False) -> int:
 
 @_command
 def inertia(
-    file: Annotated[str, typer.Argument(help="A TOML file with a [body] table as in scenes, or a scene's name.")],
+    file: Annotated[str, typer.Argument(
+        help="A mesh (STL, OBJ, PLY, glTF), a TOML file with a [body] table as in scenes, or a scene's name.")],
+    density: Annotated[float | None, typer.Option(help="Of a mesh [kg/m^3].")] = None,
+    mass: Annotated[float | None, typer.Option(help="Of a mesh [kg].")] = None,
+    unit: Annotated[str, typer.Option(help="Of a mesh: m, cm, mm, um, in, ft, or a length [m].")] = "m",
+    flip: Annotated[bool, typer.Option("--flip", help="Turn a mesh that is wound inward as a whole.")] = False,
     as_json: Json = False,
 ) -> int:
     """Judge a body's inertia.
 
     Shows its moments, principal axes and symmetry, and whether there can be such a body.
     """
-    from .body import examine
+    from . import part
 
-    finding = examine(file)
+    if part.is_mesh(file):
+        finding = part.examine(file, density, mass, unit, flip)
+    else:
+        _only_for_meshes(density=density, mass=mass, unit=unit != "m", flip=flip)
+        from .body import examine
+
+        finding = examine(file)
     if as_json:
         _print_json(finding)
     else:
         show.body(finding)
     return 0 if finding["valid"] else 1
+
+
+def _only_for_meshes(**options: Any) -> None:
+    for name, value in options.items():
+        if value:
+            raise InvalidInput(f"--{name}: must go with a mesh file, got another")
 
 
 @_command

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from .._core import InertiaTensor, InvalidInput
-from ..schema import body_inertia, body_properties, load_body
+from ..bodies import body_inertia, body_properties, is_solid
+from ..schema import load_body
 
 
 def examine(source: str) -> dict[str, Any]:
@@ -15,9 +16,10 @@ def examine(source: str) -> dict[str, Any]:
     """
     body = load_body(source)
     finding: dict[str, Any] = {"file": str(source), "valid": True, "verdict": "a body can have this tensor"}
-    if body.shape is not None:
+    if is_solid(body):
         properties = body_properties(body)
-        finding |= {"shape": body.shape, "mass": properties.mass, "com": list(properties.com)}
+        finding |= {"shape": body.shape, "mesh": body.mesh, "parts": body.parts and len(body.parts)}
+        finding |= {"mass": properties.mass, "com": list(properties.com)}
     tensor: InertiaTensor | None
     try:
         tensor = body_inertia(body)

@@ -117,12 +117,17 @@ def methods(records: list[dict[str, Any]]) -> None:
     console().print(table)
 
 
+BODY = ("shape", "mesh", "parts", "faces", "surfaces", "cavities", "size", "volume", "mass", "com", "moments", "symmetry",
+        "arbitrary", "axes", "verdict")
+BODY_UNITS = {"size": " [m]", "volume": " [m^3]", "mass": " [kg]", "com": " [m]", "moments": " [kg m^2]", "axes": " (columns)"}
+
+
 def body(finding: dict[str, Any]) -> None:
     """What `inertia` found."""
     out = console()
     table = _table("", "", left=2)
     table.show_header = False
-    for name in ("shape", "mass", "com", "moments", "symmetry", "arbitrary", "axes", "verdict"):
+    for name in BODY:
         value = finding.get(name)
         if value is None:
             continue
@@ -130,9 +135,10 @@ def body(finding: dict[str, Any]) -> None:
             value = "\n".join("  ".join(f"{x:12.9f}" for x in row) for row in value)
         elif isinstance(value, list):
             value = ", ".join(f"{x:.9g}" for x in value)
-        unit = {"mass": " [kg]", "com": " [m]", "moments": " [kg m^2]", "axes": " (columns)"}.get(name, "")
-        table.add_row(f"{name}{unit}", Text(value if isinstance(value, str) else f"{value:.9g}"))
+        table.add_row(f"{name}{BODY_UNITS.get(name, '')}", Text(value if isinstance(value, str) else f"{value:.9g}"))
     out.print(table)
+    for note in finding.get("notes", ()):
+        out.print(Text(f"note  {note}"))
 
 
 def _drifts(point: Point) -> tuple[str, str]:

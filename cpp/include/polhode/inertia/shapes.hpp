@@ -29,6 +29,7 @@ struct Record {
   std::string doc;                               ///< what it is, where it stands, and its formula
   std::vector<Parameter> parameters;             ///< the mass first
   MassProperties (*make)(const double* values);  ///< from all parameters' numbers, one after the other
+  long double (*volume)(const double* sizes);    ///< [m^3] from those after the mass; null for thin bodies
 };
 
 /// Every shape, in the order of shapes.def.

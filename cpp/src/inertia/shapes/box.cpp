@@ -11,10 +11,12 @@ MassProperties box(double mass, const Vector3d& half_sides) {
 }
 
 Record describe_box() {
-  return make_record<&box>("box",
+  return with_volume(
+      make_record<&box>("box",
                            "A solid block with sides 2a, 2b, 2c along x, y, z. "
                            "Ix = m (b^2 + c^2) / 3, and cyclically.",
-                           {{"mass", "mass [kg]"}, {"half_sides", "a, b, c: half of each side [m]"}});
+                           {{"mass", "mass [kg]"}, {"half_sides", "a, b, c: half of each side [m]"}}),
+      [](const double* v) -> Real { return Real(8) * v[0] * v[1] * v[2]; });
 }
 
 }  // namespace polhode::shapes

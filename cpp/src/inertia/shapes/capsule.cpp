@@ -11,14 +11,16 @@ MassProperties capsule(double mass, double radius, double cylinder_height) {
 }
 
 Record describe_capsule() {
-  return make_record<&capsule>(
+  return with_volume(
+      make_record<&capsule>(
       "capsule",
       "A solid cylinder round z between two half balls. With the masses mc of the cylinder and ms of the caps, in the "
       "ratio 3 h : 4 r, "
       "Ix = Iy = mc (3 r^2 + h^2) / 12 + ms (2/5 r^2 + h^2 / 4 + 3/8 h r), Iz = mc r^2 / 2 + 2/5 ms r^2.",
       {{"mass", "mass [kg]"},
        {"radius", "r of cylinder and caps [m]"},
-       {"cylinder_height", "h between the caps [m]; 0 is a ball"}});
+       {"cylinder_height", "h between the caps [m]; 0 is a ball"}}),
+      [](const double* v) -> Real { return pi * v[0] * v[0] * (v[1] + 4 * Real(v[0]) / 3); });
 }
 
 }  // namespace polhode::shapes

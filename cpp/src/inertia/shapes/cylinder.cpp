@@ -9,10 +9,12 @@ MassProperties cylinder(double mass, double radius, double height) {
 }
 
 Record describe_cylinder() {
-  return make_record<&cylinder>("cylinder",
+  return with_volume(
+      make_record<&cylinder>("cylinder",
                                 "A solid cylinder round z. "
                                 "Ix = Iy = m (3 r^2 + h^2) / 12, Iz = m r^2 / 2.",
-                                {{"mass", "mass [kg]"}, {"radius", "r [m]"}, {"height", "h, the full height [m]"}});
+                                {{"mass", "mass [kg]"}, {"radius", "r [m]"}, {"height", "h, the full height [m]"}}),
+      [](const double* v) -> Real { return pi * v[0] * v[0] * v[1]; });
 }
 
 }  // namespace polhode::shapes

@@ -11,10 +11,12 @@ MassProperties ellipsoid(double mass, const Vector3d& semi_axes) {
 }
 
 Record describe_ellipsoid() {
-  return make_record<&ellipsoid>("ellipsoid",
+  return with_volume(
+      make_record<&ellipsoid>("ellipsoid",
                                  "A solid ellipsoid with semi-axes a, b, c along x, y, z. "
                                  "Ix = m (b^2 + c^2) / 5, and cyclically.",
-                                 {{"mass", "mass [kg]"}, {"semi_axes", "a, b, c [m]"}});
+                                 {{"mass", "mass [kg]"}, {"semi_axes", "a, b, c [m]"}}),
+      [](const double* v) -> Real { return 4 * pi / 3 * v[0] * v[1] * v[2]; });
 }
 
 }  // namespace polhode::shapes

@@ -24,14 +24,18 @@ MassProperties hollow_box(double mass, const Vector3d& half_sides, double wall) 
 }
 
 Record describe_hollow_box() {
-  return make_record<&hollow_box>(
+  return with_volume(make_record<&hollow_box>(
       "hollow_box",
       "A closed box with sides 2a, 2b, 2c along x, y, z outside and walls of one thickness w all round. "
       "With V = a b c - a' b' c', where a' = a - w and so on: Ix = m (a (b^3 c + b c^3) - a' (b'^3 c' + b' c'^3)) / (3 "
       "V), and cyclically.",
       {{"mass", "mass [kg]"},
        {"half_sides", "a, b, c: half of each outer side [m]"},
-       {"wall", "w, thickness of the walls [m]; 0 is the limit of a thin sheet"}});
+       {"wall", "w, thickness of the walls [m]; 0 is the limit of a thin sheet"}}),
+                     [](const double* v) {
+                       const Real a = v[0], b = v[1], c = v[2], w = v[3];
+                       return 8 * w * (b * c + (a - w) * (c + b - w));
+                     });
 }
 
 }  // namespace polhode::shapes

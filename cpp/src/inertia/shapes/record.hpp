@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <tuple>
 #include <type_traits>
@@ -20,6 +21,8 @@ using inertia::positive;
 
 /// The formulas are evaluated in long double and rounded once.
 using Real = long double;
+
+inline constexpr Real pi = std::numbers::pi_v<Real>;
 
 /// A body with principal axes along x, y, z: moments Ix, Iy, Iz about its centre (0, 0, z).
 inline MassProperties along_axes(double mass, Real Ix, Real Iy, Real Iz, Real z = 0) {
@@ -83,7 +86,7 @@ MassProperties make_from_numbers(const double* values) {
 template <auto shape, class... P>
 Record make_record(MassProperties (*)(P...), std::string name, std::string doc,
                    const std::array<std::pair<const char*, const char*>, sizeof...(P)>& parameters) {
-  Record record{std::move(name), std::move(doc), {}, &make_from_numbers<shape, P...>};
+  Record record{std::move(name), std::move(doc), {}, &make_from_numbers<shape, P...>, nullptr};
   const std::vector<int> sizes[] = {Reader<std::decay_t<P>>::size()...};
   for (std::size_t i = 0; i < sizeof...(P); ++i) {
     record.parameters.push_back({parameters[i].first, sizes[i], parameters[i].second});
@@ -95,6 +98,12 @@ Record make_record(MassProperties (*)(P...), std::string name, std::string doc,
 template <auto shape, std::size_t N>
 Record make_record(std::string name, std::string doc, const std::pair<const char*, const char*> (&parameters)[N]) {
   return make_record<shape>(shape, std::move(name), std::move(doc), std::to_array(parameters));
+}
+
+/// The same with the volume from the numbers after the mass: for bodies that have one.
+inline Record with_volume(Record record, Real (*volume)(const double* sizes)) {
+  record.volume = volume;
+  return record;
 }
 
 }  // namespace polhode::shapes

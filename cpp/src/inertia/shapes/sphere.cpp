@@ -9,7 +9,9 @@ MassProperties sphere(double mass, double radius) {
 }
 
 Record describe_sphere() {
-  return make_record<&sphere>("sphere", "A solid ball. I = 2/5 m r^2.", {{"mass", "mass [kg]"}, {"radius", "r [m]"}});
+  return with_volume(
+      make_record<&sphere>("sphere", "A solid ball. I = 2/5 m r^2.", {{"mass", "mass [kg]"}, {"radius", "r [m]"}}),
+      [](const double* v) -> Real { return 4 * pi / 3 * v[0] * v[0] * v[0]; });
 }
 
 }  // namespace polhode::shapes

@@ -47,11 +47,19 @@ MassProperties tetrahedron(double mass, const Tetrahedron& vertices) {
 }
 
 Record describe_tetrahedron() {
-  return make_record<&tetrahedron>(
+  return with_volume(make_record<&tetrahedron>(
       "tetrahedron",
       "A solid tetrahedron with any four corners; its centre of mass is their mean. "
       "About the centre of mass: I_xx = m/20 sum (y^2 + z^2), I_xy = -m/20 sum x y over the corners, seen from there.",
-      {{"mass", "mass [kg]"}, {"vertices", "x, y, z of the four corners, in any order [m]"}});
+      {{"mass", "mass [kg]"}, {"vertices", "x, y, z of the four corners, in any order [m]"}}),
+                     [](const double* v) {
+                       Real e[3][3];
+                       for (int i = 0; i < 3; ++i)
+                         for (int k = 0; k < 3; ++k) e[i][k] = Real(v[3 * i + 3 + k]) - v[k];
+                       return std::abs(e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) +
+                                       e[0][1] * (e[1][2] * e[2][0] - e[1][0] * e[2][2]) +
+                                       e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0])) / 6;
+                     });
 }
 
 }  // namespace polhode::shapes

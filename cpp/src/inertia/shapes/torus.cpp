@@ -14,12 +14,14 @@ MassProperties torus(double mass, double major_radius, double minor_radius) {
 }
 
 Record describe_torus() {
-  return make_record<&torus>("torus",
+  return with_volume(
+      make_record<&torus>("torus",
                              "A solid ring round z: a tube of radius r whose centre line is a circle of radius R >= r. "
                              "Ix = Iy = m (R^2 / 2 + 5/8 r^2), Iz = m (R^2 + 3/4 r^2).",
                              {{"mass", "mass [kg]"},
                               {"major_radius", "R, of the centre line [m]"},
-                              {"minor_radius", "r, of the tube [m]; 0 is a thin ring"}});
+                              {"minor_radius", "r, of the tube [m]; 0 is a thin ring"}}),
+      [](const double* v) -> Real { return 2 * pi * pi * v[0] * v[1] * v[1]; });
 }
 
 }  // namespace polhode::shapes

@@ -31,14 +31,19 @@ MassProperties triangular_prism(double mass, const Triangle& vertices, double he
 }
 
 Record describe_triangular_prism() {
-  return make_record<&triangular_prism>(
+  return with_volume(make_record<&triangular_prism>(
       "triangular_prism",
       "A solid triangle in x, y, drawn out along z from -h/2 to h/2; its centre of mass is the mean of the corners. "
       "About the centre of mass: I_xx = m/12 (sum y^2 + h^2), I_xy = -m/12 sum x y, I_zz = m/12 sum (x^2 + y^2) over "
       "the corners, seen from there.",
       {{"mass", "mass [kg]"},
        {"vertices", "x, y of the three corners, in any order [m]"},
-       {"height", "h along z [m]"}});
+       {"height", "h along z [m]"}}),
+                     [](const double* v) {
+                       const Real ex = Real(v[2]) - v[0], ey = Real(v[3]) - v[1];
+                       const Real fx = Real(v[4]) - v[0], fy = Real(v[5]) - v[1];
+                       return std::abs(ex * fy - ey * fx) / 2 * v[6];
+                     });
 }
 
 }  // namespace polhode::shapes
