@@ -15,9 +15,10 @@ namespace polhode {
 /// `Step` is the method, made from a PrincipalBody and the run's start; it has
 ///   bool advance(double h, const double* kick, double* L, double* q)
 /// for one step of L_P and q_WP, false where it finds no solution, and
-///   static constexpr bool kick_within   its torque acts inside the step, as h tau in `kick`; else half of it acts before
-///                                       and half after the step (Strang 1968, SIAM J. Numer. Anal. 5, 506), and kick is null
+///   static constexpr bool kick_within   its torque acts inside the step, as h tau in `kick`
 ///   static constexpr int interior       shorter steps that the polynomial between the steps is drawn through
+/// Without kick_within the torque acts between the parts of a step, by `kicks` and `drifts` where Step has them, else
+/// half of it before and half after (Strang 1968, SIAM J. Numer. Anal. 5, 506).
 template <class Step>
 class BodyStepper final : public ode::FixedStepper {
  public:
@@ -123,25 +124,35 @@ class BodyStepper final : public ode::FixedStepper {
   }
 
   bool advance(Step& one, double t, double h, double* L, double* q) {
+    constexpr double none[3] = {0, 0, 0};
     const double scaled = body_.to_scaled_time(h);
-    bool solved;
+    bool solved = true;
     if (!body_.driven()) {
-      constexpr double none[3] = {0, 0, 0};
       solved = one.advance(scaled, none, L, q);
     } else if constexpr (Step::kick_within) {
       double kick[3];
       compute_kick(t, scaled, L, q, kick);
       solved = one.advance(scaled, kick, L, q);
+    } else if constexpr (requires { Step::kicks; }) {
+      double at = 0.0;
+      for (std::size_t k = 0; k < std::size(Step::kicks); ++k) {
+        apply_kick(t + at * h, Step::kicks[k] * scaled, L, q);
+        if (k == std::size(Step::drifts)) break;
+        solved = solved && one.advance(Step::drifts[k] * scaled, none, L, q);
+        at = k + 1 == std::size(Step::drifts) ? 1.0 : at + Step::drifts[k];
+      }
     } else {
-      constexpr double none[3] = {0, 0, 0};
-      double kick[3];
-      compute_kick(t, 0.5 * scaled, L, q, kick);
-      for (int i = 0; i < 3; ++i) L[i] += kick[i];
+      apply_kick(t, 0.5 * scaled, L, q);
       solved = one.advance(scaled, none, L, q);
-      compute_kick(t + h, 0.5 * scaled, L, q, kick);
-      for (int i = 0; i < 3; ++i) L[i] += kick[i];
+      apply_kick(t + h, 0.5 * scaled, L, q);
     }
     return solved && std::isfinite(L[0] + L[1] + L[2]) && std::isfinite(q[0] + q[1] + q[2] + q[3]);
+  }
+
+  void apply_kick(double t, double h, double* L, const double* q) {
+    double kick[3];
+    compute_kick(t, h, L, q, kick);
+    for (int i = 0; i < 3; ++i) L[i] += kick[i];
   }
 
   /// What the torque alone does to L in the (scaled) time h at the time t: h tau, or where the torque sees the rates

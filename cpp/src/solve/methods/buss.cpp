@@ -20,12 +20,7 @@ class Buss {
     for (int i = 0; i < 3; ++i) turn[i] = h * (w[i] + h * (0.5 * a[i] + h / 12 * aw[i]));
     exponential(turn, p);
     turn_by(p, q);
-    // L_B = R(p)^T L_B
-    double t[3], u[3];
-    cross(L, p, t);
-    for (int i = 0; i < 3; ++i) t[i] *= 2;
-    cross(t, p, u);
-    for (int i = 0; i < 3; ++i) L[i] += p[3] * t[i] + u[i];
+    turn_back(p, L);
     return true;
   }
 

@@ -122,4 +122,13 @@ inline void turn_by_vector(const double* r, double* q) {
   turn_by(p, q);
 }
 
+/// v = R(p)^T v for a unit quaternion p: what stands still in space, seen by a body that turned by p.
+inline void turn_back(const double* p, double* v) {
+  double t[3], u[3];
+  cross(v, p, t);
+  for (int i = 0; i < 3; ++i) t[i] *= 2;
+  cross(t, p, u);
+  for (int i = 0; i < 3; ++i) v[i] += p[3] * t[i] + u[i];
+}
+
 }  // namespace polhode
