@@ -64,11 +64,16 @@ Motion run(const Scene& scene, const SolveOptions& options, const double* y0, co
     std::vector<double> sorted(order.size());
     for (std::size_t i = 0; i < order.size(); ++i) sorted[i] = times[order[i]];
     const std::unique_ptr<ode::Stepper> stepper = make_stepper(y0, sorted.back());
-    const auto sink = [&](std::size_t index, double, const double* y) {
+    const auto sink = [&](std::size_t index, double t, const double* y) {
       double omega[3], attitude[4];
       const std::size_t row = order[index];
-      unpack(y, want.omega ? motion.omega.data() + 3 * row : omega,
-                want.attitude ? motion.attitude.data() + 4 * row : attitude);
+      double* w = want.omega ? motion.omega.data() + 3 * row : omega;
+      double* q = want.attitude ? motion.attitude.data() + 4 * row : attitude;
+      unpack(y, w, q);
+      if (t == scene.t0()) {   // whatever variables the method carries: the start is as it was given
+        std::copy_n(scene.omega().data(), 3, w);
+        q[0] = scene.attitude().x, q[1] = scene.attitude().y, q[2] = scene.attitude().z, q[3] = scene.attitude().w;
+      }
       answered[row] = 1;
     };
     ode::DriveResult result = ode::drive(
