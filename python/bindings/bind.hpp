@@ -10,6 +10,7 @@ void bind_core(py::module_& m);
 void bind_math(py::module_& m);
 void bind_attitude(py::module_& m);
 void bind_inertia(py::module_& m);
+void bind_inertia_checks(py::module_& m);
 void bind_torque(py::module_& m);
 void bind_exact(py::module_& m);
 void bind_ode(py::module_& m);

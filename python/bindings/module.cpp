@@ -8,6 +8,7 @@ PYBIND11_MODULE(_core, m, pybind11::mod_gil_not_used()) {
   bind_math(m);
   bind_attitude(m);
   bind_inertia(m);
+  bind_inertia_checks(m);
   bind_torque(m);
   bind_exact(m);
   bind_ode(m);

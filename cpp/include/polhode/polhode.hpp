@@ -13,6 +13,7 @@
 #include "polhode/core/version.hpp"
 #include "polhode/exact/free_motion.hpp"
 #include "polhode/exact/heavy_top.hpp"
+#include "polhode/inertia/checks.hpp"
 #include "polhode/inertia/mass_properties.hpp"
 #include "polhode/inertia/shapes.hpp"
 #include "polhode/math/elliptic.hpp"

@@ -677,6 +677,10 @@ def build_info() -> dict[str, str]:
     """
     How the installed binary was built.
     """
+def check_inertia(matrices: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.uint8]]:
+    """
+    (margins, flaws); see polhode.inertia.check.
+    """
 def drift(arg0: Scene, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Any, arg3: typing.Any) -> dict[str, float]:
     ...
 def energy(arg0: Scene, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg3: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
@@ -717,6 +721,10 @@ def shape_volume(name: str, values: collections.abc.Sequence[typing.Any]) -> flo
     """
 def solve(scene: Scene, accuracy: typing.Any, method: typing.Any, rtol: typing.Any, atol: typing.Any, step: typing.Any, max_steps: typing.SupportsInt | typing.SupportsIndex, dense: bool, formulation: str, events: list[typing.Any], progress: typing.Any) -> Answer:
     ...
+def to_numbers(value: typing.Any, name: str, shape: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], finite: bool = True) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    A float64 array of this shape, or InvalidInput.
+    """
 def torque_records() -> list[typing.Any]:
     """
     The list of torques: name, scene-file key, doc, source, parameters.

@@ -125,19 +125,28 @@ def methods(as_json: Json = False) -> int:
 @_command
 def inertia(
     file: Annotated[str, typer.Argument(
-        help="A mesh (STL, OBJ, PLY, glTF), a TOML file with a [body] table as in scenes, or a scene's name.")],
+        help="A robot (URDF, MJCF, SDF), a mesh (STL, OBJ, PLY, glTF), a TOML file with a [body] table as in scenes, or "
+             "a scene's name.")],
     density: Annotated[float | None, typer.Option(help="Of a mesh [kg/m^3].")] = None,
     mass: Annotated[float | None, typer.Option(help="Of a mesh [kg].")] = None,
     unit: Annotated[str, typer.Option(help="Of a mesh: m, cm, mm, um, in, ft, or a length [m].")] = "m",
     flip: Annotated[bool, typer.Option("--flip", help="Turn a mesh that is wound inward as a whole.")] = False,
     as_json: Json = False,
 ) -> int:
-    """Judge a body's inertia.
+    """Judge a body's inertia, or every link's of a robot.
 
-    Shows its moments, principal axes and symmetry, and whether there can be such a body.
+    Shows moments, principal axes and symmetry, and whether there can be such a body; of robots, what is wrong and why.
     """
-    from . import part
+    from . import part, robot
 
+    if robot.is_robot(file):
+        _only_for_meshes(density=density, mass=mass, unit=unit != "m", flip=flip)
+        content = robot.examine(file)
+        if as_json:
+            _print_json(content)
+        else:
+            show.robot(content)
+        return 0 if content["valid"] else 1
     if part.is_mesh(file):
         finding = part.examine(file, density, mass, unit, flip)
     else:

@@ -13,8 +13,12 @@ import numpy.typing as npt
 
 from .. import _core
 from .._core import InertiaTensor, MassProperties, PrincipalAxes
+from .checks import Flaw, check
+from .diagnosis import diagnose
+from .findings import Diagnosis, Finding
 
-__all__ = ["InertiaTensor", "MassProperties", "PrincipalAxes", "principal_axes"]
+__all__ = ["Diagnosis", "Finding", "Flaw", "InertiaTensor", "MassProperties", "PrincipalAxes", "check", "diagnose",
+           "principal_axes"]
 
 
 def principal_axes(matrices: npt.ArrayLike) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:

@@ -1,0 +1,33 @@
+"""Robot descriptions: the links of URDF, MJCF and SDF files, each judged by itself and against its geometry."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+from collections.abc import Callable
+
+from ..._core import InvalidInput
+from . import mjcf, sdf, urdf
+from .link import Link, Robot
+from .xml import Node, parse
+
+__all__ = ["Link", "Robot", "read", "suffixes"]
+
+suffixes = (".urdf", ".mjcf", ".sdf", ".xml", ".xacro", ".world")
+
+_readers: dict[str, Callable[[Node, pathlib.Path], Robot]] = {"robot": urdf.read, "mujoco": mjcf.read, "sdf": sdf.read}
+
+
+def read(path: str | os.PathLike[str]) -> Robot:
+    """Read a robot description; what it is, its root element says.
+
+    Raises
+    ------
+    InvalidInput
+        A file that cannot be read, is no XML, declares entities, or lacks what a link must have.
+    """
+    file = pathlib.Path(path)
+    root = parse(file)
+    if (reader := _readers.get(root.tag)) is None:
+        raise InvalidInput(f"{file}: must have the root <robot> (URDF), <mujoco> (MJCF) or <sdf>; got <{root.tag}>")
+    return reader(root, file)

@@ -1,0 +1,199 @@
+"""Diagnosis: known faults found and named, valid bodies left alone, and the vectorised checks."""
+
+import collections
+
+import numpy as np
+import pytest
+from corruptions import KNOWN
+from links import Link, numbers
+
+import polhode as ph
+from polhode.inertia import Flaw, check, diagnose
+
+BLOCK = np.diag((0.20, 0.40, 0.52))
+
+
+def body(name, seed):
+    """A random link's numbers after a known corruption, and how its geometry is told."""
+    rng = np.random.default_rng([seed, 7])
+    link = Link(rng)
+    mass, com, matrix = numbers(link.props, 5)
+    return KNOWN[name][1](rng, float(mass), com, matrix), (float(mass), com, matrix), link
+
+
+def told(link):
+    return {"geometry": link.props, "extents": link.extents, "volume": link.volume}
+
+
+def named(name, count, geometry, shift=0):
+    """How often each cause was named, and among the data that differ from what they were by 2 % of the largest entry."""
+    tally = collections.Counter()
+    for seed in range(shift, shift + count):
+        wrong, right, link = body(name, seed)
+        if np.abs(wrong[2] / wrong[0] - right[2] / right[0]).max() < 0.02 * np.abs(right[2] / right[0]).max() and \
+                np.array_equal(wrong[1], right[1]):
+            tally["cannot show"] += 1
+            continue
+        found = diagnose(*wrong, **(told(link) if geometry else {}))
+        tally[found.findings[0].cause if found.findings else "fine"] += 1
+    return tally
+
+
+def false_alarms(seeds):
+    """Diagnoses of valid bodies, even and uneven, rounded or not, told with more or less of their geometry."""
+    for seed in seeds:
+        rng = np.random.default_rng(seed)
+        link = Link(rng, aligned=rng.integers(3) == 0)
+        props = (link.props, link.uneven(rng), link.uneven(rng, 0.05), link.uneven(rng, 0.95))[rng.integers(4)]
+        mass, com, matrix = numbers(props, (None, 4, 6)[rng.integers(3)])
+        for given, known in (((matrix,), {}), ((mass, com, matrix), {}), ((matrix,), {"geometry": link.props}),
+                             ((mass, com, matrix), {"geometry": link.props}), ((mass, com, matrix), told(link))):
+            found = diagnose(*given, **known)
+            if not found.fine:
+                yield seed, sorted(known), found.verdict
+
+
+def test_valid_bodies_are_fine():
+    assert not list(false_alarms(range(150)))
+
+
+@pytest.mark.long
+def test_no_valid_body_of_ten_thousand_is_accused():
+    assert not list(false_alarms(range(10_000)))
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_known_faults_are_named_with_geometry(name):
+    tally = named(name, 12, geometry=True)
+    assert tally[KNOWN[name][0]] == 12 - tally["cannot show"] > 0
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", KNOWN)
+def test_known_faults_of_a_thousand_are_named_with_geometry(name):
+    tally = named(name, 1000, geometry=True)
+    print(name, dict(tally))
+    assert tally[KNOWN[name][0]] >= 0.95 * (1000 - tally["cannot show"]) > 500
+
+
+SHOWN_ALONE = {   # by the numbers alone, of those that are found to be wrong at all
+    "products with the other sign": 0.2, "URDF's order read as MuJoCo's": 0.95, "MuJoCo's order read as URDF's": 0.95,
+    "parallel-axis term taken off twice": 0.7, "mass in g": 0.95, "tensor in kg mm^2": 0.95,
+    "divided by 1e6 once too often": 0.95, "a decimal point in one entry": 0.6,
+}
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", SHOWN_ALONE)
+def test_known_faults_of_a_thousand_are_named_without_geometry(name):
+    tally = named(name, 1000, geometry=False)
+    seen = 1000 - tally["cannot show"] - tally["fine"]
+    print(name, dict(tally), seen / (1000 - tally["cannot show"]))
+    assert tally[KNOWN[name][0]] >= 0.95 * seen
+    assert seen >= SHOWN_ALONE[name] * (1000 - tally["cannot show"])
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_the_repair_is_the_body_as_it_was(name):
+    wrong, right, link = body(name, 3)
+    (finding, *_) = diagnose(*wrong, **told(link)).findings
+    np.testing.assert_allclose(finding.matrix / finding.mass, right[2] / right[0], rtol=1e-3,
+                               atol=2e-4 * np.abs(right[2] / right[0]).max())
+    np.testing.assert_allclose(finding.com, right[1], rtol=1e-3, atol=1e-12)
+
+
+@pytest.mark.parametrize("scale", [1e-12, 1.0, 1e12])
+def test_a_tensor_alone_is_judged_alike_at_every_scale(scale):
+    assert diagnose(BLOCK * scale).margin == pytest.approx(0.08 / 0.52)
+    found = diagnose(np.diag((0.2, 0.4, 5.2)) * scale)
+    (finding,) = found.findings
+    assert (finding.what, finding.cause, finding.impossible) == ("triangle", "decimal", True)
+    assert finding.per_cent == pytest.approx(100 * 4.6 / 5.2)
+    np.testing.assert_allclose(finding.matrix, BLOCK * scale, rtol=1e-14)
+    assert "about z" in finding.text and "izz" in finding.advice
+
+
+def test_what_is_broken_is_said_by_how_much():
+    negative = diagnose(np.diag((-0.2, 0.4, 0.52)))
+    assert negative.findings[0].what == "positive" and negative.findings[0].per_cent == pytest.approx(100 * 0.2 / 0.52)
+    flat = diagnose(np.diag((0.3, 0.4, 0.7001)))
+    assert flat.findings[0].cause == "rounding" and flat.findings[0].per_cent == pytest.approx(100 * 1e-4 / 0.7001)
+    assert ph.InertiaTensor(flat.findings[0].matrix)
+    assert diagnose(np.diag((0.2, np.nan, 0.5))).findings[0].what == "finite"
+    assert diagnose(-1.0, (0, 0, 0), BLOCK).findings[0].what == "mass"
+    assert diagnose(1.0, (0, 0, 0), np.zeros((3, 3))).findings[0].cause == "placeholder"
+    assert diagnose(2.0, (0, 0, 0), np.eye(3), extents=[(-0.1,) * 3, (0.1,) * 3]).findings[0].what == "extent"
+
+
+@pytest.mark.parametrize("change, cause", [((0, 1, 0.0), "triangle of zeros"), ((0, 1, 0.05), "sign"),
+                                           ((0, 1, -0.5), "decimal"), ((0, 1, -0.07), "unknown"),
+                                           ((0, 1, -0.050001), "rounding")])
+def test_what_is_not_symmetric(change, cause):
+    matrix = np.array([[0.2, -0.05, 0], [-0.05, 0.4, 0], [0, 0, 0.5]])
+    wrong = matrix.copy()
+    wrong[change[:2]] = change[2]
+    (finding,) = diagnose(wrong).findings
+    assert (finding.what, finding.cause) == ("symmetric", cause)
+    assert np.array_equal(finding.matrix, finding.matrix.T)
+    if cause in ("triangle of zeros", "decimal"):
+        np.testing.assert_array_equal(finding.matrix, matrix)
+
+
+def test_the_bound_of_the_extents_is_reached_by_no_body_within():
+    """Two equal masses at the ends of a line: the most that its extent allows (BhatiaDavis2000)."""
+    box = [(-0.5, -0.1, -0.1), (0.5, 0.1, 0.1)]
+    ends = ph.MassProperties.from_points([1, 1, 0.01, 0.01], [(-0.5, 0, 0), (0.5, 0, 0), (0, 0.1, 0), (0, 0, 0.1)])
+    assert diagnose(ends, extents=box).fine
+    longer = ph.MassProperties(ends.mass, ends.com, ends.inertia.matrix * 1.3)
+    assert diagnose(longer, extents=box).findings[0].what == "extent"
+
+
+def test_a_point_of_reference_may_be_told():
+    block = ph.shapes.box(12.0, (0.1, 0.2, 0.3)).moved(translation=(1.0, 0, 0))
+    origin = block.about((0, 0, 0)).matrix
+    assert diagnose(block.mass, block.com, origin, about=(0, 0, 0)).fine
+    missing = diagnose(block.mass, block.com, block.inertia.matrix, about=(0, 0, 0))
+    assert missing.findings[0].cause == "point"
+    np.testing.assert_allclose(missing.findings[0].matrix, block.inertia.matrix, rtol=1e-12)
+
+
+def test_what_is_given_is_asked_for():
+    for wrong in (lambda: diagnose(), lambda: diagnose(1.0, BLOCK), lambda: diagnose(np.eye(2)),
+                  lambda: diagnose("heavy", (0, 0, 0), BLOCK), lambda: diagnose(BLOCK, geometry=BLOCK),
+                  lambda: diagnose(BLOCK, extents=[(1, 1, 1), (0, 0, 0)]), lambda: diagnose(BLOCK, about=(0, 0, 0)),
+                  lambda: diagnose(BLOCK, volume=-1), lambda: diagnose(np.inf, (0, 0, 0), BLOCK)):
+        with pytest.raises(ph.InvalidInput):
+            wrong()
+
+
+def test_check_agrees_with_the_door():
+    rng = np.random.default_rng(1)
+    factor = rng.normal(size=(500, 3, 3))
+    matrices = factor @ factor.transpose(0, 2, 1) * 10.0 ** rng.uniform(-12, 12, (500, 1, 1))
+    matrices = (matrices + matrices.transpose(0, 2, 1)) / 2
+    matrices[::7] -= 0.3 * np.trace(matrices[::7], axis1=1, axis2=2)[:, None, None] * np.eye(3)
+    matrices[::11, 0, 1] *= 1.01
+    margins, flaws = check(matrices)
+    assert len({int(f) for f in flaws}) >= 5
+    for matrix, margin, flaw in zip(matrices, margins, flaws):
+        a, b, c = np.linalg.eigvalsh((matrix + matrix.T) / 2)
+        assert margin == pytest.approx((a + b - c) / max(abs(a), abs(c)), abs=1e-13)
+        try:
+            ph.InertiaTensor(matrix)
+            said = ""
+        except ph.InvalidInput as error:
+            said = str(error)
+        expected = Flaw.NOT_SYMMETRIC if "symmetric" in said else Flaw.NOT_POSITIVE if "negative" in said else \
+            Flaw.TRIANGLE if "triangle" in said else Flaw(0)
+        assert (flaw == 0) == (not said) and expected in Flaw(int(flaw))
+
+
+def test_check_flags_what_is_not_finite_and_keeps_the_shape():
+    stack = np.tile(BLOCK, (2, 5, 1, 1))
+    stack[1, 3, 0, 0], stack[0, 2, 1, 1] = np.nan, np.inf
+    margins, flaws = check(stack)
+    assert margins.shape == flaws.shape == (2, 5)
+    assert np.isnan(margins[1, 3]) and flaws[1, 3] == flaws[0, 2] == Flaw.NOT_FINITE and flaws.sum() == 2
+    assert check(np.zeros((3, 3))) == (0.0, 0) and check(np.zeros((0, 3, 3)))[0].shape == (0,)
+    with pytest.raises(ph.InvalidInput):
+        check(np.eye(2))
