@@ -15,6 +15,7 @@
 #include "polhode/exact/heavy_top.hpp"
 #include "polhode/inertia/checks.hpp"
 #include "polhode/inertia/mass_properties.hpp"
+#include "polhode/inertia/mesh.hpp"
 #include "polhode/inertia/shapes.hpp"
 #include "polhode/math/elliptic.hpp"
 #include "polhode/ode/methods.hpp"
