@@ -1,6 +1,8 @@
 """`polhode inertia` on mesh files."""
 
 import json
+import pathlib
+import re
 
 import numpy as np
 import pytest
@@ -74,3 +76,43 @@ def test_a_file_that_lies(part, capsys):
     part.write_bytes(part.read_bytes()[:-3])
     status, _, err = left("inertia", part, capsys=capsys)
     assert status == 2 and "claims 24 triangles" in err and err.count("\n") == 1
+
+
+# ---- the page
+
+
+PAGE = (pathlib.Path(__file__).parents[2] / "docs/inertia.md").read_text()
+
+
+def section(name):
+    return re.search(rf"^## {name}\n(.*?)(?=^## )", PAGE, flags=re.S | re.M)[1]
+
+
+def test_the_page_shows_this_part(part):
+    shown = re.search(r"\$ polhode inertia part.stl (.*?)\n(.*?)```", section("Meshes"), flags=re.S)
+    result = call("inertia", part, *shown[1].split())
+    assert [line.rstrip() for line in result.stdout.splitlines()] == shown[2].splitlines()
+
+
+def test_the_pages_examples_run():
+    names = {}
+    (mesh,) = re.findall(r"```python\n(.*?)```", section("Meshes"), flags=re.S)
+    exec(compile(mesh, "docs/inertia.md", "exec"), names)
+    assert names["wedge"].mass == 2700 and list(names["wedge"].com) == [0.25, 0.5, 0.75]
+    with pytest.raises(ph.InvalidInput) as refused:
+        ph.MassProperties.from_mesh(names["corners"], names["faces"][1:], density=2700)
+    assert str(refused.value) in " ".join(PAGE.split())
+
+
+def test_the_pages_composite_is_the_same_in_both_ways(tmp_path):
+    names = {}
+    (python,) = re.findall(r"```python\n(.*?)```", section("Composites"), flags=re.S)
+    exec(compile(python, "docs/inertia.md", "exec"), names)
+    (toml,) = re.findall(r"```toml\n(.*?)```", section("Composites"), flags=re.S)
+    (tmp_path / "body.toml").write_text("[body]\n" + toml)
+    (tmp_path / "plate.stl").write_bytes(binary_stl(box((-100, -50, -5), (100, 50, 5))))
+    found = json.loads(call("inertia", tmp_path / "body.toml", "--json").stdout)
+    part = names["part"]
+    np.testing.assert_allclose(found["mass"], part.mass, rtol=1e-15)
+    np.testing.assert_allclose(found["com"], part.com, rtol=0, atol=1e-16)
+    np.testing.assert_allclose(found["matrix"], part.inertia.matrix, rtol=0, atol=1e-15 * part.inertia.moments[2])

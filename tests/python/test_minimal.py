@@ -61,6 +61,8 @@ def smoke_inertia_tensor():
 def smoke_mass_properties():
     block = ph.MassProperties(12.0, (0, 0, 0), ph.InertiaTensor.from_moments(BLOCK))
     assert np.allclose(block.about((0, 0, 0.1)).moments, (0.32, 0.52, 0.52))
+    corners, faces = [(0, 0, 0), (1, 0, 0), (0, 2, 0), (0, 0, 3)], [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)]
+    assert ph.MassProperties.from_mesh(corners, faces, density=2).mass == 2.0 and ph.shapes.volume("box", (1, 1, 1)) == 8
 
 
 def smoke_principal_axes():
