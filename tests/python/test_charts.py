@@ -239,10 +239,12 @@ def test_stalling_and_stability_are_told_from_plain_convergence():
     times = [1e-3 * 1.6**k for k in range(10)]
     plain = made_up(curve("rk45", "method", VALUES, VALUES, times))
     stuck = made_up(curve("rk45", "method", VALUES, [max(v, 2e-5) for v in VALUES], times))
-    held = made_up(curve("rk45", "method", VALUES, VALUES, [0.2] * 10, [1_500_000] * 10))
+    held = made_up(curve("rk45", "method", VALUES, [1e-11] * 10, [0.2] * 10, [1_500_000] * 10))
+    orders = made_up(curve("taylor", "method", VALUES, VALUES, times, [100] * 10))
     slow = made_up(curve("rk45", "method", VALUES, [1e4 * v for v in VALUES], times))
     assert [stalls(r, "rk45") for r in (plain, stuck, held, slow)] == [False, True, False, False]
     assert [held_by_stability(r, "rk45") for r in (plain, stuck, held, slow)] == [False, False, True, False]
+    assert not held_by_stability(orders, "taylor")
     assert headline(stuck) == "No tolerance takes rk45 below 2e-5"
     assert headline(held) == "Stability holds rk45 to 1.5 million steps and 200 ms at every tolerance"
     assert headline(plain).startswith("rk45 reaches 1e-12 in 68.7 ms")
@@ -336,7 +338,7 @@ def test_failing_scenes_have_their_picture(tmp_path):
 
     times = [1e-3 * 1.6**k for k in range(10)]
     stuck = made_up(curve("rk45", "method", VALUES, [max(v, 2e-5) for v in VALUES], times))
-    held = made_up(curve("rk45", "method", VALUES, VALUES, [0.2] * 10, [1_500_000] * 10))
+    held = made_up(curve("rk45", "method", VALUES, [1e-11] * 10, [0.2] * 10, [1_500_000] * 10))
     paths = pictures.limits([stuck, held], tmp_path)
     text = next(p for p in paths if p.suffix == ".svg").read_text()
     assert "above 2e-5" in text and re.search(r"stability asks for 1,500,000 steps", text)

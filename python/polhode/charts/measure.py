@@ -21,7 +21,7 @@ SHORTEST = 2e-3   # seconds of calls behind one reading of the clock
 SWEEPS = 0.75     # of the budget: when the sweeps must have ended; then come repeats
 LEAST = 0.1       # of the budget, for the repeats
 CROWDED = 0.01    # of the budget: what a candidate gets when all the time is gone
-WEIGHTS = {"cheap": 0.25}   # of a candidate in the sweeps, by its family; 1 for the others
+WEIGHTS = {"cheap": 0.25, "peer": 0.7}   # of a candidate in the sweeps, by its family; 1 for the others
 
 ENDS = ("not done within", "hung", "ended its process", "InvalidInput")   # failures that tighter settings share
 

@@ -152,31 +152,28 @@ def overview(results: list[SceneResult], folder: pathlib.Path) -> list[pathlib.P
     """All scenes as small multiples on the same axes."""
     columns = min(len(results), 5 if len(results) > 8 else 4 if len(results) > 3 else 3)
     rows = -(-len(results) // columns)
+    names: dict[str, str] = {}
+    for result in results:
+        pale = dominated(result)
+        names |= {p.candidate: p.family for p in result.points if p.answered and p.candidate not in pale}
     with style.used() as plt:
-        title = _wrap(_overview_title(results), 22 * columns)
-        shown = {n for r in results for n in r.names("method", "cheap", "plan", "peer", "exact")}
-        across = max(2, round(1.4 * columns))
-        legend_rows = -(-(len(shown) + 2) // across)   # at most
-        top = 1.2 + 0.2 * legend_rows + 0.25 * title.count("\n")
+        title, across = _wrap(_overview_title(results), 22 * columns), max(2, round(1.4 * columns))
+        legend_rows = -(-(len(names) + 2) // across)
+        top = 1.1 + 0.19 * legend_rows + 0.25 * title.count("\n")
         width, height = 1.25 + 2.35 * columns, 0.32 + top + 2.3 * rows
         figure, grid = plt.subplots(rows, columns, figsize=(width, height), sharex=True, sharey=True, squeeze=False)
         figure.subplots_adjust(left=0.97 / width, right=1 - 0.15 / width, bottom=0.62 / height, top=1 - top / height,
                                wspace=0.09, hspace=0.28)
         for axes in grid.flat[len(results):]:
             axes.set_visible(False)
-        names: dict[str, str] = {}
         for axes, result in zip(grid.flat, results):
             _frame(axes, results)
             _time_ticks(axes)
             _error_ticks(axes, every=5)
             _floor(axes, result, text=False)
             _curves(axes, result)
-            silent = without_answer(result)
-            if silent:
-                text = "\n".join(f"{name} {why.split(':')[0]}" for name, why in silent.items())
-                axes.text(0.04, 0.05, text, transform=axes.transAxes, fontsize=7.5, color=style.QUIET, linespacing=1.4)
-            pale = dominated(result)
-            names |= {p.candidate: p.family for p in result.points if p.answered and p.candidate not in pale}
+            if silent := _silent(result):
+                axes.text(0.04, 0.05, silent, transform=axes.transAxes, fontsize=7.5, color=style.QUIET, linespacing=1.4)
             axes.set_title(f"{result.scene.name} {result.title}", fontsize=9)
         closed = [name for name, family in names.items() if family == "exact"]
         labels = {name: name for name in names if name not in closed[1:]}   # closed forms share one line here
@@ -188,13 +185,21 @@ def overview(results: list[SceneResult], folder: pathlib.Path) -> list[pathlib.P
                       fontsize=8.5, ncols=across, frameon=False, borderaxespad=0, handlelength=2.0, columnspacing=1.4)
         figure.supxlabel("largest error over all samples (more accurate to the right)", fontsize=9.5, color=style.QUIET,
                          y=0.1 / height)
-        figure.supylabel("time for all samples", fontsize=9.5, color=style.QUIET, x=0.06 / width)
+        figure.supylabel("time for all samples", fontsize=9.5, color=style.QUIET, x=0.06 / width,
+                         y=(1 - (top - 0.62) / height) / 2)
         style.heading(figure, title,
                       "one thread; lower and further right is better",
                       0.3 / width)
         paths = style.save(figure, folder, "overview")
         plt.close(figure)
     return paths
+
+
+def _silent(result: SceneResult) -> str:
+    """Who failed outright here, rather than for want of time; the engines' steps do so too often to be told."""
+    cheap = {p.candidate for p in result.points if p.family == "cheap"}
+    return "\n".join(f"{name} {why.split(':')[0]}" for name, why in without_answer(result).items()
+                     if name not in cheap and not why.startswith(("not done", "hung")))
 
 
 def _overview_title(results: list[SceneResult]) -> str:

@@ -5,10 +5,14 @@ from __future__ import annotations
 import math
 import os
 import platform
+import re
 from importlib import metadata
 from typing import Any
 
+import numpy as np
+
 from .._core import build_info
+from ..scene import Scene
 from . import peers as peer_list
 from .findings import dominated, headline, without_answer
 from .measure import Point, SceneResult
@@ -60,6 +64,12 @@ def _point(point: Point) -> dict[str, Any]:
     }
 
 
+def _scene(scene: Scene) -> dict[str, Any]:
+    torques = ", ".join(re.sub(r"(?<!^)(?=[A-Z])", " ", type(torque).__name__).lower() for torque in scene.torques)
+    return {"moments": [float(v) for v in scene.inertia.moments], "omega": [float(v) for v in scene.omega],
+            "torques": torques}
+
+
 def document(results: list[SceneResult], seconds: float, files: list[str], with_peers: bool = True) -> dict[str, Any]:
     """Return the content of results.json; numbers that are not finite are null."""
     return {
@@ -67,7 +77,8 @@ def document(results: list[SceneResult], seconds: float, files: list[str], with_
         "versions": versions(), "missing": peer_list.missing() if with_peers else {}, "files": files,
         "scenes": [
             {"name": r.scene.name, "title": r.title, "samples": int(r.scene.times.size),
-             "span": float(r.scene.times[-1] - r.scene.t0), "reference": to_json(r.truth), "finding": headline(r),
+             "span": float(np.ptp(np.append(r.scene.times, r.scene.t0))), "scene": _scene(r.scene),
+             "reference": to_json(r.truth), "finding": headline(r),
              "dominated": sorted(dominated(r)), "without_answer": without_answer(r), "startups": r.startups,
              "notes": r.notes, "seconds": r.seconds, "points": [_point(p) for p in r.points]}
             for r in results

@@ -194,3 +194,30 @@ def chart(
     else:
         show.chart_end(content, output)
     return 0
+
+
+@_command
+def report(
+    output: Annotated[
+        pathlib.Path, typer.Option("-o", "--output", help="The folder for the page and its files.")] = pathlib.Path("report"),
+    full: Annotated[bool, typer.Option(help="Take all the time it needs, rather than a few minutes.")] = False,
+    budget: Annotated[str | None, typer.Option(help="For the charts, such as 60s or 5min.")] = None,
+    peers: Annotated[bool, typer.Option(help="Run other programs beside, where they are installed.")] = True,
+    atlas: Annotated[bool, typer.Option(help="Measure where methods fail, too.")] = True,
+    scenes: Annotated[list[str] | None, typer.Argument(help="Scene files or names; polhode's own when none is given.")] = None,
+) -> int:
+    """Write a web page of charts, pictures and tables.
+
+    It opens from disk and needs no network.
+    """
+    _need_matplotlib("reports")
+    from ..report import report as make_report
+    from ..report.report import SCENES
+
+    chosen = list(scenes or SCENES)
+    seconds = None if budget is None else _seconds(budget)
+    with show.Bar("reporting", len(chosen)) as bar:
+        page = make_report(output, scenes=chosen, full=full, budget=seconds, peers=peers, with_atlas=atlas,
+                           progress=bar.step)
+    print(page)
+    return 0

@@ -1,0 +1,93 @@
+"""The page itself: what was measured, through one template."""
+
+from __future__ import annotations
+
+import base64
+import json
+import pathlib
+from importlib import resources
+from typing import Any, NamedTuple
+
+from .._core import InvalidInput
+from ..charts.findings import to_time
+from . import curves, tables
+
+TYPES = {".svg": "image/svg+xml", ".png": "image/png"}
+
+
+class Picture(NamedTuple):
+    """A picture inside the page, and the command that makes it again."""
+
+    data: str
+    alt: str
+    caption: str
+    command: str
+
+
+def picture(path: pathlib.Path, alt: str, caption: str = "", command: str = "") -> Picture:
+    """Read a picture into a data address."""
+    data = base64.b64encode(path.read_bytes()).decode("ascii")
+    return Picture(f"data:{TYPES[path.suffix]};base64,{data}", alt, caption, command)
+
+
+def _text(name: str) -> str:
+    return resources.files(__package__).joinpath(name).read_text(encoding="utf-8")
+
+
+def _in_script(content: Any) -> str:
+    """JSON that cannot end the script element it stands in."""
+    return json.dumps(content, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
+
+
+def render(
+    content: dict[str, Any],
+    folder: pathlib.Path,
+    *,
+    motions: list[Picture],
+    atlas: dict[str, Any] | None,
+    command: str,
+    seconds: float,
+) -> str:
+    """Return the page.
+
+    Parameters
+    ----------
+    content : dict
+        What stands in results.json of a chart.
+    folder : path
+        Where that chart's pictures are.
+    motions : list of Picture
+    atlas : dict, optional
+        matrix (head, rows), pictures, command.
+    command : str
+        That makes the page again.
+    seconds : float
+        It took to make.
+    """
+    try:
+        from jinja2 import Environment, StrictUndefined
+        from markupsafe import Markup
+    except ImportError:
+        raise InvalidInput("report: needs jinja2: pip install 'polhode[cli]'") from None
+    all_names = " ".join(scene["name"] for scene in content["scenes"])
+    overview = [picture(folder / "overview.svg", "time against error, a small chart a scene", "All scenes.",
+                        f"polhode chart {all_names}")]
+    if (folder / "limits.svg").is_file():
+        overview.append(picture(folder / "limits.svg", "where no tolerance helps", "Where no tolerance helps.",
+                                f"polhode chart {all_names}"))
+    scenes = [{**scene, "command": f"polhode chart {scene['name']}",
+               "picture": picture(folder / f"{scene['name'] or 'scene'}.svg", scene["finding"])} for scene in content["scenes"]]
+    sections = [("speed", "Speed against accuracy"), ("scenes", "Scene by scene")]
+    sections += [("atlas", "Where methods fail")] * bool(atlas) + [("motion", "The motions")] * bool(motions)
+    sections += [("machine", "Machine and versions")]
+    count = sum(len(scene["points"]) for scene in content["scenes"])
+    lead = (f"{count} runs on {len(content['scenes'])} scenes, each held against a reference of more digits: "
+            "the error of every sample beside the time it took, in one run on one machine.")
+    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    return environment.from_string(_text("page.html.j2")).render(
+        title="polhode: speed, accuracy, and where methods fail" if atlas else "polhode: speed and accuracy", lead=lead,
+        css=Markup(_text("page.css")), script=Markup(_text("page.js")), sections=sections, overview=overview,
+        winners=tables.winners(content), scenes=scenes, scene_table=tables.scenes(content), best=tables.best(content),
+        failures=tables.failures(content), atlas=atlas, motions=motions, machine=tables.machine(content),
+        startups=tables.startups(content), measure=content["measure"], took=to_time(seconds), command=command,
+        figures=Markup(_in_script([curves.figure(scene) for scene in content["scenes"]])))

@@ -1,0 +1,111 @@
+"""The whole of a report: measure, draw, write the page, and say where it is."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import pathlib
+import time
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from .._core import InvalidInput
+from ..charts import chart
+from ..charts.measure import SceneResult
+from ..scene import Scene
+from ..solver import solve
+from . import atlas_part, page
+
+SCENES = ("S1", "S2", "S3", "S4", "S5", "S5c", "S6", "S7", "S7b", "S9", "N2", "Z1")
+MOTIONS = ("S1", "S2", "S4", "S5")   # pictures of these, of those that are charted
+QUICK, FULL = 110.0, 900.0           # seconds for the charts
+PAGE, SCRIPT = "index.html", "plotly.min.js"
+
+
+def plotly_script() -> str:
+    """Plotly's own script, which comes with its Python package: nothing is fetched."""
+    try:
+        from plotly.offline import get_plotlyjs  # type: ignore[import-untyped,unused-ignore]
+    except ImportError:
+        raise InvalidInput("report: needs plotly: pip install 'polhode[plot]'") from None
+    text: str = get_plotlyjs()
+    return text
+
+
+def motion_pictures(names: Iterable[Any], folder: pathlib.Path) -> list[page.Picture]:
+    """Draw motions, and return them for the page."""
+    found = []
+    for name in names:
+        scene = name if isinstance(name, Scene) else Scene.load(name)
+        path = folder / f"motion-{scene.name}.png"   # of lines so long that an SVG would be large
+        solve(scene, accuracy=1e-9).plot().savefig(path, dpi=130)
+        found.append(page.picture(path, f"motion of {scene.name}", f"{scene.name}.",
+                                  f"polhode run {scene.name} --plot {scene.name}.svg"))
+    return found
+
+
+def _atlas(folder: pathlib.Path, quick: bool, say: Callable[[str], object]) -> dict[str, Any] | None:
+    """Measure the atlas; families that are finished there are kept."""
+    try:
+        atlas = importlib.import_module("polhode.atlas").atlas
+    except ImportError:   # not built in
+        return None
+    _, content = atlas(folder=folder, quick=quick, progress=lambda done, total, text: say(f"{done}/{total} {text}"))
+    return atlas_part.part(content, folder, " --quick" if quick else "")
+
+
+def report(
+    folder: str | os.PathLike[str],
+    *,
+    scenes: Iterable[Any] = SCENES,
+    full: bool = False,
+    budget: float | None = None,
+    peers: bool = True,
+    with_atlas: bool = True,
+    progress: Callable[[int, str], object] = lambda done, text: None,
+    show: Callable[[SceneResult], object] = lambda result: None,
+) -> pathlib.Path:
+    """Measure everything and write a web page about it.
+
+    Parameters
+    ----------
+    folder : path
+        Made when it is not there. Gets ``index.html``, which opens from disk without a network, Plotly's script beside
+        it, and all pictures and results in folders of their own.
+    scenes : iterable of Scene, paths or names
+    full : bool
+        Take the time that everything needs, rather than a few minutes.
+    budget : float, optional
+        Of the charts [s].
+    peers : bool
+        Whether other programs take part, where they are installed.
+    with_atlas : bool
+        Whether the atlas of failures is measured too.
+    progress, show : callable
+        As of `polhode.charts.chart`.
+
+    Returns
+    -------
+    path
+        Of the page.
+
+    Raises
+    ------
+    InvalidInput
+        For what `polhode.charts.chart` refuses, and without Jinja2 or Plotly.
+    """
+    start = time.perf_counter()
+    script = plotly_script()
+    home, sources = pathlib.Path(folder), list(scenes)
+    results, content = chart(sources, home / "charts", budget=budget or (FULL if full else QUICK), peers=peers,
+                             progress=progress, show=show)
+    progress(len(results), "pictures of motion")
+    drawn = [source for source, result in zip(sources, results) if result.scene.name in MOTIONS]
+    motions = motion_pictures(drawn or sources[:1], home / "charts")
+    atlas = _atlas(home / "atlas", not full, lambda text: progress(len(results), f"atlas: {text}")) if with_atlas else None
+    command = "polhode report" + " --full" * full
+    text = page.render(content, home / "charts", motions=motions, atlas=atlas, command=command,
+                       seconds=time.perf_counter() - start)
+    (home / SCRIPT).write_text(script, encoding="utf-8")
+    (home / PAGE).write_text(text, encoding="utf-8")
+    return home / PAGE

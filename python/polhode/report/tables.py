@@ -1,0 +1,121 @@
+"""Tables of a report, each cell from results.json: who is fastest, what the scenes are, on what machine."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from ..charts.findings import to_error, to_time
+
+LEVELS = (1e-3, 1e-6, 1e-9, 1e-12)
+OWN = ("method", "cheap", "plan", "exact")
+Row = list[str]
+
+
+def fastest(scene: dict[str, Any], level: float, families: tuple[str, ...]) -> dict[str, Any] | None:
+    """Return the point of these families that reaches an error first."""
+    reaching = [p for p in scene["points"] if p["status"] == "answered" and p["family"] in families and p["error"] <= level]
+    return min(reaching, key=lambda p: float(p["seconds"]), default=None)
+
+
+def _cell(point: dict[str, Any] | None) -> str:
+    return "never" if point is None else f"{point['candidate']} {to_time(point['seconds'])}"
+
+
+def winners(content: dict[str, Any]) -> tuple[Row, list[Row]]:
+    """Return, for each scene and error, polhode's fastest and that of other programs."""
+    rows = []
+    with_peers = any(p["family"] == "peer" for s in content["scenes"] for p in s["points"])
+    for scene in content["scenes"]:
+        rows.append([f"{scene['name']} {scene['title']}", "polhode",
+                     *(_cell(fastest(scene, level, OWN)) for level in LEVELS)])
+        if with_peers:
+            rows.append(["", "others", *(_cell(fastest(scene, level, ("peer",))) for level in LEVELS)])
+    return ["scene", "", *(f"error ≤ {to_error(level)}" for level in LEVELS)], rows
+
+
+def best(content: dict[str, Any]) -> tuple[Row, list[Row]]:
+    """Return each candidate's smallest error on each scene."""
+    names = list(dict.fromkeys(p["candidate"] for s in content["scenes"] for p in s["points"]))
+    rows = []
+    for name in names:
+        row = [name]
+        for scene in content["scenes"]:
+            points = [p for p in scene["points"] if p["candidate"] == name]
+            errors = [p["error"] for p in points if p["status"] == "answered"]
+            row.append(to_error(min(errors)) if errors else "failed" if any(p["status"] == "failed" for p in points)
+                       else "left out" if points else "–")
+        rows.append(row)
+    return ["smallest error", *(scene["name"] for scene in content["scenes"])], rows
+
+
+def failures(content: dict[str, Any]) -> tuple[Row, list[Row]]:
+    """Return every run that failed and every one that was left out, with the reason."""
+    found: dict[tuple[str, str, str], list[str]] = {}
+    for scene in content["scenes"]:
+        for point in scene["points"]:
+            if point["status"] != "answered":
+                key = (scene["name"], point["candidate"], f"{point['status']}: {point['why']}")
+                found.setdefault(key, []).append(point["setting"])
+    return ["scene", "who", "settings", "what"], [[s, c, _span(settings), why] for (s, c, why), settings in found.items()]
+
+
+def _span(settings: list[str]) -> str:
+    return settings[0] if len(settings) == 1 else f"{settings[0]} to {settings[-1]}"
+
+
+def scenes(content: dict[str, Any]) -> tuple[Row, list[Row]]:
+    """Return what each scene is, and how well its truth is known."""
+    rows = []
+    for scene in content["scenes"]:
+        what, reference = scene["scene"], scene["reference"]
+        known = reference["floor"] if reference["floor"] is not None else reference["uncertainty"]
+        rows.append([f"{scene['name']} {scene['title']}", _numbers(what["moments"]), _numbers(what["omega"]),
+                     what["torques"] or "none", f"{scene['span']:g} s, {scene['samples']}",
+                     f"{reference['kind']}, {to_error(known)}"])
+    return ["scene", "moments [kg m²]", "ω at the start [rad/s]", "torque", "span, samples", "truth, known to"], rows
+
+
+def _numbers(values: list[float]) -> str:
+    return ", ".join(f"{v:.4g}" for v in values)
+
+
+def machine(content: dict[str, Any]) -> list[Row]:
+    """Return machine, build and versions, a pair a row."""
+    here, build = content["machine"], content["polhode"]
+    rows = [["processor", f"{here['processor']}, {here['cores']} cores"], ["system", here["system"]],
+            ["Python", here["python"]]]
+    rows += [[f"polhode {key}", str(value)] for key, value in build.items()]
+    rows += [[name, version] for name, version in content["versions"].items()]
+    rows += [[f"{name}, not here", how] for name, how in content["missing"].items()]
+    return rows
+
+
+def startups(content: dict[str, Any]) -> tuple[Row, list[Row]]:
+    """Return the longest start of each candidate that takes more than a hundredth of a second."""
+    longest: dict[str, float] = {}
+    for scene in content["scenes"]:
+        for name, seconds in scene["startups"].items():
+            longest[name] = max(longest.get(name, 0.0), seconds)
+    rows = [[name, to_time(seconds)] for name, seconds in sorted(longest.items(), key=lambda item: -item[1]) if seconds > 0.01]
+    return ["before the first answer", "longest"], rows
+
+
+def markdown(table: tuple[Row, list[Row]]) -> str:
+    """Return a table as Markdown."""
+    head, rows = table
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines) + "\n"
+
+
+def compact(content: dict[str, Any]) -> dict[str, Any]:
+    """Return results with numbers to three digits, small enough to be kept with the sources."""
+    def short(value: Any) -> Any:
+        if isinstance(value, float):
+            return float(f"{value:.3g}") if math.isfinite(value) else None
+        if isinstance(value, dict):
+            return {key: short(item) for key, item in value.items() if key not in ("error_omega", "error_attitude", "drift")}
+        return [short(item) for item in value] if isinstance(value, list) else value
+
+    found: dict[str, Any] = short(content)
+    return found

@@ -1,0 +1,183 @@
+"""The report: tables and curves say what was measured, and the page works in a browser without a network."""
+
+import json
+import re
+import sys
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+
+import polhode as ph
+from polhode.charts.candidates import candidates
+from polhode.report import report, tables
+from polhode.report.curves import GROUPS, figure
+from polhode.report.atlas_part import part
+from polhode.report.page import _in_script, render
+
+pytest.importorskip("matplotlib")
+pytest.importorskip("plotly")
+import browser  # noqa: E402  tests/support
+
+TINY = ph.Scene(inertia=(1.0, 2.0, 2.5), omega=(1.0, 2.0, 3.0), times=np.linspace(0, 1, 5), name="a <b> & c")
+NAMES = ("FreeMotion", "rk45", "rk4", "euler")
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("report")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sys.modules["polhode.charts.chart"], "candidates",
+                      lambda peers: [c for c in candidates(False) if c.name in NAMES])
+        page = report(folder, scenes=["S5", TINY], budget=9, peers=False, with_atlas=False)
+    return page, json.loads((folder / "charts" / "results.json").read_text())
+
+
+class Page(HTMLParser):
+    """Elements that must be closed, and what the page asks for."""
+
+    def __init__(self):
+        super().__init__()
+        self.open, self.sources, self.ids = [], [], []
+
+    def handle_starttag(self, tag, attributes):
+        if tag not in ("meta", "link", "img", "br", "input"):
+            self.open.append(tag)
+        found = dict(attributes)
+        self.sources += [found[key] for key in ("src", "href") if key in found]
+        if "id" in found:
+            self.ids.append(found["id"])
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+
+def test_the_page_is_whole_and_asks_for_nothing_outside(made):
+    page, _ = made
+    parser = Page()
+    parser.feed(page.read_text())
+    assert parser.open == []
+    assert {s.partition(":")[0] for s in parser.sources if not s.startswith("#")} == {"data", "plotly.min.js"}
+    assert {s[1:] for s in parser.sources if s.startswith("#")} <= set(parser.ids)
+    assert (page.parent / "plotly.min.js").stat().st_size > 1_000_000
+
+
+def test_names_cannot_break_the_page(made):
+    text = made[0].read_text()
+    assert "a &lt;b&gt; &amp; c" in text and "a <b>" not in text
+    assert _in_script({"x": "</script>"}) == '{"x":"\\u003c/script>"}'
+
+
+def test_every_number_of_the_winners_is_in_the_results(made):
+    _, content = made
+    head, rows = tables.winners(content)
+    assert head[2:] == ["error ≤ 1e-3", "error ≤ 1e-6", "error ≤ 1e-9", "error ≤ 1e-12"]
+    scene = content["scenes"][0]
+    for level, cell in zip(tables.LEVELS, rows[0][2:], strict=True):
+        reaching = [p for p in scene["points"] if p["status"] == "answered" and p["error"] <= level]
+        assert (cell == "never") == (not reaching)
+        if reaching:
+            quickest = min(reaching, key=lambda p: p["seconds"])
+            assert cell.startswith(quickest["candidate"] + " ") and quickest["error"] <= level
+
+
+def test_tables_hold_every_scene_and_candidate(made):
+    _, content = made
+    cells = {row[0]: row[1:] for row in tables.best(content)[1]}
+    assert set(cells) == set(NAMES) and cells["FreeMotion"][0] == "–"   # no closed form of S5
+    assert len(tables.scenes(content)[1]) == 2 and "gravity" in tables.scenes(content)[1][0]
+    assert any(name == "numpy" for name, _ in tables.machine(content))
+    text = tables.markdown((["a", "b"], [["1", "x|y"]]))
+    assert text == "| a | b |\n| --- | --- |\n| 1 | x\\|y |\n"
+
+
+def test_failures_are_told_once_with_their_settings():
+    def point(setting, status, why):
+        return {"candidate": "rk45", "setting": setting, "status": status, "why": why}
+
+    content = {"scenes": [{"name": "S1", "points": [point("1e-03", "answered", ""), point("1e-04", "failed", "crash"),
+                                                    point("1e-05", "left out", "late"), point("1e-06", "left out", "late")]}]}
+    assert tables.failures(content)[1] == [["S1", "rk45", "1e-04", "failed: crash"], ["S1", "rk45", "1e-05 to 1e-06", "left out: late"]]
+
+
+def test_curves_hold_every_point_that_answers_something(made):
+    _, content = made
+    for scene in content["scenes"]:
+        drawn = figure(scene)["data"]
+        assert {trace["group"] for trace in drawn} <= set(GROUPS.values())
+        for trace in drawn:
+            points = [p for p in scene["points"] if p["candidate"] == trace["name"] and p["status"] == "answered"]
+            shown = [p for p in points if p["error"] < 4 or not p["swept"]]
+            assert trace["y"] == [p["seconds"] for p in shown] and trace["pale"] == (trace["name"] in scene["dominated"])
+            assert all(p["setting"] in text for p, text in zip(shown, trace["text"], strict=True))
+
+
+def test_the_atlas_has_its_matrix_and_pictures(made, tmp_path):
+    def verdict(level, text):
+        return {"level": level, "text": text, "number": 1.0, "why": "because"}
+
+    atlas = {"families": {"racket": {"title": "The racket"}, "gimbal": {"title": "Gimbal lock"}}, "broken_claims": ["rk45 does not hold"],
+             "matrix": {"rk45": {"group": "methods", "racket": verdict("fails", "at 1e-4"), "gimbal": verdict("holds", "1e-12")},
+                        "dmv8": {"group": "engines", "racket": verdict("degrades", "at 5")}}}
+    (tmp_path / "racket.svg").write_text("<svg xmlns='http://www.w3.org/2000/svg'/>")
+    shown = part(atlas, tmp_path, " --quick")
+    families, rows = shown["matrix"]
+    assert families == ["racket", "gimbal"] and [name for name, _ in rows] == ["rk45", "dmv8"]
+    assert [cell.level for _, cells in rows for cell in cells] == ["fails", "holds", "degrades", "none"]
+    assert [p.command for p in shown["pictures"]] == ["polhode atlas racket --quick"]
+    text = render(made[1], made[0].parent / "charts", motions=[], atlas=shown, command="polhode report", seconds=1.0)
+    parser = Page()
+    parser.feed(text)
+    assert parser.open == [] and "atlas" in parser.ids and 'class="degrades"' in text and "rk45 does not hold" in text
+
+
+def test_compact_results_give_the_same_tables(made):
+    _, content = made
+    small = json.loads(json.dumps(tables.compact(content), allow_nan=False))
+    assert tables.winners(small) == tables.winners(content) and tables.best(small) == tables.best(content)
+    assert len(json.dumps(small)) < 0.8 * len(json.dumps(content))
+
+
+def test_the_command_says_where_the_page_is(tmp_path, monkeypatch):
+    from typer.testing import CliRunner
+
+    from polhode.cli.app import app
+
+    monkeypatch.setattr("polhode.report.report", lambda folder, **options: folder / f"{len(options['scenes'])}.html")
+    result = CliRunner().invoke(app, ["report", "-o", str(tmp_path)])
+    assert result.exit_code == 0 and result.stdout == f"{tmp_path}/12.html\n"
+    assert CliRunner().invoke(app, ["report", "S1", "--budget", "soon"]).exit_code == 2
+
+
+@pytest.mark.skipif(browser.find() is None, reason="no Chromium: apt install chromium")
+@pytest.mark.parametrize(("width", "phone"), [(1280, False), (390, True)], ids=["desk", "phone"])
+def test_the_page_in_a_browser(made, width, phone):
+    page, content = made
+    with browser.Browser(page.as_uri(), width, 800, phone) as tab:
+        tab.wait("document.body && document.body.dataset.drawn === 'all'")
+        assert tab.errors == []
+        assert all(url.startswith(("file:", "data:", "blob:")) for url in tab.requests)
+        assert tab.run("[...document.images].every((i) => i.complete && i.naturalWidth > 100)")
+        assert tab.run("document.querySelectorAll('.curves .main-svg').length") >= len(content["scenes"])
+        assert tab.run("document.documentElement.scrollWidth <= window.innerWidth")   # nothing hangs over
+        curve = "document.querySelector('.curves').data.find((t) => t.name === 'rk45').visible !== false"
+        press = "[...document.querySelector('.chips').querySelectorAll('button')].find((b) => b.textContent === '{}').click()"
+        states = [tab.run(curve)]
+        for word in ("rk45", "rk45", "methods", "methods"):
+            tab.run(press.format(word))
+            states.append(tab.run(curve))
+        assert states == [True, False, True, False, True]
+        tab.ask("Emulation.setEmulatedMedia", media="print")
+        assert tab.run("getComputedStyle(document.querySelector('.curves')).display") == "none"
+        assert tab.run("getComputedStyle(document.querySelector('.still')).display") == "block"
+
+
+@pytest.mark.skipif(browser.find() is None, reason="no Chromium: apt install chromium")
+def test_without_its_script_the_page_shows_still_pictures(made, tmp_path):
+    page, content = made
+    (tmp_path / "alone.html").write_text(page.read_text())
+    with browser.Browser((tmp_path / "alone.html").as_uri()) as tab:
+        tab.wait("document.readyState === 'complete'")
+        shown = tab.run("[...document.querySelectorAll('.still img')].filter((i) => i.offsetWidth > 100).length")
+        assert shown == len(content["scenes"])
+        assert all(re.search("ERR_FILE_NOT_FOUND", text) for text in tab.errors)
