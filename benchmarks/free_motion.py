@@ -1,11 +1,21 @@
-"""Free motion from Python: what a call costs, with the error beside it. Run: python benchmarks/free_motion.py
+"""The closed forms from Python: what each job costs, with its error and its goal beside. Each instruction set runs in its
+own process.
 
-Times are the smallest of many repeats of the CPU time of this thread; errors are against the stored exact answers of
-tests/reference, the largest of all regimes.
+    python benchmarks/free_motion.py            # one core
+    python benchmarks/free_motion.py --threads  # and two threads against one on 100 000 x 500 states (2.8 GB)
+
+Times are the smallest of many repeats of the CPU time of this thread, so that other work counts as little as it can;
+two threads are timed by the clock on the wall. Errors of single times are against the stored exact answers of
+tests/reference, the largest of all regimes; those of grids are told as the distance from single times.
 """
 
+import argparse
 import csv
+import json
+import os
 import pathlib
+import subprocess
+import sys
 import time
 
 import numpy as np
@@ -13,9 +23,27 @@ import numpy as np
 import polhode as ph
 
 TABLE = pathlib.Path(__file__).parents[1] / "tests" / "reference" / "free_motion.csv"
+BLOCK, START = (0.20, 0.40, 0.52), (0.0, 0.0, 0.0, 1.0)
+TOP = ((1.0, 1.0, 0.5), 1.3, (0.1, 0.2, 5.0), (0.6, 0.0, 0.0, 0.8))
+GENERIC, RACKET = (BLOCK, (1, 2, 3), START), (BLOCK, (1e-4, 5, 1e-4), START)
+
+# job: goals in ns (us where it says so) on avx512 and avx2; two 512-bit operations a cycle were assumed
+GOALS = {
+    "free motion, any times": (5, 10),
+    "free motion, uniform grid": (2.8, 6),
+    "near the separatrix, any times": (8, 16),
+    "heavy top, any times": (5, 9),
+    "heavy top, uniform grid": (None, None),
+    "S8: a body at one time each, set-up included": (80, 160),
+    "outer grid, bodies x 500 times": (6.5, 12),
+    "S1's 1001 samples, call and set-up [us]": (15, None),
+    "FreeMotion(...) [us]": (None, None),
+    "HeavyTop(...) [us]": (None, None),
+    ".at(float) [us]": (None, None),
+}
 
 
-def best(work, repeats=30):
+def best(work, repeats=40):
     work()
     found = np.inf
     for _ in range(repeats):
@@ -28,44 +56,106 @@ def best(work, repeats=30):
 def random_bodies(n, rng):
     half = rng.uniform(0.1, 1, (n, 3)) ** 2
     attitude = rng.normal(size=(n, 4))
-    return half.sum(axis=1, keepdims=True) - half, rng.normal(size=(n, 3)), attitude / np.linalg.norm(attitude, axis=1, keepdims=True)
+    attitude /= np.linalg.norm(attitude, axis=1, keepdims=True)
+    return half.sum(axis=1, keepdims=True) - half, rng.normal(size=(n, 3)), attitude
 
 
 def largest_error():
     worst = 0.0
     for row in csv.DictReader(TABLE.open()):
-        number = lambda *names: np.array([float(row[name]) for name in names])  # noqa: E731
+        def number(*names, row=row):
+            return np.array([float(row[name]) for name in names])
+
         inertia = ph.InertiaTensor.from_moments(number("I1", "I2", "I3"), physical=False)
         w, q = ph.FreeMotion(inertia, number("w1", "w2", "w3"), number("x0", "y0", "z0", "w0")).at(float(row["t"]))
         expected, p = number("o1", "o2", "o3"), number("x", "y", "z", "w")
-        worst = max(worst, np.linalg.norm((w - expected) / (np.abs(expected).max() or 1)), 2 * np.linalg.norm(q - p * np.sign(p @ q)))
+        worst = max(worst, np.linalg.norm((w - expected) / (np.abs(expected).max() or 1)),
+                    2 * np.linalg.norm(q - p * np.sign(p @ q)))
     return worst
 
 
-def main():
-    rng = np.random.default_rng(1)
-    block = (0.20, 0.40, 0.52)
-    generic, racket = ph.FreeMotion(block, (1, 2, 3)), ph.FreeMotion(block, (1e-4, 5, 1e-4))
-    times = rng.uniform(0, 1000, 16384)
-    out = (np.empty((16384, 3)), np.empty((16384, 4)))
-    print(f"level {ph.build_info()['simd']}, largest error over the stored table {largest_error():.1e}")
-    for name, motion in (("triaxial", generic), ("racket, near the separatrix", racket)):
-        arguments = (motion.inertia, motion.omega, motion.attitude, times)
-        cost = best(lambda arguments=arguments: ph.free_motion(*arguments, out=out, threads=1)) / times.size
-        print(f"one body, any times, into out=: {name}: {cost:.1f} ns a state")
-    grid = np.linspace(0, 1000, 1001)
-    print(f"S1, 1001 samples, set-up and call included: {best(lambda: ph.FreeMotion(block, (1, 2, 3)).at(grid)) / 1e3:.1f} us")
-    print(f"FreeMotion(...): {best(lambda: ph.FreeMotion(block, (1, 2, 3))) / 1e3:.2f} us; .at(float): {best(lambda: generic.at(1.5)) / 1e3:.2f} us")
-    n = 100_000
-    bodies = random_bodies(n, rng)
-    t = rng.uniform(0, 1000, n)
-    out = (np.empty((n, 3)), np.empty((n, 4)))
-    print(f"S8, {n} bodies at one time each: {best(lambda: ph.free_motion(*bodies, t, out=out, threads=1), 5) / n:.1f} ns a body")
-    n, m = 4000, 500
-    bodies = [a[:n, None] for a in bodies]
+def grid_distance(motion, grid):
+    w, q = motion.at(grid)
+    pairs = [motion.at(float(t)) for t in grid]
+    w1, q1 = np.array([a for a, _ in pairs]), np.array([b for _, b in pairs])
+    return max(np.linalg.norm(w - w1, axis=1).max() / np.abs(w1).max(), 2 * np.linalg.norm(q - q1, axis=1).max())
+
+
+def outer(n, m=500):
+    moments, omega, attitude = (a[:, None] for a in random_bodies(n, np.random.default_rng(2)))
     out = (np.empty((n, m, 3)), np.empty((n, m, 4)))
-    t = np.linspace(0, 1000, m)
-    print(f"outer grid {n} x {m}: {best(lambda: ph.free_motion(*bodies, t, out=out, threads=1), 5) / (n * m):.1f} ns a state")
+    times = np.linspace(0, 1000, m)
+    return lambda threads: ph.free_motion(moments, omega, attitude, times, out=out, threads=threads)
+
+
+def measure():
+    rng = np.random.default_rng(1)
+    n = 65536  # so that the call itself, 10 to 20 us, is little
+    times, grid = rng.uniform(0, 1000, n), np.linspace(0, 1000, n)
+    out = (np.empty((n, 3)), np.empty((n, 4)))
+    cost = {}
+    for name, t in (("any times", times), ("uniform grid", grid)):
+        cost[f"free motion, {name}"] = best(lambda t=t: ph.free_motion(*GENERIC, t, out=out, threads=1)) / n
+        cost[f"heavy top, {name}"] = best(lambda t=t: ph.heavy_top(*TOP, t, out=out, threads=1)) / n
+    cost["near the separatrix, any times"] = best(lambda: ph.free_motion(*RACKET, times, out=out, threads=1)) / n
+    many = 100_000
+    bodies, t, out = random_bodies(many, rng), rng.uniform(0, 1000, many), (np.empty((many, 3)), np.empty((many, 4)))
+    name = "S8: a body at one time each, set-up included"
+    cost[name] = best(lambda: ph.free_motion(*bodies, t, out=out, threads=1), 5) / many
+    run = outer(4000)
+    cost["outer grid, bodies x 500 times"] = best(lambda: run(1), 7) / (4000 * 500)
+    samples = np.linspace(0, 1000, 1001)
+    cost["S1's 1001 samples, call and set-up [us]"] = best(lambda: ph.FreeMotion(*GENERIC).at(samples), 300) / 1e3
+    motion = ph.FreeMotion(*GENERIC)
+    for name, work in ((".at(float) [us]", lambda: motion.at(1.5)), ("FreeMotion(...) [us]", lambda: ph.FreeMotion(*GENERIC)),
+                       ("HeavyTop(...) [us]", lambda: ph.HeavyTop(*TOP))):
+        cost[name] = best(lambda work=work: [work() for _ in range(100)], 100) / 1e5
+    far = np.linspace(0, 1000, 4096)
+    errors = [largest_error(), grid_distance(motion, far), grid_distance(ph.HeavyTop(*TOP), far)]
+    return {"level": ph.build_info()["simd"], "cost": cost, "errors": errors}
+
+
+def two_threads():
+    """Wall time of one thread over that of two, interleaved."""
+    run = outer(100_000)
+    run(2)
+    took = {1: [], 2: []}
+    for _ in range(5):
+        for threads, found in took.items():
+            start = time.perf_counter_ns()
+            run(threads)
+            found.append(time.perf_counter_ns() - start)
+    one, two = min(took[1]), min(took[2])
+    print(f"outer grid 100 000 x 500, wall clock: one thread {one / 5e7:.2f} ns a state, two {two / 5e7:.2f}: "
+          f"{one / two:.2f} times (goal 1.7); load {os.getloadavg()[0]:.1f} at the end")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--threads", action="store_true")
+    parser.add_argument("--one", action="store_true", help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.one:
+        return print(json.dumps(measure()))
+    if options.threads:
+        return two_threads()
+    found = {}
+    for level in ("avx512", "avx2"):
+        run = subprocess.run([sys.executable, __file__, "--one"], check=True, capture_output=True,
+                             env={**os.environ, "POLHODE_SIMD": level})
+        answer = json.loads(run.stdout)
+        found[answer["level"]] = answer
+    print(f"load {os.getloadavg()[0]:.1f}; ns a state unless it says us, goal beside it")
+    print(f"{'':48}" + "".join(f"{level:>9}{'goal':>7}" for level in found))
+    for job, goals in GOALS.items():
+        line = f"{job:48}"
+        for level, answer in found.items():
+            goal = goals[level != "avx512"]
+            line += f"{answer['cost'][job]:9.2f}{goal or '':>7}"
+        print(line)
+    for level, answer in found.items():
+        table, free, top = answer["errors"]
+        print(f"{level}: largest error over the stored table {table:.1e}; a grid from single times {free:.1e}, top {top:.1e}")
 
 
 if __name__ == "__main__":

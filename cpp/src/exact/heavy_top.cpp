@@ -22,8 +22,10 @@ std::string text(const Vector3d& v) {
   return all;
 }
 
-void require(bool fine, const char* where, const char* requirement, const std::string& found, const char* cause = "") {
-  if (!fine) throw InvalidInput(where, requirement, found, cause);
+/// `found` is a function: no text is made for what is fine.
+template <class Found>
+void require(bool fine, const char* where, const char* requirement, const Found& found, const char* cause = "") {
+  if (!fine) throw InvalidInput(where, requirement, found(), cause);
 }
 
 /// The symmetry axis and the two moments, A of the equal pair and C about the axis.
@@ -68,7 +70,7 @@ TopSymmetry symmetry_of(const Matrix3d& I) {
   const double rest =
       (I - found.A * Matrix3d::Identity() - (found.C - found.A) * (n * n.transpose())).cwiseAbs().maxCoeff() / largest;
   require(rest <= equal_within, "inertia", "that of a symmetric top, two moments equal",
-          "a tensor that differs from one by " + to_text(rest) + " of its largest entry",
+          [&] { return "a tensor that differs from one by " + to_text(rest) + " of its largest entry"; },
           "use the symmetric tensor that is meant, or solve the scene step by step");
   Eigen::Index lead = 0;
   n.cwiseAbs().maxCoeff(&lead);
@@ -97,7 +99,8 @@ DDQuat widen(const Quat& q) { return {q.x, q.y, q.z, q.w}; }
 double from_scaled(double x, int e, const char* what) {
   const double result = std::ldexp(x, e);
   const bool fine = std::isfinite(result) && (x == 0.0 || std::abs(result) >= std::numeric_limits<double>::min());
-  require(fine, what, "representable in float64", to_text(x) + " * 2^" + std::to_string(e), "choose other units");
+  require(fine, what, "representable in float64", [&] { return to_text(x) + " * 2^" + std::to_string(e); },
+          "choose other units");
   return result;
 }
 
@@ -121,26 +124,27 @@ HeavyTop::HeavyTop(const InertiaTensor& inertia, double weight_arm, const Vector
 
 void HeavyTop::set_up() {
   make_attitude(attitude_);  // refuses; the start itself is normalised in double-double
-  require(std::isfinite(weight_arm_), "weight_arm", "finite", to_text(weight_arm_));
-  require(omega_.allFinite(), "omega", "finite", text(omega_));
+  require(std::isfinite(weight_arm_), "weight_arm", "finite", [&] { return to_text(weight_arm_); });
+  require(omega_.allFinite(), "omega", "finite", [&] { return text(omega_); });
   const TopSymmetry body = symmetry_of(inertia_.matrix());
   axis_ = body.axis;
 
   // Scales: powers of two, so that A, and the larger of |omega| and sqrt(M / A), are near 1.
-  require(body.A > 0.0, "inertia", "above 0 across the symmetry axis", to_text(body.A));
+  require(body.A > 0.0, "inertia", "above 0 across the symmetry axis", [&] { return to_text(body.A); });
   const double spin = omega_.dot(axis_);
-  require(body.C > 0.0 || (body.C == 0.0 && spin == 0.0), "inertia", "above 0 about the symmetry axis", to_text(body.C),
+  require(body.C > 0.0 || (body.C == 0.0 && spin == 0.0), "inertia", "above 0 about the symmetry axis",
+          [&] { return to_text(body.C); },
           "a rod or a point may swing, but not spin about its own axis");
   const int e_A = std::ilogb(body.A);
   require(std::abs(e_A) <= 1021 && (body.C == 0.0 || std::abs(std::ilogb(body.C) - e_A) <= 500), "inertia",
-          "moments within the range of float64", text({body.A, body.A, body.C}), "choose other units");
+          "moments within the range of float64", [&] { return text({body.A, body.A, body.C}); }, "choose other units");
   const double fastest = omega_.cwiseAbs().maxCoeff();
   const int none = -100000;
   const int e_w = fastest > 0.0 ? std::ilogb(fastest) : none;
   const int e_M = weight_arm_ != 0.0 ? (std::ilogb(weight_arm_) - e_A) / 2 : none;
   const int e = std::max(e_w, e_M) == none ? 0 : std::max(e_w, e_M);
   require(e <= 1020 && e >= -1000, "omega", "such that rates are representable in float64",
-          "rates near 2^" + std::to_string(e) + " rad/s", "choose other units of time");
+          [&] { return "rates near 2^" + std::to_string(e) + " rad/s"; }, "choose other units of time");
   constants_.rate_scale = std::ldexp(1.0, e);
   largest_time_ = std::min(std::ldexp(1e25, -e), std::numeric_limits<double>::max());
 
@@ -173,7 +177,8 @@ void HeavyTop::set_up() {
   exact::HeavyTopMotion motion;
   exact::heavy_top_kernels().set_up(s, constants_, motion);
   require(motion.lost_within == 0.0, "attitude", "further from the unstable upright position, or exactly in it",
-          "a tilt or kick of " + to_text(motion.lost_within) + " beside 1", "float64 cannot follow it from there");
+          [&] { return "a tilt or kick of " + to_text(motion.lost_within) + " beside 1"; },
+          "float64 cannot follow it from there");
 
   const Matrix3d R_SB = to_matrix(constants_.q_SB);
   for (int i = 0; i < 3; ++i)

@@ -92,8 +92,14 @@ POLHODE_INLINE FreeState<T> evaluate(const FreeTrig<C>& body, T t) {
   return evaluate(body, evaluate_pair(body, s, c), s, c, ks, kc);
 }
 
+/// Where the motion is between two flips: v, (-1)^N, e^-|v|, and the turn of both alpha and beta.
+template <class T>
+struct FreePassage {
+  T v, flip, E, sine, cosine;
+};
+
 template <class T, class C>
-POLHODE_INLINE FreeState<T> evaluate(const FreeHyper<C>& body, T t) {
+POLHODE_INLINE FreePassage<T> evaluate_passage(const FreeHyper<C>& body, T t) {
   // The theta argument in half turns as a pair: near v = 0 its error is multiplied by pi^2 / lambda.
   const auto p = two_prod(t, T(body.rate_hi));
   const T n = rint(p.hi);
@@ -109,11 +115,16 @@ POLHODE_INLINE FreeState<T> evaluate(const FreeHyper<C>& body, T t) {
   const auto vs = two_sum(vp.hi, T(body.v0_hi));
   const T v = vs.hi + (vs.lo + tail);
 
-  T sine, cosine;
+  FreePassage<T> out;
   const T turn = madd(T(body.eta), f, cycle_fraction(t, T(body.kappa_hi), T(body.kappa_lo), T(0.0)));
-  sincos_cycles(turn - rint(turn), sine, cosine);
+  sincos_cycles(turn - rint(turn), out.sine, out.cosine);
+  out.v = v, out.flip = flip, out.E = exp_minus(abs(v));
+  return out;
+}
 
-  const T sign = copysign(T(1.0), v), E = exp_minus(abs(v));
+template <class T, class C>
+POLHODE_INLINE FreeState<T> evaluate(const FreeHyper<C>& body, const FreePassage<T>& passage) {
+  const T sign = copysign(T(1.0), passage.v), E = passage.E, flip = passage.flip;
   const T g = select(T(body.q) < T(1e-290), T(0.0), T(body.q) / E);
   const T q = T(body.q);
   T u[4], d[4];
@@ -136,7 +147,7 @@ POLHODE_INLINE FreeState<T> evaluate(const FreeHyper<C>& body, T t) {
   }
   const T size2 = madd(re_a, re_a, im_a * im_a) + madd(re_b, re_b, im_b * im_b);
   FreeState<T> out;
-  turn_and_normalise(re_a, im_a, re_b, im_b, T(1.0) / sqrt(size2), sine, cosine, out);
+  turn_and_normalise(re_a, im_a, re_b, im_b, T(1.0) / sqrt(size2), passage.sine, passage.cosine, out);
 
   T D = T(0.0), V = T(0.0), Wp = E, Wm = E;
   for (int i = 2; i >= 0; --i) {
@@ -151,6 +162,11 @@ POLHODE_INLINE FreeState<T> evaluate(const FreeHyper<C>& body, T t) {
   out.omega[1] = flip * sign * T(body.omega2) * V * inverse;
   out.omega[2] = T(body.omega3) * Wp * inverse;
   return out;
+}
+
+template <class T, class C>
+POLHODE_INLINE FreeState<T> evaluate(const FreeHyper<C>& body, T t) {
+  return evaluate(body, evaluate_passage(body, t));
 }
 
 }  // namespace polhode::exact

@@ -57,13 +57,6 @@ void loop(const Body& body_in, const FreeFrame& frame_in, const double* t, std::
     write_at<want_omega, want_attitude, One>(body_in, frame_in, t + i, omega + 3 * i, attitude + 4 * i);
 }
 
-template <class Body>
-void at_times(const Body& body, const FreeFrame& frame, const double* t, std::size_t n, double* omega, double* attitude) {
-  if (omega && attitude) return loop<true, true>(body, frame, t, n, omega, attitude);
-  if (omega) return loop<true, false>(body, frame, t, n, omega, attitude);
-  if (attitude) return loop<false, true>(body, frame, t, n, omega, attitude);
-}
-
 template <bool want_omega, bool want_attitude>
 void trig_loop(const exact::FreeTrig<double>& body_in, const FreeFrame& frame_in, const TimeGrid& grid, double* omega,
                double* attitude) {
@@ -78,7 +71,8 @@ void trig_loop(const exact::FreeTrig<double>& body_in, const FreeFrame& frame_in
   };
   const auto finish = [&]<class T>(const Angle<T>(&now)[2], const T(&p)[5], std::size_t k)
                           __attribute__((always_inline)) {
-    const auto state = exact::evaluate(body, exact::FreePair<T>{p[0], p[1], p[2], p[3], p[4]}, now[0].sine, now[0].cosine,
+    const exact::FreePair<T> found{p[0], p[1], p[2], p[3], p[4]};
+    const auto state = exact::evaluate(body, found, now[0].sine, now[0].cosine,
                                        now[1].sine, now[1].cosine);
     write<want_omega, want_attitude>(brought_back(frame, state), omega + 3 * k, attitude + 4 * k);
   };
@@ -92,9 +86,39 @@ inline void on_times(const exact::FreeTrig<double>& body, const FreeFrame& frame
   if (attitude) return trig_loop<false, true>(body, frame, grid, omega, attitude);
 }
 
+/// In blocks and short loops as `at_phases` is; a grid is any times here.
+template <bool want_omega, bool want_attitude>
+void hyper_loop(const exact::FreeHyper<double>& body_in, const FreeFrame& frame_in, const TimeGrid& grid, double* omega,
+                double* attitude) {
+  const std::size_t whole = grid.n / Wide::width * Wide::width;
+  if (whole > 0) {
+    const exact::FreeHyper<double> body = body_in;  // of our own, as above
+    const FreeFrame frame = frame_in;
+    alignas(64) double middle[5][TimeGrid::block];
+    for (std::size_t first = 0; first < whole; first += TimeGrid::block) {
+      const std::size_t n = in_block(whole, first);
+      for (std::size_t k = 0; k < n; k += Wide::width) {
+        const auto p = exact::evaluate_passage(body, Wide::load(grid.t + first + k) * Wide(frame.time_scale));
+        p.v.store(middle[0] + k), p.flip.store(middle[1] + k), p.E.store(middle[2] + k);
+        p.sine.store(middle[3] + k), p.cosine.store(middle[4] + k);
+      }
+      for (std::size_t k = 0; k < n; k += Wide::width) {
+        const exact::FreePassage<Wide> p{Wide::load(middle[0] + k), Wide::load(middle[1] + k), Wide::load(middle[2] + k),
+                                         Wide::load(middle[3] + k), Wide::load(middle[4] + k)};
+        write<want_omega, want_attitude>(brought_back(frame, exact::evaluate(body, p)), omega + 3 * (first + k),
+                                         attitude + 4 * (first + k));
+      }
+    }
+  }
+  for (std::size_t i = whole; i < grid.n; ++i)
+    write_at<want_omega, want_attitude, One>(body_in, frame_in, grid.t + i, omega + 3 * i, attitude + 4 * i);
+}
+
 inline void on_times(const exact::FreeHyper<double>& body, const FreeFrame& frame, const TimeGrid& grid, double* omega,
                      double* attitude) {
-  at_times(body, frame, grid.t, grid.n, omega, attitude);
+  if (omega && attitude) return hyper_loop<true, true>(body, frame, grid, omega, attitude);
+  if (omega) return hyper_loop<true, false>(body, frame, grid, omega, attitude);
+  if (attitude) return hyper_loop<false, true>(body, frame, grid, omega, attitude);
 }
 
 }  // namespace polhode::POLHODE_ISA

@@ -20,7 +20,8 @@ constexpr int most_terms = 7;  // of the theta sums in the set-up: q^42 for q <=
 /// As many as double-double needs for a nome.
 inline int terms_for(double q) {
   int n = 1;
-  for (double left = q; left > 1e-34 && n < most_terms; ++n) left *= std::pow(q, 2 * n + 1);
+  double left = q, power = q * q * q;  // q^(n^2), q^(2n+1)
+  for (; left > 1e-34 && n < most_terms; ++n, power *= q * q) left *= power;
   return n;
 }
 inline DD root_of(DD a) { return a.hi > 0.0 ? sqrt(a) : DD(0.0); }
@@ -77,14 +78,13 @@ struct Monomials {
 };
 
 /// sum += factor (shift + slope X) a b, as far as the degree goes.
-inline void add_product(double (&sum)[degree_12 + 1], double factor, double shift, double slope, const Monomials& a,
-                 const Monomials& b) {
+POLHODE_INLINE void add_product(double (&sum)[degree_12 + 1], double factor, double shift, double slope,
+                                const Monomials& a, const Monomials& b) {
+  double product[degree_12 + 1] = {};
   for (int i = 0; i < 5; ++i)
-    for (int j = 0; j < 5; ++j) {
-      const double c = factor * a.p[i] * b.p[j];
-      sum[i + j] += shift * c;
-      if (i + j < degree_12) sum[i + j + 1] += slope * c;
-    }
+    for (int j = 0; j < 5; ++j) product[i + j] = math::madd(a.p[i], b.p[j], product[i + j]);
+  for (int i = 0; i <= degree_12; ++i)
+    sum[i] = math::madd(factor, math::madd(shift, product[i], i > 0 ? slope * product[i - 1] : 0.0), sum[i]);
 }
 
 /// What both forms need: the roots, the moduli and the phases' rates where the tilt turns.
@@ -199,18 +199,20 @@ inline void set_up_trig(HeavyTopConstants& c, HeavyTopMotion& motion, const Comm
     for (int k = 0; k < 5; ++k) c.p[i][k] = parts[i]->p[k];
   // speed (conj(N1) D2 - N2 conj(D1)) + i turn conj(N1) N2, with sin^2 z, cos^2 z = (1 -+ X)/2
   const double half = 0.5 * c.speed;
-  add_product(c.even, half, 1, -1, N1r, D2r);
-  add_product(c.even, -half, 1, -1, N2i, D1i);
-  add_product(c.even, half, 1, 1, N1i, D2i);
-  add_product(c.even, -half, 1, 1, N2r, D1r);
-  add_product(c.even, -0.5 * c.turn, 1, -1, N1r, N2i);
-  add_product(c.even, 0.5 * c.turn, 1, 1, N1i, N2r);
-  add_product(c.odd, c.speed, 1, 0, N1r, D2i);
-  add_product(c.odd, -c.speed, 1, 0, N1i, D2r);
-  add_product(c.odd, c.speed, 1, 0, N2r, D1i);
-  add_product(c.odd, -c.speed, 1, 0, N2i, D1r);
-  add_product(c.odd, c.turn, 1, 0, N1r, N2r);
-  add_product(c.odd, c.turn, 1, 0, N1i, N2i);
+  double even[degree_12 + 1] = {}, odd_part[degree_12 + 1] = {};
+  add_product(even, half, 1, -1, N1r, D2r);
+  add_product(even, -half, 1, -1, N2i, D1i);
+  add_product(even, half, 1, 1, N1i, D2i);
+  add_product(even, -half, 1, 1, N2r, D1r);
+  add_product(even, -0.5 * c.turn, 1, -1, N1r, N2i);
+  add_product(even, 0.5 * c.turn, 1, 1, N1i, N2r);
+  add_product(odd_part, c.speed, 1, 0, N1r, D2i);
+  add_product(odd_part, -c.speed, 1, 0, N1i, D2r);
+  add_product(odd_part, c.speed, 1, 0, N2r, D1i);
+  add_product(odd_part, -c.speed, 1, 0, N2i, D1r);
+  add_product(odd_part, c.turn, 1, 0, N1r, N2r);
+  add_product(odd_part, c.turn, 1, 0, N1i, N2i);
+  for (int i = 0; i <= degree_12; ++i) c.even[i] = even[i], c.odd[i] = odd_part[i];
 
   motion.period = (math::pi<DD>() / nu).hi;
   motion.precession = (kA + kB + nu * DD(turns_of_a(m) + turns_of_b(m))).hi;
