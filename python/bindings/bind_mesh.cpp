@@ -123,7 +123,17 @@ MassProperties properties_of(const Triangles& triangles, const Options& options)
   }
   const MassProperties body = options.mass ? integrals.with_mass(*options.mass, options.unit)
                                            : integrals.with_density(options.density.value(), options.unit);
-  if (report) ask_about_the_unit(*report, options.unit);
+  if (report) {
+    ask_about_the_unit(*report, options.unit);
+    if (report->unjudged > 0) {
+      warn("faces: of " + std::to_string(report->components) + " surfaces, " + std::to_string(report->unjudged) +
+           " were not asked whether they lie inside others: too many");
+    }
+    if (report->embedded > 0) {
+      warn("faces: " + std::to_string(report->embedded) +
+           " surfaces inside a solid are wound outward as it is: their volume counts twice (cavities wound the wrong way?)");
+    }
+  }
   if (integrals.flipped) warn("faces: wound inward, all of them: turned over");
   return body;
 }
@@ -143,8 +153,8 @@ void bind_mesh(py::module_& m, py::class_<MassProperties>& cls) {
       R"(The solid of uniform density inside a surface of triangles, exact for its vertices wherever they are.
 
 The surface must be closed, every edge between two faces that pass it in opposite directions; vertices at exactly one
-place count as one. It may have several parts and cavities (shells wound inward); parts that overlap count twice, which
-is not looked for.
+place count as one. It may have several parts and cavities (shells wound inward); where parts overlap, the overlap
+counts twice: a part inside another is warned of, surfaces that cross are not looked for.
 
 Parameters
 ----------
@@ -170,7 +180,8 @@ MassProperties
 Warns
 -----
 UserWarning
-    A mesh longer than 2 km or shorter than 2 um, which may be a wrong unit; one that was turned.
+    A mesh longer than 2 km or shorter than 2 um, which may be a wrong unit; one that was turned; a solid inside
+    another, which may be a cavity wound the wrong way.
 
 Raises
 ------
@@ -234,6 +245,8 @@ InvalidInput
         found["faces"] = mesh.face_count;
         found["components"] = report.components;
         found["cavities"] = report.cavities;
+        found["embedded"] = report.embedded;
+        found["unjudged"] = report.unjudged;
         found["degenerate"] = report.degenerate;
         found["merged"] = report.merged;
         found["inside_out"] = report.inside_out;

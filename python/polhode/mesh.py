@@ -75,8 +75,9 @@ def report(vertices: npt.ArrayLike, faces: npt.ArrayLike) -> dict[str, Any]:
     -------
     dict
         faces; components: surfaces that share no edge, cavities with them; cavities: wound inward inside another;
-        degenerate: faces with two corners at one place, which count for nothing; merged: closed only with vertices at
-        one place taken as one; inside_out; low and high: the box round the faces, ndarrays of shape (3,).
+        embedded: wound outward inside a solid, counted twice; unjudged: not asked whether they lie inside others, where
+        there are too many; degenerate: faces with two corners at one place, which count for nothing; merged: closed only
+        with vertices at one place taken as one; inside_out; low and high: the box round the faces, shape (3,).
 
     Raises
     ------

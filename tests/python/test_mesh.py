@@ -278,3 +278,56 @@ def test_every_instruction_set():
     assert found["avx2"] == found["avx512"]
     values = {level: np.array([float.fromhex(x) for x in text.split()]) for level, text in found.items()}
     np.testing.assert_allclose(values["baseline"], values["avx2"], rtol=0, atol=4e-16 * 5)
+
+
+# ---- surfaces inside each other
+
+
+def shells(*signs):
+    """Boxes inside each other, wound outward or inward."""
+    return join(*((box if sign > 0 else lambda *b: inward(box(*b)))((-1 / n,) * 3, (1 / n,) * 3) for n, sign in enumerate(signs, 1)))
+
+
+def test_a_cavity_wound_the_wrong_way_is_warned_of():
+    with pytest.warns(UserWarning, match="1 surfaces inside a solid are wound outward .*cavities wound the wrong way"):
+        assert ph.MassProperties.from_mesh(*shells(1, 1), density=1).mass == 9
+    assert ph.mesh.report(*shells(1, 1, 1))["embedded"] == 2
+    assert ph.mesh.report(*inward(shells(1, 1)))["embedded"] == 1
+
+
+def test_too_many_surfaces_to_compare_are_told():
+    vertices, faces = box((0, 0, 0), (1, 1, 1))
+    count = 10_000
+    places = np.stack([2.0 * np.arange(count), np.zeros(count), np.zeros(count)], 1)
+    many = ((vertices + places[:, None]).reshape(-1, 3), (faces + 8 * np.arange(count)[:, None, None]).reshape(-1, 3))
+    found = ph.mesh.report(*many)
+    assert found["components"] == count and 0 < found["unjudged"] < count and found["embedded"] == 0
+    with pytest.warns(UserWarning) as caught:
+        assert ph.MassProperties.from_mesh(*many, density=1).mass == count
+    assert any("were not asked whether" in str(one.message) for one in caught)
+    last = many[1].copy()
+    last[-12:] = last[-12:, ::-1]   # one turned over is found all the same
+    assert "lies inside no other" in refusal(many[0], last)
+
+
+def test_solids_in_cavities_and_side_by_side_are_fine():
+    found = ph.mesh.report(*shells(1, -1, 1, -1))
+    assert (found["components"], found["cavities"], found["embedded"]) == (4, 2, 0)
+    beside = join(box(), box((1, -1, -1), (2, 1, 1)), box((3, 0, 0), (4, 1, 1)))   # touching faces, and apart
+    assert ph.mesh.report(*beside)["embedded"] == 0
+    ring = join(box(), inward(box((-0.5,) * 3, (0.5,) * 3)), box((-0.25,) * 3, (0.25,) * 3))
+    assert ph.mesh.report(*ring)["embedded"] == 0
+
+
+def test_a_shell_in_the_box_of_another_is_not_yet_inside_it():
+    """An inward cube in the notch of an L: within the box, outside the body."""
+    outline = np.array([(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)], float)
+    vertices = np.concatenate([np.column_stack([outline, np.full(6, z)]) for z in (0, 1)])
+    caps = np.array([(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 5)])
+    sides = [(i, j, k) for i in range(6) for j, k in (((i + 1) % 6, (i + 1) % 6 + 6), ((i + 1) % 6 + 6, i + 6))]
+    angle = vertices, np.concatenate([caps[:, ::-1], caps + 6, sides])
+    assert ph.MassProperties.from_mesh(*angle, density=1).mass == 5
+    outside = join(angle, inward(box((1.5, 1.5, 0.25), (2.5, 2.5, 0.75))))
+    assert "lies inside no other" in refusal(*outside)
+    inside = join(angle, inward(box((0.25, 1.5, 0.25), (0.75, 2.5, 0.75))))
+    assert ph.MassProperties.from_mesh(*inside, density=1).mass == 4.75

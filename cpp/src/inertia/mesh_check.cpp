@@ -1,13 +1,11 @@
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <numeric>
 #include <string>
 #include <vector>
 
 #include "inertia/mesh_faces.hpp"
+#include "inertia/mesh_surfaces.hpp"
 #include "polhode/core/error.hpp"
 
 // Every edge of a closed, oriented surface lies between two faces, which pass it in opposite directions. The sides of
@@ -16,7 +14,9 @@ namespace polhode {
 namespace {
 
 using inertia::Corners;
-using Volumes = std::vector<double>;
+using inertia::is_degenerate;
+using inertia::Surface;
+using inertia::Surfaces;
 
 /// How many there are of a fault, and the first faces that have it.
 class Fault {
@@ -54,31 +54,11 @@ class Fault {
   std::array<std::uint32_t, 3> faces_{};
 };
 
-/// Faces joined along edges, as trees whose roots stand for the surfaces.
-class Surfaces {
- public:
-  explicit Surfaces(std::size_t faces) : parent_(faces) { std::iota(parent_.begin(), parent_.end(), 0u); }
-
-  std::uint32_t root(std::uint32_t face) {
-    while (parent_[face] != face) face = parent_[face] = parent_[parent_[face]];
-    return face;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a), b = root(b);
-    if (a != b) parent_[std::max(a, b)] = std::min(a, b);  // so that a root is the first face
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
 struct Faults {
   Fault open, turned, crowded;
   std::size_t degenerate = 0;
   bool any() const { return open.count() + turned.count() + crowded.count() > 0; }
 };
-
-bool is_degenerate(const std::uint32_t* v) { return v[0] == v[1] || v[1] == v[2] || v[2] == v[0]; }
 
 /// One edge's sides, from `begin` to `end`: the face in the upper 31 of the lower 32 bits, its direction in the last.
 void judge_edge(const std::uint64_t* begin, const std::uint64_t* end, Faults& faults, Surfaces& surfaces) {
@@ -142,63 +122,12 @@ std::size_t count_repeated(const Corners& corners, std::size_t faces) {
   add(faults.crowded, " edges shared by more than two faces");
   const std::size_t repeated = count_repeated(corners, mesh.face_count);
   if (repeated > 0) found += ", " + std::to_string(repeated) + " faces given again";
-  throw InvalidInput("faces", "a closed surface, every edge between two faces that pass it in opposite directions", found,
+  throw InvalidInput("faces", "a closed surface, every edge between two faces that pass it in opposite directions",
+                     found,
                      repeated > 0                ? "a part given twice?"
                      : faults.open.count() > 0   ? "a hole, or an edge of one face split in another?"
                      : faults.turned.count() > 0 ? "some faces are turned over"
                                                  : "parts that touch along an edge?");
-}
-
-struct Surface {
-  std::uint32_t first_face = 0;
-  std::size_t faces = 0;
-  double volume = 0;    ///< times 6
-  double rounding = 0;  ///< what of it may be no more than that
-  Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
-
-  bool is_wound(double sign) const { return sign * volume > rounding; }
-  bool holds(const Surface& other) const {
-    return (low.array() <= other.low.array()).all() && (other.high.array() <= high.array()).all();
-  }
-};
-
-std::vector<Surface> measure(const Corners& corners, const Mesh& mesh, Surfaces& roots) {
-  std::vector<std::uint32_t> place(mesh.face_count);
-  std::vector<Surface> surfaces;
-  const auto vertex = [&](std::uint32_t v) { return Eigen::Map<const Vector3d>(mesh.vertices + 3 * std::size_t{v}); };
-  for (std::uint32_t face = 0; face < mesh.face_count; ++face) {
-    const std::uint32_t* v = corners[face];
-    if (is_degenerate(v)) continue;
-    const std::uint32_t root = roots.root(face);
-    if (root == face) {
-      place[face] = static_cast<std::uint32_t>(surfaces.size());
-      surfaces.emplace_back().first_face = face;
-    }
-    Surface& s = surfaces[place[root]];
-    const Vector3d a = vertex(v[0]), b = vertex(v[1]), c = vertex(v[2]);
-    s.low = s.low.cwiseMin(a).cwiseMin(b).cwiseMin(c);
-    s.high = s.high.cwiseMax(a).cwiseMax(b).cwiseMax(c);
-    const Vector3d from_first = a - vertex(corners[s.first_face][0]), normal = (b - a).cross(c - a);
-    s.volume += from_first.dot(normal);
-    s.rounding += 1e-12 * from_first.norm() * normal.norm();
-    ++s.faces;
-  }
-  return surfaces;
-}
-
-/// Every surface wound against the whole must lie inside one that is not, as far as boxes can tell; returns how many.
-std::size_t require_cavities(std::vector<Surface> surfaces, double sign) {
-  std::sort(surfaces.begin(), surfaces.end(),
-            [&](const Surface& a, const Surface& b) { return sign * a.volume > sign * b.volume; });
-  const auto first = std::find_if(surfaces.begin(), surfaces.end(), [&](const Surface& s) { return s.is_wound(-sign); });
-  for (auto cavity = first; cavity != surfaces.end(); ++cavity) {
-    if (std::any_of(surfaces.begin(), first, [&](const Surface& s) { return s.holds(*cavity); })) continue;
-    throw InvalidInput("faces", "wound alike on every part, against it on cavities alone",
-                       "a surface of " + std::to_string(cavity->faces) + " faces (first face " +
-                           std::to_string(cavity->first_face) + ") that is wound inward and lies inside no other",
-                       "a part turned inside out?");
-  }
-  return static_cast<std::size_t>(surfaces.end() - first);
 }
 
 }  // namespace
@@ -221,7 +150,7 @@ MeshReport check_mesh(const Mesh& mesh) {
   }
   if (faults.any()) refuse(faults, corners, mesh);
   report.degenerate = faults.degenerate;
-  const std::vector<Surface> surfaces = measure(corners, mesh, roots);
+  const std::vector<Surface> surfaces = inertia::measure(corners, mesh, roots);
   if (surfaces.empty()) throw InvalidInput("faces", "round a positive volume", "faces of no area alone");
   report.components = surfaces.size();
   double volume = 0;
@@ -231,7 +160,7 @@ MeshReport check_mesh(const Mesh& mesh) {
     report.low = report.low.cwiseMin(s.low), report.high = report.high.cwiseMax(s.high);
   }
   report.inside_out = volume < 0;
-  report.cavities = require_cavities(surfaces, volume < 0 ? -1.0 : 1.0);
+  inertia::judge_nesting(surfaces, corners, mesh, roots, report);
   return report;
 }
 

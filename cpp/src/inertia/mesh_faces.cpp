@@ -83,7 +83,7 @@ Corners::Corners(const Mesh& mesh) {
   constexpr std::size_t most = std::size_t{1} << 31;
   if (mesh.face_count >= most || mesh.vertex_count >= 2 * most) {
     throw InvalidInput("faces", "fewer than 2^31 faces and 2^32 vertices, to be checked",
-                       std::to_string(mesh.face_count) + " faces and " + std::to_string(mesh.vertex_count) + " vertices");
+                       std::to_string(mesh.face_count) + " faces, " + std::to_string(mesh.vertex_count) + " vertices");
   }
   if (const auto* faces = std::get_if<const std::int32_t*>(&mesh.faces)) {
     first_ = reinterpret_cast<const std::uint32_t*>(*faces);  // the unsigned type of the same: allowed

@@ -211,8 +211,8 @@ class MassProperties:
         The solid of uniform density inside a surface of triangles, exact for its vertices wherever they are.
 
         The surface must be closed, every edge between two faces that pass it in opposite directions; vertices at exactly one
-        place count as one. It may have several parts and cavities (shells wound inward); parts that overlap count twice, which
-        is not looked for.
+        place count as one. It may have several parts and cavities (shells wound inward); where parts overlap, the overlap
+        counts twice: a part inside another is warned of, surfaces that cross are not looked for.
 
         Parameters
         ----------
@@ -238,7 +238,8 @@ class MassProperties:
         Warns
         -----
         UserWarning
-            A mesh longer than 2 km or shorter than 2 um, which may be a wrong unit; one that was turned.
+            A mesh longer than 2 km or shorter than 2 um, which may be a wrong unit; one that was turned; a solid inside
+            another, which may be a cavity wound the wrong way.
 
         Raises
         ------

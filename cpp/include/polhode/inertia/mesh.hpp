@@ -29,6 +29,8 @@ struct Mesh {
 struct MeshReport {
   std::size_t components = 0;  ///< surfaces that share no edge, cavities with them
   std::size_t cavities = 0;    ///< of these, wound inward inside another
+  std::size_t embedded = 0;    ///< wound outward inside a solid: counted twice (a cavity wound the wrong way?)
+  std::size_t unjudged = 0;    ///< whether these lie inside others was not asked: too many surfaces
   std::size_t degenerate = 0;  ///< faces with two corners at one vertex: they count for nothing
   bool merged = false;         ///< closed only when vertices at exactly one place are taken as one
   bool inside_out = false;     ///< wound consistently, but inward
@@ -36,8 +38,9 @@ struct MeshReport {
 };
 
 /// Is this the surface of a body: every edge between two faces that pass it in opposite directions, every inward shell
-/// inside another? Throws InvalidInput with counts and the first faces when it is not. A surface that is turned inside
-/// out as a whole is no failure here: see `inside_out`. Surfaces that cross each other are not looked for.
+/// inside another? Throws InvalidInput with counts and the first faces when it is not. A mesh that is turned inside out
+/// as a whole is no failure here, nor a solid inside another: see `inside_out`, `embedded`. Surfaces that cross each
+/// other are not looked for.
 MeshReport check_mesh(const Mesh& mesh);
 
 /// Volume and moments of the solid, in units of the vertices; double-double, so that what follows rounds once.

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include "inertia/mesh_faces.hpp"
+
+namespace polhode::inertia {
+
+inline bool is_degenerate(const std::uint32_t* v) { return v[0] == v[1] || v[1] == v[2] || v[2] == v[0]; }
+
+/// Faces joined along edges, as trees whose roots stand for the surfaces.
+class Surfaces {
+ public:
+  explicit Surfaces(std::size_t faces) : parent_(faces) { std::iota(parent_.begin(), parent_.end(), 0u); }
+
+  std::uint32_t root(std::uint32_t face) {
+    while (parent_[face] != face) face = parent_[face] = parent_[parent_[face]];
+    return face;
+  }
+  void join(std::uint32_t a, std::uint32_t b) {
+    a = root(a), b = root(b);
+    if (a != b) parent_[std::max(a, b)] = std::min(a, b);  // so that a root is the first face
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+/// What a mesh consists of: faces that hang together by their edges.
+struct Surface {
+  std::uint32_t first_face = 0;
+  std::size_t faces = 0;
+  double volume = 0;    ///< times 6
+  double rounding = 0;  ///< what of it may be no more than that
+  Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+
+  bool is_wound(double sign) const { return sign * volume > rounding; }
+  bool holds(const Vector3d& p) const { return (low.array() <= p.array()).all() && (p.array() <= high.array()).all(); }
+};
+
+std::vector<Surface> measure(const Corners& corners, const Mesh& mesh, Surfaces& roots);
+
+/// Seen from a point of each surface, how often do the others go round it? An outward surface lies in nothing, a cavity
+/// in one solid: throws InvalidInput for a cavity that does not, and counts the outward ones inside a solid, whose
+/// volume counts twice. `report.inside_out` says which way outward is.
+void judge_nesting(const std::vector<Surface>& surfaces, const Corners& corners, const Mesh& mesh, Surfaces& roots,
+                   MeshReport& report);
+
+}  // namespace polhode::inertia
