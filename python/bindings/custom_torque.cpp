@@ -1,5 +1,6 @@
 #include "custom_torque.hpp"
 
+#include <atomic>
 #include <cstdint>
 
 #include "convert.hpp"
@@ -11,10 +12,33 @@ namespace {
 
 using torques::Custom;
 
+/// An array lent to a callable and used again for its next call, unless the callable kept it (or a view of it).
+class LentArray {
+ public:
+  explicit LentArray(py::ssize_t size) : size_(size) {}
+  void drop() { Py_XDECREF(free_.exchange(nullptr)); }   ///< with the GIL held
+
+  /// Taken out while it is lent, so that neither a call within the call nor another thread can write into it.
+  py::object take(const double* values) {
+    py::object array = py::reinterpret_steal<py::object>(free_.exchange(nullptr));
+    if (!array) array = Array(size_);
+    std::copy_n(values, size_, static_cast<double*>(py::reinterpret_borrow<py::array>(array).mutable_data()));
+    return array;
+  }
+  void give_back(py::object array) {
+    if (array.ref_count() == 1) Py_XDECREF(free_.exchange(array.release().ptr()));
+  }
+
+ private:
+  py::ssize_t size_;
+  std::atomic<PyObject*> free_{nullptr};
+};
+
 /// What Python gave, kept alive with the torque. Its references are dropped with the GIL held.
 struct Owner {
   py::object function, potential, data;
   Custom::Claims claims;
+  LentArray omega{3}, attitude{4};
 
   ~Owner() {
     if (!Py_IsInitialized()) {
@@ -23,22 +47,47 @@ struct Owner {
     }
     py::gil_scoped_acquire gil;
     function = py::object(), potential = py::object(), data = py::object();
+    omega.drop(), attitude.drop();
   }
 };
 
+/// Three floats in a tuple or list, or a float64 array of three: without the way through NumPy's general conversion.
+bool read_plainly(py::handle result, double* torque) {
+  if (PyTuple_CheckExact(result.ptr()) || PyList_CheckExact(result.ptr())) {
+    if (PySequence_Fast_GET_SIZE(result.ptr()) != 3) return false;
+    for (Py_ssize_t i = 0; i < 3; ++i) {
+      PyObject* item = PySequence_Fast_GET_ITEM(result.ptr(), i);
+      if (!PyFloat_CheckExact(item)) return false;
+      torque[i] = PyFloat_AS_DOUBLE(item);
+    }
+    return true;
+  }
+  if (!py::isinstance<Array>(result)) return false;
+  const Array tau = py::reinterpret_borrow<Array>(result);
+  if (tau.ndim() != 1 || tau.shape(0) != 3) return false;
+  std::copy_n(tau.data(), 3, torque);
+  return true;
+}
+
 void call_python(double t, const double* omega, const double* attitude, double* torque, void* data) {
   py::gil_scoped_acquire gil;
-  const Owner& owner = *static_cast<const Owner*>(data);
-  Array w(3), q(4);
-  std::copy_n(omega, 3, w.mutable_data());
-  std::copy_n(attitude, 4, q.mutable_data());
-  const py::object result = owner.function(t, w, q);
-  const Array tau = to_array(result, "the torque's function");
-  if (tau.ndim() != 1 || tau.shape(0) != 3) {
-    throw InvalidInput("the torque's function", "one that returns three numbers",
-                       "shape " + std::string(py::str(result.attr("__class__"))) + " of size " + std::to_string(tau.size()));
+  Owner& owner = *static_cast<Owner*>(data);
+  py::object w = owner.omega.take(omega), q = owner.attitude.take(attitude);
+  const py::float_ time(t);
+  PyObject* arguments[] = {nullptr, time.ptr(), w.ptr(), q.ptr()};
+  const py::object result = py::reinterpret_steal<py::object>(
+      PyObject_Vectorcall(owner.function.ptr(), arguments + 1, 3 | PY_VECTORCALL_ARGUMENTS_OFFSET, nullptr));
+  if (!result) throw py::error_already_set();
+  if (!read_plainly(result, torque)) {
+    const Array tau = to_array(result, "the torque's function");
+    if (tau.ndim() != 1 || tau.shape(0) != 3) {
+      throw InvalidInput("the torque's function", "one that returns three numbers",
+                         "shape " + std::string(py::str(result.attr("__class__"))) + " of size " + std::to_string(tau.size()));
+    }
+    std::copy_n(tau.data(), 3, torque);
   }
-  std::copy_n(tau.data(), 3, torque);
+  owner.omega.give_back(std::move(w));
+  owner.attitude.give_back(std::move(q));
 }
 
 double call_python_potential(double t, const double* attitude, void* data) {

@@ -5,15 +5,6 @@
 #include "checks.hpp"
 
 namespace polhode::torques {
-namespace {
-
-void normalise(const double* q, double* unit) {
-  const double s = 1.0 / std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-  for (int i = 0; i < 4; ++i) unit[i] = s * q[i];
-}
-
-}  // namespace
-
 Custom::Custom(Function function, void* data, const Claims& claims, Potential potential,
                std::shared_ptr<const void> owner)
     : function_(function), data_(data), claims_(claims), potential_(potential), owner_(std::move(owner)) {
@@ -27,16 +18,12 @@ const TorqueRecord& Custom::record() {
   return record;
 }
 
-void Custom::add(const TorqueInput& in, double* tau_B) const {
-  double unit[4], torque[3] = {NAN, NAN, NAN};
-  normalise(in.attitude, unit);
-  function_(in.t, in.omega, unit, torque, data_);
+void Custom::require_finite(double t, const double* torque) {
   for (int i = 0; i < 3; ++i) {
     if (!std::isfinite(torque[i])) {
       throw InvalidInput("the torque's function", "finite in all three components",
-                         to_text(torque[i]) + " in component " + std::to_string(i) + " at t = " + to_text(in.t) + " s");
+                         to_text(torque[i]) + " in component " + std::to_string(i) + " at t = " + to_text(t) + " s");
     }
-    tau_B[i] += torque[i];
   }
 }
 

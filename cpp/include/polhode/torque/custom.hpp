@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <type_traits>
 
@@ -49,12 +50,26 @@ class Custom {
   }
 
   /// @throws InvalidInput when the function returns what is not finite; its own exceptions come through.
-  void add(const TorqueInput& in, double* tau_B) const;
+  void add(const TorqueInput& in, double* tau_B) const {
+    double unit[4], torque[3] = {NAN, NAN, NAN};
+    normalise(in.attitude, unit);
+    function_(in.t, in.omega, unit, torque, data_);
+    if (!std::isfinite(torque[0] + torque[1] + torque[2])) require_finite(in.t, torque);
+    for (int i = 0; i < 3; ++i) tau_B[i] += torque[i];
+  }
   double compute_potential(const TorqueInput& in) const;
 
   const std::shared_ptr<const void>& owner() const { return owner_; }
 
  private:
+  /// q / |q|. The stages of a step are nearly unit, and a square root with a division would cost more than the call.
+  static void normalise(const double* q, double* unit) {
+    const double d = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1.0;
+    const double s = std::abs(d) < 1e-5 ? 1.0 - d * (0.5 - 0.375 * d) : 1.0 / std::sqrt(1.0 + d);
+    for (int i = 0; i < 4; ++i) unit[i] = s * q[i];
+  }
+  static void require_finite(double t, const double* torque);   ///< @throws InvalidInput, naming the component
+
   Function function_;
   void* data_;
   Claims claims_;
