@@ -194,9 +194,38 @@ def _require_gltf_claims(kind: str, data: bytes) -> None:
             raise _Wrong(f"claims {length} bytes with {chunk} of them JSON, but has {len(data)} (cut short?)")
         data = data[20:20 + chunk]
     try:
-        accessors = json.loads(data).get("accessors", [])
-        counts = [a["count"] for a in accessors if "bufferView" not in a]
+        content = json.loads(data)
+        _require_gltf_sense(content, len(data))
     except (ValueError, AttributeError, KeyError, TypeError, RecursionError) as error:
-        raise _Wrong(f"holds no glTF: {error}") from None
-    if any(not isinstance(count, int) or count > len(data) for count in counts):
-        raise _Wrong(f"claims {max(map(str, counts))} entries of data that it does not hold")
+        raise _Wrong(f"holds no glTF: {type(error).__name__}: {error}") from None
+
+
+# What changes colours alone.
+HARMLESS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_")
+
+
+def _require_gltf_sense(content: dict[str, Any], size: int) -> None:
+    """Refuse what trimesh would leave out without a word, and what is made from a count alone."""
+    for accessor in content.get("accessors", []):
+        if "sparse" in accessor:
+            raise _Wrong("has sparse accessors, which are not read")
+        if "bufferView" not in accessor and not 0 <= accessor["count"] <= size:
+            raise _Wrong(f"claims {accessor['count']} entries of data that it does not hold")
+    required = [name for name in content.get("extensionsRequired", []) if not name.startswith(HARMLESS)]
+    if required:
+        raise _Wrong(f"needs {', '.join(map(str, required))}, which is not read: export it without")
+    modes = {p.get("mode", 4) for mesh in content.get("meshes", []) for p in mesh["primitives"]}
+    if not modes <= {0, 1, 2, 3, 4, 5}:   # points and lines have no volume; fans are left out
+        raise _Wrong(f"has primitives of mode {max(modes)}, which are not read: export triangles")
+    meshes, nodes = len(content.get("meshes", [])), content.get("nodes", [])
+    parents: set[int] = set()
+    for i, node in enumerate(nodes):
+        if not 0 <= node.get("mesh", 0) < max(meshes, 1):
+            raise _Wrong(f"has {meshes} meshes, but node {i} names mesh {node['mesh']}")
+        for child in node.get("children", []):
+            if not 0 <= child < len(nodes) or child in parents or child == i:
+                raise _Wrong(f"is no tree of nodes: node {i} has the child {child}, which is missing or has a parent")
+            parents.add(child)
+    roots = {node for scene in content.get("scenes", []) for node in scene.get("nodes", [])}
+    if roots & parents:
+        raise _Wrong(f"is no tree of nodes: the scene holds node {min(roots & parents)}, which has a parent")
