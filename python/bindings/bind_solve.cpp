@@ -10,6 +10,7 @@
 #include "polhode/solve/lagrangian_problem.hpp"
 #include "polhode/solve/euler_problem.hpp"
 #include "polhode/solve/methods.hpp"
+#include "polhode/solve/reference.hpp"
 #include "polhode/solve/solve.hpp"
 
 namespace polhode::python {
@@ -178,6 +179,22 @@ void bind_solve(py::module_& m) {
     if (!attitude.is_none()) motion.attitude = fill(attitude.cast<Array>());
     return compute_drift(scene, motion);
   });
+  m.def("reference", [](const Scene& scene, int order, double tolerance, long max_steps) {
+    ReferenceOptions options{order, tolerance, max_steps, [] {
+      py::gil_scoped_acquire gil;
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+      return true;
+    }};
+    Reference found;
+    {
+      py::gil_scoped_release nogil;
+      found = compute_reference(scene, options);
+    }
+    const auto n = static_cast<py::ssize_t>(scene.times().size());
+    return py::make_tuple(Array({n, py::ssize_t{3}}, found.omega.data()), Array({n, py::ssize_t{4}}, found.attitude.data()),
+                          found.steps);
+  }, py::arg("scene"), py::arg("order"), py::arg("tolerance"), py::arg("max_steps"),
+     "omega, attitude and steps of a scene by Taylor series in long double: what to hold others against.");
   m.def("generalised_forces", [](py::handle torque, py::handle angles) {
     const Vector3d tau_B = to_vector3(torque, "torque"), q = to_vector3(angles, "angles");
     return from_vector3(LagrangianProblem<NoTorque>::compute_rate_map(q[1], q[2]).transpose() * tau_B);

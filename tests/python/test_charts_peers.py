@@ -43,6 +43,17 @@ def test_the_right_hand_side_is_the_derivative_of_the_motion(torque, tensor):
     np.testing.assert_allclose(equations.derivatives(scene, 0.4, start.tolist()), f, rtol=1e-13, atol=1e-13)
 
 
+@pytest.mark.parametrize("tensor", [np.diag([1.0, 2.0, 2.5]), TURN @ np.diag([1.0, 2.0, 2.5]) @ TURN.T], ids=["diagonal", "full"])
+@pytest.mark.parametrize("torque", TORQUES)
+def test_the_reference_solves_the_same_equations(torque, tensor):
+    q = np.array([0.1, 0.7, 0.3, 0.5])
+    scene = ph.Scene(inertia=tensor, omega=(1.0, 2.0, 3.0), attitude=q / np.linalg.norm(q), torques=TORQUES[torque], t0=0.4,
+                     times=[4.0, -2.0, 0.4])
+    truth, motion = find_truth(scene), ph.solve(scene, method="dop853", rtol=1e-13)
+    assert "long double" in truth.source and truth.uncertainty < 3e-15
+    assert compute_errors(motion.omega, motion.attitude, truth).largest < 3e-12
+
+
 def test_the_text_holds_nothing_that_is_not_used():
     steps, names = equations.source(ph.Scene.load("S4"))
     text = " ".join([*(t for _, t in steps), *names])

@@ -712,6 +712,10 @@ def principal_axes(matrices: typing.Any) -> tuple[numpy.typing.NDArray[numpy.flo
     """
     (moments, axes, number of matrices that are not finite); see polhode.inertia.principal_axes.
     """
+def reference(scene: Scene, order: typing.SupportsInt | typing.SupportsIndex, tolerance: typing.SupportsFloat | typing.SupportsIndex, max_steps: typing.SupportsInt | typing.SupportsIndex) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], int]:
+    """
+    omega, attitude and steps of a scene by Taylor series in long double: what to hold others against.
+    """
 def shape_records() -> list[typing.Any]:
     """
     (name, doc, ((parameter, size, doc), ...)) of every shape.

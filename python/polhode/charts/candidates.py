@@ -13,6 +13,7 @@ import numpy as np
 
 import polhode
 
+from .. import _core
 from ..motion import Motion
 from ..scene import Scene
 from ..solver import methods, solve
@@ -52,8 +53,8 @@ def _method(record: dict[str, Any]) -> Candidate:
     name, adaptive = record["name"], record["adaptive"]
     settings: Callable[[Scene], Settings] = tolerances(3, 14) if adaptive else steps
     return Candidate(name, "cheap" if record.get("cheap") else "method", record["source"], settings,
-                     lambda scene: _solving(scene, "rtol" if adaptive else "step", method=name), lambda scene: "",
-                     "rtol" if adaptive else "step")
+                     lambda scene: _solving(scene, "rtol" if adaptive else "step", method=name),
+                     lambda scene: str(_core.method_refusal(name, scene)), "rtol" if adaptive else "step")
 
 
 def _plan() -> list[Candidate]:

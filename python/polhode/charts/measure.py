@@ -195,7 +195,7 @@ def measure(
         reason = candidate.refuses(scene)
         if not reason:
             taking_part.append(candidate)
-        elif candidate.family == "peer":
+        elif candidate.family != "exact":
             notes.append(f"{candidate.name}: {reason}")
     points: list[Point] = []
     startups: dict[str, float] = {}

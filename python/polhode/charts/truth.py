@@ -7,10 +7,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .. import _core
 from .._core import InvalidInput
 from ..motion import Floats
 from ..scene import Scene, scene_folder
 from ..solver import methods, solve
+
+
+ORDERS = (28, 22)       # of the series, and of the one that checks it
+MOST_STEPS = 200_000    # of a series: half a minute
 
 
 class Truth(NamedTuple):
@@ -66,23 +71,48 @@ def _stored(scene: Scene) -> Truth | None:
     return Truth(omega, attitude, "stored", "113-bit Taylor series, confirmed by collocation", 3e-16, floor)
 
 
-def _made(scene: Scene, tightest: float) -> Truth:
-    """Solve at the tightest tolerance and at one ten times looser, whose difference is the uncertainty."""
-    record = max((m for m in methods() if m["adaptive"]), key=lambda m: m["order"])
-    fine, coarse = (solve(scene, method=record["name"], rtol=rtol) for rtol in (tightest, 10 * tightest))
-    for motion in (fine, coarse):
+def _series(scene: Scene) -> Truth | None:
+    """Taylor series in long double; its uncertainty is what another order makes of it, beside rounding to float64."""
+    if np.finfo(np.longdouble).nmant < 63:
+        return None   # long double is nothing more here
+    try:
+        fine, coarse = (_core.reference(scene, order, 1e-20, MOST_STEPS) for order in ORDERS)
+    except (InvalidInput, _core.IntegrationFailure):   # a user's torque, or too stiff for a series
+        return None
+    if not all(np.isfinite(part).all() for run in (fine, coarse) for part in run[:2]):
+        return None
+    text = f"Taylor series of order {ORDERS[0]} in long double, checked by order {ORDERS[1]}"
+    truth = Truth(fine[0], fine[1], "made", text, 0.0, None)
+    apart = compute_errors(coarse[0], coarse[1], truth).largest
+    return truth._replace(uncertainty=2 * max(apart, 2 * float(np.finfo(float).eps)))
+
+
+def _two_methods(scene: Scene, tightest: float) -> Truth:
+    """The method of the highest order at the tightest tolerance; its uncertainty is how far another method, and itself at
+    ten times that, are from it."""
+    able = [m for m in methods() if m["adaptive"] and not _core.method_refusal(m["name"], scene)]
+    records = sorted(able, key=lambda m: (-m["order"], m["name"]))
+    texts: list[str] = []
+    runs: list[tuple[Floats, Floats]] = []
+    why = ""
+    for record, rtol in [(r, tightest) for r in records] + [(r, 10 * tightest) for r in records]:
+        if len(runs) == 3:
+            break
+        motion = solve(scene, method=record["name"], rtol=rtol, max_steps=50 * MOST_STEPS)
         if motion.status != "finished" or motion.omega is None or motion.attitude is None:
-            raise InvalidInput(f"{scene.name or 'scene'}: no reference can be made: {motion.message}")
-    assert fine.omega is not None and fine.attitude is not None
-    assert coarse.omega is not None and coarse.attitude is not None
-    text = f"{record['name']} at {tightest:g}; uncertainty: its difference from {10 * tightest:g}"
-    truth = Truth(fine.omega, fine.attitude, "made", text, 0.0, None)
-    return truth._replace(uncertainty=compute_errors(coarse.omega, coarse.attitude, truth).largest)
+            why = motion.message
+            continue
+        texts.append(f"{record['name']} at {rtol:g}")
+        runs.append((motion.omega, motion.attitude))
+    if len(runs) < 2:
+        raise InvalidInput(f"{scene.name or 'scene'}: no reference can be made: {why}")
+    truth = Truth(*runs[0], "made", f"{texts[0]}, checked by {' and '.join(texts[1:])}", 0.0, None)
+    return truth._replace(uncertainty=2 * max(compute_errors(*run, truth).largest for run in runs[1:]))
 
 
 def find_truth(scene: Scene, tightest: float = 1e-14) -> Truth:
     """Return the stored truth of a scene, or one made on the fly with its uncertainty."""
-    return _stored(scene) or _made(scene, tightest)
+    return _stored(scene) or _series(scene) or _two_methods(scene, tightest)
 
 
 def to_json(truth: Truth) -> dict[str, Any]:

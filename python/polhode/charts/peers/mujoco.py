@@ -31,6 +31,7 @@ def _refuses(scene: Scene) -> str:
 def _start(scene: Scene, integrator: str) -> Run:
     import mujoco as mj  # type: ignore[import-not-found,import-untyped,unused-ignore]
 
+    mj.set_mju_user_warning(lambda text: None)   # of unstable steps, which else go to a file where one stands
     m = scene.inertia.matrix
     numbers = " ".join(repr(float(v)) for v in (m[0, 0], m[1, 1], m[2, 2], m[0, 1], m[0, 2], m[1, 2]))
     model = mj.MjModel.from_xml_string(MODEL.format(integrator=integrator, inertia=numbers))
