@@ -44,6 +44,8 @@ DriveResult drive(Stepper& stepper, std::span<const double> times, const Sink& s
   }
   Heartbeat heartbeat(options.progress);
   double y[64];
+  constexpr std::size_t most_at_once = 64;
+  std::vector<double> rows(most_at_once * static_cast<std::size_t>(stepper.dimension()));
   const auto at = [&](double t, double* out) { stepper.interpolate(t, out); };
 
   const long first_step = stepper.counts().steps;
@@ -95,9 +97,14 @@ DriveResult drive(Stepper& stepper, std::span<const double> times, const Sink& s
     }
 
     if (options.dense) result.dense.append(stepper.t_old(), stepper.t(), stepper.segment());
-    for (; next < times.size() && (forward ? times[next] <= reached : times[next] >= reached); ++next) {
-      stepper.interpolate(times[next], y);
-      sink(next, times[next], y);
+    std::size_t end = next;
+    while (end < times.size() && (forward ? times[end] <= reached : times[end] >= reached)) ++end;
+    while (next < end) {
+      const std::size_t count = std::min(end - next, most_at_once);
+      stepper.interpolate_many(times.data() + next, count, rows.data());
+      for (std::size_t i = 0; i < count; ++i, ++next) {
+        sink(next, times[next], rows.data() + i * static_cast<std::size_t>(stepper.dimension()));
+      }
     }
     result.t = reached;
     if (result.ending == Ending::event) break;

@@ -94,8 +94,7 @@ void BodySeries::choose_variables(const Vector3d& w) {
   const DD half_over_k = DD(0.5) / k;
   terms_.to_rates[0] = half_over_k.hi, terms_.to_rates[1] = 1.0, terms_.to_rates[2] = 0.5;
   const DD rate = math::sqrt((lower * upper) / (I1 * I3));
-  // w1 comes out with 1/2k rounded; the product takes that back.
-  const DD middle = (I3 - I1) / I2 * (half_over_k / DD(half_over_k.hi));
+  const DD middle = (I3 - I1) / I2 * half_over_k * DD(0.5);   // of (v - u)(v + u)
   const DD product[3] = {rate, -rate, middle};
   for (int i = 0; i < 3; ++i) terms_.product[i] = product[i].hi, terms_.product_low[i] = product[i].lo;
   start_[0] = u.hi, start_[1] = v.hi, start_[2] = w[1];
@@ -239,11 +238,14 @@ void BodySeries::start_carry(double* carry) const { std::copy_n(start_carry_, 8,
 
 void BodySeries::correct(DD, double* y, double* carry) const {
   if (!attitude_) return;
-  // |q| = 1, put into the carry: that leaves the direction of q with its extra digits.
+  // |q| = 1. The carry keeps no more than rounding: it is not turned along with q, and what is larger would grow.
   double norm = 0.0, cross = 0.0;
   for (int i = 4; i < 8; ++i) norm += y[i] * y[i], cross += y[i] * carry[i];
   const double lack = 0.5 * (1.0 - norm) - cross;
-  for (int i = 4; i < 8; ++i) carry[i] += lack * y[i];
+  for (int i = 4; i < 8; ++i) {
+    const DD sum = math::two_sum(y[i], carry[i] + lack * y[i]);
+    y[i] = sum.hi, carry[i] = sum.lo;
+  }
 }
 
 SeriesKernel find_series_kernel(const SeriesTerms& terms, bool attitude) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include "polhode/ode/problem.hpp"
 
 namespace polhode::ode {
@@ -18,6 +20,10 @@ class Stepper {
   virtual StepResult advance(double t_end) = 0;
   /// y at a time within the last step.
   virtual void interpolate(double t, double* y) = 0;
+  /// The same at n times, row by row.
+  virtual void interpolate_many(const double* times, std::size_t n, double* y) {
+    for (std::size_t i = 0; i < n; ++i, y += dimension_) interpolate(times[i], y);
+  }
   /// The last step's continuous extension, `segment_size` numbers for `evaluate`.
   virtual const double* segment() = 0;
   virtual const double* y() const = 0;

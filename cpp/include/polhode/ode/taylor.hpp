@@ -50,12 +50,13 @@ struct Taylor {
   };
   static constexpr int least_order = 4;
 
-  /// With n terms of equal price the cheapest order is -ln(tolerance), with a price that grows as n^2 half of it.
+  /// The cheapest order is -ln(tolerance) where each row costs the same, half of it where the price of all grows as the
+  /// square of their number. In between at first; towards the rounding short steps, which round less, are worth more.
   static int choose_order(double tolerance) {
-    const int order = static_cast<int>(std::ceil(1.0 - order_factor * std::log(tolerance)));
+    const double digits = -std::log(tolerance), tight = std::clamp((digits - 18.0) / 18.0, 0.0, 1.0);
+    const int order = static_cast<int>(std::ceil(1.0 + (0.8 - 0.28 * tight) * digits));
     return std::clamp(order, least_order, most_series_order - 2);
   }
-  static constexpr double order_factor = 0.5;
 
   template <SeriesProblem P>
   class Stepper;
@@ -117,6 +118,19 @@ class Taylor::Stepper final : public ode::Stepper {
     double increment[W];
     series_kernels().increments(rows_, order_, carry_old_, &s, 1, increment);
     for (int i = 0; i < P::dimension; ++i) out[i] = y_old_[i] + increment[i];
+  }
+
+  void interpolate_many(const double* times, std::size_t n, double* out) override {
+    constexpr std::size_t most = 16;
+    double s[most];
+    alignas(64) double increment[W * most];
+    for (std::size_t begin = 0; begin < n; begin += most) {
+      const std::size_t count = std::min(most, n - begin);
+      for (std::size_t i = 0; i < count; ++i) s[i] = ((times[begin + i] - time_old_.hi) - time_old_.lo) / unit_old_;
+      series_kernels().increments(rows_, order_, carry_old_, s, count, increment);
+      for (std::size_t i = 0; i < count; ++i)
+        for (int k = 0; k < P::dimension; ++k) *out++ = y_old_[k] + increment[W * i + static_cast<std::size_t>(k)];
+    }
   }
 
   const double* segment() override {

@@ -13,7 +13,7 @@ enum class RateVariables { plain, separatrix };
 struct SeriesTerms {
   RateVariables variables = RateVariables::plain;
   double to_rates[4] = {1, 1, 1, 0};   ///< separatrix: w = (v - u, w2, u + v) times (1/2k, 1, 1/2)
-  double product[4] = {};              ///< r' = product * (u w2, v w2, w1 w3), or (w2 w3, w3 w1, w1 w2) ...
+  double product[4] = {};              ///< r' = product * (u w2, v w2, (v - u)(v + u)), or (w2 w3, w3 w1, w1 w2) ...
   double product_low[4] = {};          ///< ... and what rounding took from it
   double torque[4] = {};               ///< + constant
   double damping[3][4] = {};           ///< + sum_j damping[j] w_j

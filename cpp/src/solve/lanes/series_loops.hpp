@@ -1,7 +1,5 @@
 #pragma once
 
-#include <type_traits>
-
 #include "math/lanes/octet.hpp"
 #include "polhode/ode/series.hpp"
 #include "solve/lanes/levels.hpp"
@@ -19,36 +17,23 @@ constexpr auto reciprocals = [] {
 }();
 
 /// The products of the recurrences, sum_j left_j right_{n-j}, eight components each, all in one loop: a loop's end costs
-/// as much as several products. From `shared` on they have one right factor in common. The rows of the factors are kept,
-/// the first and the last also in registers: nothing waits for a row to be written and read back.
+/// as much as several products. From `shared` on they have one right factor in common.
 template <int count, int shared>
 class Products {
  public:
   static constexpr int rights = shared < count ? shared + 1 : count;
 
-  POLHODE_INLINE void put_left(int p, int n, Octet row) {
-    store8(left_[n][p], row);
-    last_left_[p] = row;
-    if (n == 0) first_left_[p] = row;
-  }
-  POLHODE_INLINE void put_right(int p, int n, Octet row) {
-    store8(right_[n][p], row);
-    last_right_[p] = row;
-    if (n == 0) first_right_[p] = row;
-  }
+  POLHODE_INLINE void put_left(int p, int n, Octet row) { store8(left_[n][p], row); }
+  POLHODE_INLINE void put_right(int p, int n, Octet row) { store8(right_[n][p], row); }
   POLHODE_INLINE void put(int p, int n, Octet left, Octet right) { put_left(p, n, left), put_right(p, n, right); }
 
-  /// The newest rows come last, so that the rest of the sums can be made while they are still on their way.
-  POLHODE_INLINE void sum(int n, Octet (&out)[count]) const {
+  /// The sum over 0 < j < n: all but the two terms with the newest row, for which nobody should have to wait here.
+  POLHODE_INLINE void sum_older(int n, Octet (&out)[count]) const {
     Octet a[count], b[count];
     const int middle = n / 2;
-    const auto right = [](int p) { return p < rights ? p : rights - 1; };
-    if (n == 0) {
-      for (int p = 0; p < count; ++p) out[p] = first_left_[p] * first_right_[right(p)];
-      return;
-    }
+    const bool even = n % 2 == 0 && n > 0;
     for (int p = 0; p < count; ++p) {
-      a[p] = n % 2 == 0 ? load8(left_[middle][p]) * load8(right_[middle][right(p)]) : all8(0.0);
+      a[p] = even ? load8(left_[middle][p]) * load8(right_[middle][right(p)]) : all8(0.0);
       b[p] = all8(0.0);
     }
     for (int i = middle + 1; i < n; ++i) {
@@ -57,111 +42,198 @@ class Products {
         b[p] = madd(load8(left_[n - i][p]), load8(right_[i][right(p)]), b[p]);
       }
     }
-    for (int p = 0; p < count; ++p) {
-      out[p] = madd(last_left_[p], first_right_[right(p)], a[p]) + madd(first_left_[p], last_right_[right(p)], b[p]);
-    }
+    for (int p = 0; p < count; ++p) out[p] = a[p] + b[p];
+  }
+
+  POLHODE_INLINE Octet sum_newest(int p, int n) const {
+    const Octet one = load8(left_[n][p]) * load8(right_[0][right(p)]);
+    return n == 0 ? one : madd(load8(left_[0][p]), load8(right_[n][right(p)]), one);
   }
 
  private:
+  static constexpr int right(int p) { return p < rights ? p : rights - 1; }
   alignas(64) double left_[ode::most_series_order + 1][count][W], right_[ode::most_series_order + 1][rights][W];
-  Octet first_left_[count], first_right_[rights], last_left_[count], last_right_[rights];
 };
+
+template <int i>
+POLHODE_INLINE Quad broadcast(Quad a) {
+  return permute<i, i, i, i>(a);
+}
+
+/// m[0] a_0 + m[1] a_1 + m[2] a_2 + rest
+POLHODE_INLINE Quad apply(const Quad (&m)[3], Quad a, Quad rest) {
+  return madd(broadcast<2>(a), m[2], madd(broadcast<1>(a), m[1], madd(broadcast<0>(a), m[0], rest)));
+}
+
+/// v x w = front(v) front(w) - back(v) back(w)
+POLHODE_INLINE Quad front(Quad v) { return permute<1, 2, 0, 3>(v); }
+POLHODE_INLINE Quad back(Quad v) { return permute<2, 0, 1, 3>(v); }
+POLHODE_INLINE Quad negative(Quad v) { return v ^ all4(-0.0); }
 
 /// The recurrences of Euler's equations, a body's quaternion and what its torques see. Separatrix variables or plain
 /// ones; `attitude`: the second half of y is the quaternion, else a fixed vector if there is one, else nothing.
+///
+/// A coefficient's way to the next is kept short, since each waits for the one before: the newest terms of every product
+/// are linear in the newest coefficients, with constant factors that are multiplied out while they are on their way.
 template <bool separatrix, bool attitude, int fixed, bool gradient>
-void expand(const SeriesTerms& c, const SeriesStart& start, int order, double* rows) {
-  constexpr int vectors = fixed + (gradient ? 2 : 0);
-  const double H = start.unit;
-  const Octet unscale = join(all4(1.0 / H), all4(1.0));   // rates leave in their own unit
-  const Quad product = load4(c.product), product_low = load4(c.product_low), to_rates = load4(c.to_rates);
-  const Quad orbit = all4(c.orbit_rate * H);
-  Quad damping[3] = {}, pull[fixed > 0 ? fixed : 1][3] = {}, tidal[2] = {};
-  const bool damped = c.damped;
-  for (int j = 0; j < 3; ++j) damping[j] = load4(c.damping[j]) * all4(H);
-  for (int i = 0; i < fixed; ++i)
-    for (int j = 0; j < 3; ++j) pull[i][j] = load4(c.pull[i][j]) * all4(H * H);
-  for (int i = 0; i < 2; ++i) tidal[i] = load4(c.tidal[i]) * all4(H * H);
-
+class Expansion {
+  static constexpr int vectors = fixed + (gradient ? 2 : 0), kept = vectors > 0 ? vectors : 1;
   // (q times k, rates) with (w3, rates); (q times i, q times j) with (w1, w2); u with itself; vectors with the rates
-  constexpr int mixed = 0, turn = 1, pair = turn + attitude, carried = pair + gradient;
-  Products<carried + vectors, carried> products;
+  static constexpr int mixed = 0, turn = 1, pair = turn + attitude, carried = pair + gradient, count = carried + vectors;
 
-  Quad r = load4(start.y) * all4(H), q = load4(start.y + 4), w, v[vectors > 0 ? vectors : 1] = {};
-  for (int i = 0; i < vectors; ++i) v[i] = load4(start.vectors + 4 * i);
-  Quad tau = load4(c.torque) * all4(H * H);
+ public:
+  using Rows = Products<count, carried>;
 
-  const auto put = [&](int n) __attribute__((always_inline)) {
-    if constexpr (!attitude && fixed == 1) q = v[0];
-    store8(rows + W * n, join(r, q) * unscale);
+  POLHODE_INLINE Expansion(const SeriesTerms& c, const SeriesStart& start, Rows& products, double* rows) : rows_(rows), damped_(c.damped) {
+    const Quad H = all4(start.unit), HH = H * H;
+    unscale_ = join(all4(1.0 / start.unit), all4(1.0));   // rates leave in their own unit
+    product_ = load4(c.product), product_low_ = load4(c.product_low), to_rates_ = load4(c.to_rates);
+    orbit_ = all4(c.orbit_rate) * H;
+    for (int j = 0; j < 3; ++j) damping_[j] = load4(c.damping[j]) * H;
+    for (int i = 0; i < fixed; ++i)
+      for (int j = 0; j < 3; ++j) pull_[i][j] = load4(c.pull[i][j]) * HH;
+    for (int i = 0; i < 2; ++i) tidal_[i] = load4(c.tidal[i]) * HH;
+    r_ = load4(start.y) * H, q_ = load4(start.y + 4);
+    for (int i = 0; i < vectors; ++i) v_[i] = load4(start.vectors + 4 * i);
+    torque_ = load4(c.torque) * HH;
+    put(0, products);
+    front_w_ = front(w_), back_w_ = back(w_);
+    for (int i = 0; i < vectors; ++i) front_v_[i] = front(v_[i]), back_v_[i] = back(v_[i]);
     if constexpr (separatrix) {
-      w = (permute<1, 2, 1, 3>(r) + (permute<0, 3, 0, 3>(r) ^ set4(-0.0, 0.0, 0.0, 0.0))) * to_rates;
+      // of (u w2, v w2, (v - u)(v + u)): the last is 2 (v_0 v_n - u_0 u_n)
+      newest_[0] = blend<1>(all4(0.0), broadcast<2>(r_)) + blend<4>(all4(0.0), broadcast<0>(r_) * all4(-2.0));
+      newest_[1] = blend<2>(all4(0.0), broadcast<2>(r_)) + blend<4>(all4(0.0), broadcast<1>(r_) * all4(2.0));
+      newest_[2] = blend<3>(all4(0.0), r_);
     } else {
-      w = r;
+      // of (w2 w3, w3 w1, w1 w2)
+      newest_[0] = blend<2>(all4(0.0), broadcast<2>(r_)) + blend<4>(all4(0.0), broadcast<1>(r_));
+      newest_[1] = blend<1>(all4(0.0), broadcast<2>(r_)) + blend<4>(all4(0.0), broadcast<0>(r_));
+      newest_[2] = blend<1>(all4(0.0), broadcast<1>(r_)) + blend<2>(all4(0.0), broadcast<0>(r_));
     }
-    const Quad left = separatrix ? blend<4>(r, permute<3, 3, 0, 3>(w)) : permute<1, 2, 0, 3>(w);
     if constexpr (attitude) {
-      const Octet signs = join(set4(0.0, 0.0, -0.0, -0.0), set4(-0.0, 0.0, 0.0, -0.0));
-      products.put(turn, n, spread<3, 2, 1, 0, 2, 3, 0, 1>(q) ^ signs, spread<0, 0, 0, 0, 1, 1, 1, 1>(w));
-      const Quad qk = permute<1, 0, 3, 2>(q) ^ set4(0.0, -0.0, 0.0, -0.0);
-      products.put(mixed, n, join(qk, left), separatrix ? spread<2, 2, 2, 2, 1, 1, 2, 3>(w) : spread<2, 2, 2, 2, 2, 0, 1, 3>(w));
-    } else {
-      products.put(mixed, n, join(left, left), separatrix ? spread<1, 1, 2, 3, 1, 1, 2, 3>(w) : spread<2, 0, 1, 3, 2, 0, 1, 3>(w));
+      times_q_[0] = permute<3, 2, 1, 0>(q_) ^ signs(0), times_q_[1] = permute<2, 3, 0, 1>(q_) ^ signs(1);
+      times_q_[2] = permute<1, 0, 3, 2>(q_) ^ signs(2);
+      times_w_[0] = broadcast<0>(w_) ^ signs(0), times_w_[1] = broadcast<1>(w_) ^ signs(1), times_w_[2] = broadcast<2>(w_) ^ signs(2);
     }
-    const Octet behind = join(all4(0.0), all4(-0.0));
-    if constexpr (vectors > 0) products.put_right(carried, n, spread<2, 0, 1, 3, 1, 2, 0, 3>(w));
-    for (int i = 0; i < vectors; ++i) products.put_left(carried + i, n, spread<1, 2, 0, 3, 2, 0, 1, 3>(v[i]) ^ behind);
+  }
+
+  /// Row n + 1 from the rows before. `early`: what the first coefficients lose to a rounded constant is lost at every
+  /// step alike, and adds up: there the constants keep their low parts.
+  template <bool early>
+  POLHODE_INLINE void advance(int n, Rows& products) {
+    const Quad inverse = all4(reciprocals.of[n + 1]);
+    Octet older[count];
+    products.sum_older(n, older);
+    Quad tau = n == 0 ? torque_ : all4(0.0);
+    if (damped_) tau = apply(damping_, w_, tau);
+    for (int i = 0; i < fixed; ++i) tau = apply(pull_[i], v_[i], tau);
     if constexpr (gradient) {
-      const Quad u = v[fixed];
+      const Octet uu = older[pair] + products.sum_newest(pair, n);
+      tau = madd(low(uu), tidal_[0], tau);
+      if constexpr (separatrix) tau = madd(high(uu), tidal_[1], tau);
+    }
+    Quad next_v[kept];
+    for (int i = 0; i < vectors; ++i) {
+      Quad x = low(older[carried + i]) + high(older[carried + i]);
+      if (n > 0) x = madd(front_v_[i], back(w_), madd(negative(back_v_[i]), front(w_), x));
+      next_v[i] = madd(front(v_[i]), back_w_, madd(negative(back(v_[i])), front_w_, x));
+    }
+    if constexpr (gradient) {
+      next_v[fixed] = madd(orbit_, v_[fixed + 1], next_v[fixed]);
+      next_v[fixed + 1] = next_v[fixed + 1] - orbit_ * v_[fixed];
+    }
+    for (int i = 0; i < vectors; ++i) next_v[i] = next_v[i] * inverse;
+
+    if constexpr (attitude) advance_attitude<early>(n, low(older[turn]) + high(older[turn]) + low(older[mixed]), inverse);
+    advance_rates<early>(n, high(older[mixed]), tau, inverse);
+    for (int i = 0; i < vectors; ++i) v_[i] = next_v[i];
+    put(n + 1, products);
+  }
+
+ private:
+  static POLHODE_INLINE Quad signs(int axis) {
+    if (axis == 0) return set4(0.0, 0.0, -0.0, -0.0);
+    return axis == 1 ? set4(-0.0, 0.0, 0.0, -0.0) : set4(0.0, -0.0, 0.0, -0.0);
+  }
+
+  template <bool early>
+  POLHODE_INLINE void advance_rates(int n, Quad older, Quad tau, Quad inverse) {
+    if constexpr (early) {
+      const Quad step = all4(n + 1.0);
+      const Quad sum = n == 0 ? left_ * right_ : apply(newest_, r_, older);
+      const Quad c = product_ / step, c_low = (remainder(c, step, product_) + product_low_) * inverse;
+      r_ = madd(sum, c, madd(sum, c_low, tau / step));
+    } else {
+      const Quad c = product_ * inverse;
+      Quad m[3];
+      for (int j = 0; j < 3; ++j) m[j] = newest_[j] * c;
+      r_ = apply(m, r_, older * c) + tau * inverse;
+    }
+  }
+
+  /// product - c step without rounding, where the machine can.
+  static POLHODE_INLINE Quad remainder(Quad c, Quad step, Quad product) { return madd(negative(c), step, product); }
+
+  template <bool early>
+  POLHODE_INLINE void advance_attitude(int n, Quad older, Quad inverse) {
+    const Quad i = permute<3, 2, 1, 0>(q_), j = permute<2, 3, 0, 1>(q_), k = permute<1, 0, 3, 2>(q_), half = all4(0.5);
+    if (n > 0) older = apply(times_q_, w_, older);
+    if constexpr (early) {
+      const Quad sum = madd(i, times_w_[0], madd(j, times_w_[1], madd(k, times_w_[2], older)));
+      q_ = half * sum / all4(n + 1.0);
+    } else {
+      const Quad h = half * inverse;
+      q_ = madd(i, times_w_[0] * h, madd(j, times_w_[1] * h, madd(k, times_w_[2] * h, older * h)));
+    }
+  }
+
+  /// Keeps row n in the forms that the products want.
+  POLHODE_INLINE void put(int n, Rows& products) {
+    if constexpr (!attitude && fixed == 1) q_ = v_[0];
+    store8(rows_ + W * n, join(r_, q_) * unscale_);
+    Quad sides;   // separatrix: (v - u, w2, v + u)
+    if constexpr (separatrix) {
+      sides = permute<1, 2, 1, 3>(r_) + (permute<0, 3, 0, 3>(r_) ^ set4(-0.0, 0.0, 0.0, 0.0));
+      w_ = sides * to_rates_;
+      left_ = blend<4>(r_, broadcast<0>(sides)), right_ = permute<1, 1, 2, 3>(sides);
+    } else {
+      w_ = r_, left_ = front(r_), right_ = back(r_);
+    }
+    if constexpr (attitude) {
+      const Quad i = permute<3, 2, 1, 0>(q_) ^ signs(0), j = permute<2, 3, 0, 1>(q_) ^ signs(1);
+      products.put(turn, n, join(i, j), spread<0, 0, 0, 0, 1, 1, 1, 1>(w_));
+      products.put(mixed, n, join(permute<1, 0, 3, 2>(q_) ^ signs(2), left_), join(broadcast<2>(w_), right_));
+    } else {
+      products.put(mixed, n, join(left_, left_), join(right_, right_));
+    }
+    if constexpr (vectors > 0) products.put_right(carried, n, join(back(w_), front(w_)));
+    for (int i = 0; i < vectors; ++i) products.put_left(carried + i, n, join(front(v_[i]), negative(back(v_[i]))));
+    if constexpr (gradient) {
+      const Quad u = v_[fixed];
       if constexpr (separatrix) {
         products.put(pair, n, spread<0, 0, 2, 3, 1, 1, 3, 3>(u), spread<1, 1, 0, 3, 2, 2, 3, 3>(u));
       } else {
         products.put(pair, n, spread<1, 2, 0, 3, 3, 3, 3, 3>(u), spread<2, 0, 1, 3, 3, 3, 3, 3>(u));
       }
     }
-    if (damped) {
-      tau = madd(permute<0, 0, 0, 0>(w), damping[0], tau);
-      tau = madd(permute<1, 1, 1, 1>(w), damping[1], tau);
-      tau = madd(permute<2, 2, 2, 2>(w), damping[2], tau);
-    }
-    for (int i = 0; i < fixed; ++i) {
-      tau = madd(permute<0, 0, 0, 0>(v[i]), pull[i][0], tau);
-      tau = madd(permute<1, 1, 1, 1>(v[i]), pull[i][1], tau);
-      tau = madd(permute<2, 2, 2, 2>(v[i]), pull[i][2], tau);
-    }
-  };
-
-  put(0);
-  for (int n = 0; n < order; ++n) {
-    const Quad inverse = all4(reciprocals.of[n + 1]);
-    Octet sums[carried + vectors];
-    products.sum(n, sums);
-    if constexpr (gradient) {
-      const Octet uu = sums[pair];
-      tau = madd(low(uu), tidal[0], tau);
-      if constexpr (separatrix) tau = madd(high(uu), tidal[1], tau);
-    }
-    const Quad rates = high(sums[mixed]);
-    // What the first coefficients lose to a rounded constant is lost at every step alike, and adds up.
-    if (n < 4) tau = madd(rates, product_low, tau);
-    const Quad slope = madd(rates, product, tau);
-    r = n == 2 ? slope / all4(3.0) : slope * inverse;
-    if constexpr (attitude) {
-      const Quad sum = (low(sums[turn]) + high(sums[turn])) + low(sums[mixed]);
-      q = n == 2 ? sum / all4(6.0) : sum * (inverse * all4(0.5));
-    }
-    Quad next[vectors > 0 ? vectors : 1];
-    for (int i = 0; i < vectors; ++i) {
-      next[i] = low(sums[carried + i]) + high(sums[carried + i]);
-    }
-    if constexpr (gradient) {
-      next[fixed] = madd(orbit, v[fixed + 1], next[fixed]);
-      next[fixed + 1] = next[fixed + 1] - orbit * v[fixed];
-    }
-    for (int i = 0; i < vectors; ++i) v[i] = next[i] * inverse;
-    tau = all4(0.0);
-    put(n + 1);
   }
+
+  double* rows_;
+  bool damped_;
+  Octet unscale_;
+  Quad product_, product_low_, to_rates_, orbit_, torque_, damping_[3], pull_[fixed > 0 ? fixed : 1][3], tidal_[2];
+  Quad r_, w_, q_, v_[kept], left_, right_;
+  Quad front_w_, back_w_, front_v_[kept], back_v_[kept], newest_[3], times_q_[3], times_w_[3];
+};
+
+template <bool separatrix, bool attitude, int fixed, bool gradient>
+void expand(const SeriesTerms& terms, const SeriesStart& start, int order, double* rows) {
+  using This = Expansion<separatrix, attitude, fixed, gradient>;
+  typename This::Rows products;   // apart from the newest coefficients, which should stay in registers
+  This expansion(terms, start, products, rows);
+  int n = 0;
+  for (; n < 4 && n < order; ++n) expansion.template advance<true>(n, products);
+  for (; n < order; ++n) expansion.template advance<false>(n, products);
 }
 
 template <bool separatrix>
