@@ -1,0 +1,49 @@
+"""Who takes part: what `solve` chooses by itself, the closed forms, every method of the list, and Euler angles."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from ..solver import methods
+
+TIGHT = 1e-14       # the tolerance of methods that choose their steps, where nothing else is swept
+PER_TURN = 40       # steps a turn of those that do not
+
+
+class Entrant(NamedTuple):
+    """One row of the matrix."""
+
+    name: str
+    kind: str                # "solve" | "exact" | "method" | "cheap" | "angles": the groups of the matrix, in this order
+    record: dict[str, Any]   # of the method; empty where none is named
+    options: dict[str, Any]  # what `solve` is told
+
+    @property
+    def fixed(self) -> bool:
+        """Whether it takes steps of one length, which somebody has to choose."""
+        return bool(self.record) and not self.record["adaptive"]
+
+    def setting(self, *, step: float, rtol: float = TIGHT, accuracy: float = 1e-9) -> dict[str, float]:
+        """The one of these that it listens to."""
+        if self.kind == "exact":
+            return {}
+        if self.kind == "solve":
+            return {"accuracy": accuracy}
+        return {"step": step} if self.fixed else {"rtol": rtol}
+
+
+def entrants() -> list[Entrant]:
+    """Return everyone, in the order of the matrix."""
+    records = methods()
+    found = [Entrant("solve", "solve", {}, {}), Entrant("exact", "exact", {}, {"method": "exact"})]
+    for cheap in (False, True):
+        found += [Entrant(r["name"], "cheap" if cheap else "method", r, {"method": r["name"]})
+                  for r in records if r["cheap"] == cheap]
+    # Lagrange's equations in the textbook's angles, by the general method of the highest order that is not implicit.
+    general = max((r for r in records if r["adaptive"] and not r["implicit"] and r["name"] in ANGLES),
+                  key=lambda r: int(r["order"]))
+    found.append(Entrant("angles", "angles", general, {"method": general["name"], "formulation": "lagrangian"}))
+    return found
+
+
+ANGLES = ("rk45", "dop853")   # those general methods that are known to take Lagrange's equations

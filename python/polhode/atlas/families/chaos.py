@@ -1,0 +1,68 @@
+"""(g) Chaos: how far ahead the answer can be known, and whether anybody says so."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...charts.truth import Truth
+from .. import scenes
+from ..case import stored
+from ..entrants import Entrant
+from ..errors import attitude_errors
+from ..family import LOST, Family, Point, Verdict, answered, nobody
+from ..run import Failed, Refused, run
+
+TOLERANCES = tuple(10.0**-k for k in range(4, 17))
+STEPS = tuple(10.0**-k for k in (1, 1.5, 2, 2.5, 3, 3.5, 4))
+
+
+def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
+    """The time until the attitude is lost, for each tolerance or step."""
+    rows, scene = stored("chaos"), scenes.chaos()
+    truth = Truth(rows[:, :3], rows[:, 3:], "stored", "", 0.0, None)
+    series = "step" if entrant.fixed else "tolerance"
+    values = STEPS if entrant.fixed else TOLERANCES
+    if entrant.kind == "solve":
+        values = (1e-3, 1e-6, 1e-9)
+    for value in values[::2] if quick else values:
+        point = Point(value, series)
+        try:
+            motion = run(entrant, scene, entrant.setting(step=value, rtol=value, accuracy=value), limit)
+            off = np.flatnonzero(attitude_errors(motion, truth) > LOST)
+            point.values = {"horizon": float(motion.t[off[0]]) if off.size else scenes.CHAOS_SPAN,
+                            "steps": motion.stats["steps"], "seconds": motion.stats["seconds"],
+                            "claims": float(motion.success), "stated": float(motion.error)}
+        except Refused as why:
+            point.status, point.why = "refused", str(why)
+            yield point
+            return
+        except Failed as why:
+            point.status, point.why = ("left out" if why.late else "failed"), str(why)
+        yield point
+
+
+def judge(points: list[Point]) -> Verdict:
+    """By the longest horizon any setting reaches."""
+    if (none := nobody(points)) is not None:
+        return none
+    horizons = [p.get("horizon") for p in points if p.status == "answered"]
+    if not horizons:
+        return Verdict("fails", "burst", 0.0, answered(points)[0].why)
+    best = max(horizons)
+    level = "holds" if best >= 180 else "degrades" if best >= 60 else "fails"
+    return Verdict(level, f"{best:.0f} s", best)
+
+
+FAMILY = Family(
+    name="chaos", title="Chaos: how long the answer can be known", summary="chaos",
+    sweeps="tolerances 1e-4 to 1e-16, or steps 0.1 to 1e-4 s, on scene S5c carried on to 400 s",
+    truth="113-bit Taylor series",
+    holds="attitude within 0.1 rad for 180 s or longer at the best setting (the best double known to us: 246 s)",
+    degrades="for 60 s",
+    measure=measure, judge=judge, x_label="tolerance, or step [s]", x_inverted=True, y="horizon",
+    y_label="time until the attitude is lost [s]", y_log=False, y_limits=(0.0, 300.0),
+    series=(("tolerance", "against the tolerance"), ("step", "against the step [s]")), lines=((180.0, "holds"), (60.0, "degrades")),
+    takes=lambda entrant: "no closed form" if entrant.kind == "exact" else "",
+)

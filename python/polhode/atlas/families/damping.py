@@ -1,0 +1,93 @@
+"""(e) Damping, from mild to very stiff: what 1e-6 costs when one rate dies at once."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+
+from ...scene import Scene
+from .. import scenes
+from ..case import Case, truth_of
+from ..entrants import Entrant
+from ..family import Family, Point, Verdict, answered, nobody
+from ..run import Failed, Refused, run, values_of
+from ...charts.findings import to_count
+
+GOAL = 1e-6
+CHEAP = 10_000    # steps
+TOLERANCES = (1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12)
+STEPS = (1e3, 1e4, 1e5, 1e6, 1e7)
+
+
+def _settings(entrant: Entrant, scene: Scene) -> list[dict[str, float]]:
+    """From loose to tight."""
+    if entrant.kind == "solve":
+        return [{"accuracy": GOAL}]
+    if entrant.fixed:
+        return [{"step": float(scene.times.max()) / n} for n in STEPS]
+    return [{"rtol": rtol} for rtol in TOLERANCES]
+
+
+def _reach(entrant: Entrant, case: Case, limit: float) -> Point:
+    """The loosest setting that reaches the goal, and what it costs."""
+    point, end = Point(case.x, case.series), time.thread_time() + limit
+    truth = truth_of("damping", case)
+    why = ""
+    for setting in _settings(entrant, case.scene):
+        try:
+            motion = run(entrant, case.scene, setting, max(end - time.thread_time(), 0.05))
+        except Refused as refusal:
+            point.status, point.why = "refused", str(refusal)
+            return point
+        except Failed as failure:
+            why = f"{next(iter(setting))} {next(iter(setting.values())):.0e}: {failure}"
+            if failure.late:
+                break
+            continue
+        values = values_of(motion, truth) | {"setting": next(iter(setting.values()))}
+        if not point.values or values["error"] < point.values["error"]:
+            point.values = values
+        if values["error"] <= GOAL:
+            return point
+    point.status = "failed"
+    point.why = why or f"best error {point.values['error']:.0e}"
+    return point
+
+
+def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
+    """What 1e-6 costs for each strength, and on S7b, whose damping is not along the axes."""
+    cases = [scenes.damped(c) for c in (scenes.STIFF[::2] if quick else scenes.STIFF)]
+    refused = False
+    for case in [*cases, Case(1e5, Scene.load("S7b"), "S7b")]:
+        if refused:
+            return
+        point = _reach(entrant, case, limit)
+        refused = point.status == "refused"
+        yield point
+
+
+def judge(points: list[Point]) -> Verdict:
+    """By whether 1e-6 is reached, and by the steps it takes."""
+    if (none := nobody(points)) is not None:
+        return none
+    tried = answered(points)
+    failed = [p for p in tried if p.status == "failed"]
+    if failed:
+        first = min(failed, key=lambda p: p.x)
+        reached = [p.x for p in tried if p.status == "answered" and p.x < first.x]
+        text = f"to c = {max(reached):.0e}".replace("e+0", "e") if reached else "never"
+        return Verdict("fails", text, max(reached, default=0.0), first.why)
+    steps = max(int(p.values["steps"]) for p in tried)
+    level = "holds" if steps <= CHEAP else "degrades"
+    return Verdict(level, f"{to_count(steps).replace(' million', 'M').replace(' thousand', 'k')} steps", steps)
+
+
+FAMILY = Family(
+    name="damping", title="Damping, mild to very stiff: what an error of 1e-6 costs", summary="stiff\ndamping",
+    sweeps="strength c of the damping about one axis, 1e1 to 1e6 N m s, 10 s; and scene S7b, damped askew",
+    truth="113-bit Gauss collocation of order 24; S7b: the scene's stored truth",
+    holds="1e-6 within 10,000 steps for every c and on S7b", degrades="1e-6 reached, at any cost within the time limit",
+    measure=measure, judge=judge, x_label="damping c [N m s]", y="steps", y_label="steps for an error of 1e-6",
+    series=(("", "damped about one axis"), ("S7b", "S7b, askew")), lines=((CHEAP, "holds"),),
+    takes=lambda entrant: "no closed form" if entrant.kind == "exact" else "",
+)

@@ -1,0 +1,46 @@
+"""(d) Long times: what grows with the number of turns, and how fast."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from .. import scenes
+from ..entrants import Entrant
+from ..family import LOST, Family, Point, Verdict, answered, measure_cases, nobody, to_short
+
+KEPT = 1e-3   # relative
+
+
+def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
+    """Energy, angular momentum and attitude after 1e2 to 1e6 turns."""
+    turns = scenes.LONG[:3] if quick else scenes.LONG
+    yield from measure_cases("long", map(scenes.long, turns), entrant, limit)
+
+
+def judge(points: list[Point]) -> Verdict:
+    """By the attitude after as many turns as were reached, then by what is conserved."""
+    if (none := nobody(points)) is not None:
+        return none
+    last = max(answered(points), key=lambda p: p.x)
+    error = last.get("error")
+    moved = max(last.get("energy"), last.get("angular_momentum"))
+    turns = f"after {to_short(last.x)} turns"
+    why = f"{turns}: energy moved by {to_short(last.get('energy'))}, L by {to_short(last.get('angular_momentum'))}"
+    if last.status == "failed":
+        return Verdict("fails", "burst", error, f"{turns}: {last.why}")
+    if error <= 1e-7:
+        return Verdict("holds", to_short(error), error, why)
+    if error <= LOST or moved <= KEPT:
+        return Verdict("degrades", to_short(error) if error <= LOST else "phase lost", error, why)
+    return Verdict("fails", "lost", error, why)
+
+
+FAMILY = Family(
+    name="long", title="Long times: a free block after up to a million turns", summary="long\ntimes",
+    sweeps="turns, 1e2 to 1e6 (quick: to 1e4); fixed steps 40 a turn, tolerances 1e-14",
+    truth="closed form with 110 digits",
+    holds="attitude within 1e-7 rad after the longest time reached",
+    degrades="attitude not lost (0.1 rad), or energy and angular momentum within 1e-3",
+    measure=measure, judge=judge, x_label="turns", y="error", y_label="error of the attitude [rad]",
+    lines=((1e-7, "holds"), (LOST, "lost")), y_limits=(1e-16, 10.0),
+)

@@ -1,0 +1,42 @@
+"""(f) Spin-up: a thruster left on, whose turns grow as the square of the time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from .. import scenes
+from ..case import Case, truth_of
+from ..entrants import PER_TURN, Entrant
+from ..family import LOST, Family, Point, Verdict, answered, measure_cases, nobody, to_short
+
+
+def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
+    """The error over the whole span; a fixed step is a 40th of the last, fastest turn."""
+    def setting(case: Case) -> dict[str, float]:
+        fastest = float(np.linalg.norm(truth_of("spin-up", case).omega, axis=1).max())
+        return entrant.setting(step=2 * math.pi / fastest / PER_TURN)
+
+    spans = scenes.SPIN_UP[:2] if quick else scenes.SPIN_UP
+    yield from measure_cases("spin-up", map(scenes.spin_up, spans), entrant, limit, setting)
+
+
+def judge(points: list[Point]) -> Verdict:
+    """By the error over the longest time reached."""
+    if (none := nobody(points)) is not None:
+        return none
+    worst = max(p.get("error") for p in answered(points))
+    level = "holds" if worst <= 1e-6 else "degrades" if worst <= LOST else "fails"
+    return Verdict(level, to_short(worst) if worst <= LOST else "lost", worst)
+
+
+FAMILY = Family(
+    name="spin-up", title="Spin-up: a thruster left on", summary="spin-up",
+    sweeps="the time it burns, 1e2 to 1e4 s: 50 to 460 thousand turns (quick: to 1e3 s); fixed steps 40 to the last turn",
+    truth="113-bit Taylor series",
+    holds="error within 1e-6 over every time", degrades="within 0.1",
+    measure=measure, judge=judge, x_label="time it burns [s]", y="error", y_label="largest error [rad]",
+    lines=((1e-6, "holds"), (LOST, "lost")), y_limits=(1e-16, 10.0),
+)

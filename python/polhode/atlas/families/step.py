@@ -1,0 +1,118 @@
+"""(a) Needles and disks: the longest step with which the answer is still right."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator
+
+import numpy as np
+
+import polhode
+
+from ...charts.truth import Truth
+from ...scene import Scene
+from ..case import S1_MOMENTS
+from ..entrants import Entrant
+from ..errors import attitude_errors
+from ..family import LOST, Family, Point, Verdict, answered, fixed_only, nobody, to_short
+from ..run import Failed, Refused, run
+
+STARTS = ((1.0, 1.0, 1.0), (1.0, 0.1, 0.1), (0.1, 1.0, 0.1), (0.1, 0.1, 1.0))
+NEEDLES = (1e-1, 1e-2, 1e-3, 1e-4)
+TURNS, TURNS_RIGHT = 100, 10
+PASSES = ("bounded", "kept", "right")
+
+
+def bodies(quick: bool) -> list[tuple[str, float, tuple[float, float, float]]]:
+    """(series, inertia ratio, moments), from a plain block to a needle."""
+    needles = NEEDLES[::2] if quick else NEEDLES
+    return [("disk", 0.5, (1.0, 1.001, 2.0)), ("needle", 1.0, S1_MOMENTS),
+            *(("needle", r, (r, 1.0, 1.0 + r / 2)) for r in needles)]
+
+
+def steps_a_turn(quick: bool) -> list[int]:
+    """From many steps to one, a factor 1.2 to 1.4 (quick: 2) apart."""
+    ratio, first = (2.0, 256) if quick else (math.sqrt(2.0), 4096)
+    counts = {max(1, round(first / ratio**k)) for k in range(40)} | ({3, 5, 7, 9, 13} if not quick else set())
+    return sorted(counts, reverse=True)
+
+
+def passes(entrant: Entrant, scene: Scene, truth: Truth, step: float, limit: float) -> set[str]:
+    """Which of the three hold with this step."""
+    try:
+        motion = run(entrant, scene, {"step": step}, limit)
+    except Failed as why:
+        if why.late:
+            raise
+        return set()
+    assert motion.omega is not None
+    inertia = np.diag(scene.inertia.matrix)
+    energy = (motion.omega**2 @ inertia) / (scene.omega**2 @ inertia)
+    size = np.sqrt((motion.omega**2 @ inertia**2) / (scene.omega**2 @ inertia**2))
+    ratios = np.concatenate([energy, size])
+    held = set()
+    if ratios.max() <= 2 and ratios.min() >= 0.5:
+        held.add("bounded")
+    if np.abs(ratios - 1).max() <= 0.1:
+        held.add("kept")
+    if attitude_errors(motion, truth)[:TURNS_RIGHT].max() <= LOST:
+        held.add("right")
+    return held
+
+
+def limits(entrant: Entrant, moments: tuple[float, float, float], quick: bool, limit: float) -> dict[str, float]:
+    """The longest step, as an angle h |omega|, before each of the three is first broken; the worst of four starts."""
+    found = dict.fromkeys(PASSES, math.inf)
+    for start in STARTS:
+        omega = np.array(start) / np.linalg.norm(start)
+        times = 2 * math.pi * np.arange(1, TURNS + 1)   # whole turns, which are ends of steps
+        scene = Scene(inertia=moments, omega=omega, times=times)
+        truth = Truth(*polhode.FreeMotion(moments, omega).at(times), "closed form", "", 0.0, None)
+        best: dict[str, float] = dict.fromkeys(PASSES, 0.0)
+        going = set(PASSES)
+        for count in steps_a_turn(quick):
+            step = 2 * math.pi / count
+            going &= passes(entrant, scene, truth, step, limit)
+            best |= dict.fromkeys(going, step)
+            if not going:
+                break
+        found = {name: min(found[name], best[name]) for name in PASSES}
+    return found
+
+
+def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
+    """The longest step for every body."""
+    for series, ratio, moments in bodies(quick):
+        point = Point(ratio, series)
+        begin = time.thread_time()
+        try:
+            point.values = dict(limits(entrant, moments, quick, limit))
+            point.values["seconds"] = time.thread_time() - begin
+        except Refused as why:
+            point.status, point.why = "refused", str(why)
+        except Failed as why:
+            point.status, point.why = "left out", str(why)
+        yield point
+
+
+def judge(points: list[Point]) -> Verdict:
+    """By the longest step that keeps the attitude, for the worst body."""
+    if (none := nobody(points)) is not None:
+        return none
+    right, kept = (min(p.get(name) for p in answered(points)) for name in ("right", "kept"))
+    level = "holds" if right >= 0.1 else "degrades" if right >= 0.01 else "fails"
+    text = to_short(right) if right > 0 else "never"
+    return Verdict(level, text, right, f"energy and |L| within 10 % to {to_short(kept)}")
+
+
+FAMILY = Family(
+    name="step", title="Needles and disks: the longest step that keeps the attitude", summary="longest\nstep",
+    sweeps="inertia ratio, from a block (1) to a needle (1e-4), and a disk; steps from 4096 a turn (quick: 256) to one",
+    truth="closed form (FreeMotion)",
+    holds="attitude within 0.1 rad over 10 turns for every body at h |omega| = 0.1, 63 steps a turn",
+    degrades="at h |omega| = 0.01, 628 steps a turn",
+    measure=measure, judge=judge, takes=fixed_only, x_label="smallest moment over the middle one", x_inverted=True,
+    y="right", y_label="longest step h |omega| [rad]", series=(("needle", "block to needle"), ("disk", "a disk")),
+    lines=((0.1, "holds"), (0.01, "degrades")),
+)

@@ -1,0 +1,136 @@
+"""What a family of failures is: a sweep, a truth, a threshold, and a verdict for everyone."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+from .case import Case, truth_of, turn_of
+from .entrants import PER_TURN, Entrant
+from .run import Failed, Refused, run, values_of
+
+LEVELS = ("holds", "degrades", "fails", "unknown", "none")
+LOST = 0.1   # rad: an attitude off by more is lost
+
+
+@dataclass
+class Point:
+    """One entrant at one value of what is swept. `why` is empty when it answered."""
+
+    x: float
+    series: str = ""
+    values: dict[str, Any] = field(default_factory=dict)
+    why: str = ""
+    status: str = "answered"   # "failed" | "refused" | "left out"
+
+    def get(self, name: str) -> float:
+        """A value; infinite where the run failed, NaN where it was not made."""
+        if self.status == "failed":
+            return math.inf
+        value = self.values.get(name)
+        return math.nan if value is None else float(value)
+
+
+@dataclass
+class Verdict:
+    """What the matrix says: a level, and the number behind it in a few characters."""
+
+    level: str
+    text: str
+    number: float = math.nan
+    why: str = ""
+
+
+@dataclass(frozen=True)
+class Family:
+    """One family: the whole of what the atlas knows of it.
+
+    `measure(entrant, quick, limit)` yields points; `judge(points)` reads them. `takes(entrant)` says why someone does not
+    take part, or "". What a scene itself refuses needs no line there.
+    """
+
+    name: str
+    title: str
+    sweeps: str          # what is swept, in a few words
+    truth: str
+    holds: str           # the threshold, in words
+    degrades: str
+    measure: Callable[[Entrant, bool, float], Iterator[Point]]
+    judge: Callable[[list[Point]], Verdict]
+    x_label: str
+    y_label: str
+    y: str               # the value that the picture and the table show
+    takes: Callable[[Entrant], str] = lambda entrant: ""
+    series: tuple[tuple[str, str], ...] = (("", ""),)   # (name, title of its panel)
+    lines: tuple[tuple[float, str], ...] = ()            # thresholds to be drawn
+    x_inverted: bool = False
+    y_log: bool = True
+    y_inverted: bool = False     # where more is better: nothing is inverted, but holds is above
+    x_scale: str = "log"         # "log" | "symlog" | "linear" | "list" (one place for each value)
+    y_limits: tuple[float, float] | None = None
+    summary: str = ""            # what the column of the matrix is headed by
+
+
+def fixed_only(entrant: Entrant) -> str:
+    """For families about the length of a step."""
+    return "" if entrant.fixed else "chooses its own steps"
+
+
+def measure_cases(
+    family: str,
+    cases: Iterable[Case],
+    entrant: Entrant,
+    limit: float,
+    setting: Callable[[Case], dict[str, float]] | None = None,
+    more: Callable[[Any, Any], dict[str, float]] | None = None,
+) -> Iterator[Point]:
+    """Run one case after another, each against its truth; where one was too long, those that grow are left out."""
+    late: set[str] = set()
+    for case in cases:
+        point = Point(case.x, case.series)
+        if case.series in late and case.grows:
+            point.status, point.why = "left out", "the one before was not done in time"
+            yield point
+            continue
+        options = setting(case) if setting else entrant.setting(step=turn_of(case.scene) / PER_TURN)
+        try:
+            truth = truth_of(family, case)
+            motion = run(entrant, case.scene, options, limit)
+            point.values = values_of(motion, truth) | (more(motion, truth) if more else {})
+        except Refused as why:
+            point.status, point.why = "refused", str(why)
+        except Failed as why:
+            point.status, point.why = ("left out" if why.late else "failed"), str(why)
+            if why.late:
+                late.add(case.series)
+        yield point
+
+
+def answered(points: list[Point]) -> list[Point]:
+    """Those that were tried and not refused: answers and failures."""
+    return [p for p in points if p.status in ("answered", "failed")]
+
+
+def nobody(points: list[Point]) -> Verdict | None:
+    """The verdict where nothing was tried."""
+    if answered(points):
+        return None
+    if points and all(p.status == "refused" for p in points):
+        return Verdict("none", "", why=points[0].why)
+    return Verdict("unknown", "too slow", why=points[0].why if points else "no point")
+
+
+def to_short(value: float) -> str:
+    """A number in as few characters as a cell has: 2e-5, 0.3, 40, 1e4."""
+    if math.isnan(value):
+        return "-"
+    if math.isinf(value):
+        return "inf"
+    if value == 0:
+        return "0"
+    if 0.095 <= abs(value) < 999.5:
+        return f"{value:.1g}" if abs(value) < 9.5 else f"{value:.0f}"
+    mantissa, _, exponent = f"{value:.0e}".partition("e")
+    return f"{mantissa}e{int(exponent)}"

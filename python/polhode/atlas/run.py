@@ -1,0 +1,72 @@
+"""One entrant on one scene: an answer, or why there is none."""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import Any
+
+import numpy as np
+
+from .._core import IntegrationFailure, InvalidInput
+from ..charts.truth import Truth, compute_errors
+from ..motion import Motion
+from ..scene import Scene
+from ..solver import solve
+from .entrants import Entrant
+
+
+class Refused(Exception):
+    """The entrant says before it starts that the scene is not for it."""
+
+
+class Failed(Exception):
+    """The run broke off; `motion` is what there is."""
+
+    def __init__(self, why: str, late: bool = False) -> None:
+        super().__init__(why)
+        self.late = late   # out of time: nothing is said about the method
+
+
+def run(entrant: Entrant, scene: Scene, setting: dict[str, float], limit: float) -> Motion:
+    """Solve, within `limit` seconds of the thread's time.
+
+    Raises
+    ------
+    Refused
+        Where `solve` refuses the scene for this method.
+    Failed
+        When the end was not reached, or what came back is not finite.
+    """
+    end = time.thread_time() + limit
+
+    def in_time(reached: float, last: float) -> bool:
+        return time.thread_time() < end
+
+    try:
+        motion = solve(scene, max_steps=2**62, progress=in_time, **entrant.options, **setting)
+    except InvalidInput as error:
+        raise Refused(str(error)) from None
+    except IntegrationFailure as error:
+        raise Failed(str(error)) from None
+    if motion.status == "stopped":
+        raise Failed(f"not done within {limit:g} s", late=True)
+    if motion.status not in ("finished", "event"):
+        raise Failed(motion.message.split(";")[0])
+    for array in (motion.omega, motion.attitude):
+        if array is None or not np.isfinite(array).all():
+            raise Failed("returned NaN")
+    return motion
+
+
+def values_of(motion: Motion, truth: Truth | None) -> dict[str, Any]:
+    """What is written down of a run: errors against the truth, drift of the invariants, steps, seconds."""
+    values: dict[str, Any] = {"steps": motion.stats["steps"], "seconds": motion.stats["seconds"]}
+    if truth is not None:
+        assert motion.omega is not None and motion.attitude is not None
+        errors = compute_errors(motion.omega, motion.attitude, truth)
+        values |= {"error": errors.largest, "omega": errors.omega, "attitude": errors.attitude}
+    values |= motion.drift
+    if math.isfinite(motion.error):
+        values["stated"] = motion.error
+    return values
