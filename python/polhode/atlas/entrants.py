@@ -10,11 +10,17 @@ TIGHT = 1e-14       # the tolerance of methods that choose their steps, where no
 PER_TURN = 40       # steps a turn of those that do not
 
 
+# The groups of the matrix, in this order, and what they are called.
+KINDS = {"solve": "polhode decides", "exact": "polhode decides", "method": "steppers", "cheap": "engines' steps",
+         "angles": "Euler angles", "witness": "without care"}
+ANGLES = ("rk45", "dop853")   # general methods, which take Lagrange's equations
+
+
 class Entrant(NamedTuple):
     """One row of the matrix."""
 
     name: str
-    kind: str                # "solve" | "exact" | "method" | "cheap" | "angles": the groups of the matrix, in this order
+    kind: str                # one of KINDS
     record: dict[str, Any]   # of the method; empty where none is named
     options: dict[str, Any]  # what `solve` is told
 
@@ -46,4 +52,5 @@ def entrants() -> list[Entrant]:
     return found
 
 
-ANGLES = ("rk45", "dop853")   # those general methods that are known to take Lagrange's equations
+# What happens where nobody takes care: a plain Runge-Kutta run whose quaternion is left alone (family "norm").
+WITNESS = Entrant("rk4 plain", "witness", {}, {})

@@ -62,12 +62,11 @@ class Family:
     x_label: str
     y_label: str
     y: str               # the value that the picture and the table show
-    takes: Callable[[Entrant], str] = lambda entrant: ""
+    takes: Callable[[Entrant], str] = lambda entrant: "" if entrant.kind != "witness" else "only for the norm"
     series: tuple[tuple[str, str], ...] = (("", ""),)   # (name, title of its panel)
     lines: tuple[tuple[float, str], ...] = ()            # thresholds to be drawn
     x_inverted: bool = False
     y_log: bool = True
-    y_inverted: bool = False     # where more is better: nothing is inverted, but holds is above
     x_scale: str = "log"         # "log" | "symlog" | "linear" | "list" (one place for each value)
     y_limits: tuple[float, float] | None = None
     summary: str = ""            # what the column of the matrix is headed by

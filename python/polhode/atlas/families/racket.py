@@ -7,10 +7,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ...charts.truth import Truth
 from ...motion import Motion
 from .. import scenes
 from ..case import Case, stored, turn_of
 from ..entrants import PER_TURN, Entrant
+from ..errors import attitude_errors
 from ..family import LOST, Family, Point, Verdict, answered, measure_cases, nobody, to_short
 from ..run import Failed, Refused, run
 
@@ -43,9 +45,7 @@ def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
             continue
         case = scenes.racket(closeness)
 
-        def lost(motion: Motion, truth: object, case: Case = case) -> dict[str, float]:
-            from ..errors import attitude_errors
-
+        def lost(motion: Motion, truth: Truth, case: Case = case) -> dict[str, float]:
             off = np.flatnonzero(attitude_errors(motion, truth) > LOST)
             return {"lost": float(motion.t[off[0]])} if off.size else {}
 

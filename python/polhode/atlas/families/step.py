@@ -33,7 +33,7 @@ def bodies(quick: bool) -> list[tuple[str, float, tuple[float, float, float]]]:
 
 def steps_a_turn(quick: bool) -> list[int]:
     """From many steps to one, a factor 1.2 to 1.4 (quick: 2) apart."""
-    ratio, first = (2.0, 256) if quick else (math.sqrt(2.0), 4096)
+    ratio, first = (2.0, 1024) if quick else (math.sqrt(2.0), 4096)
     counts = {max(1, round(first / ratio**k)) for k in range(40)} | ({3, 5, 7, 9, 13} if not quick else set())
     return sorted(counts, reverse=True)
 
@@ -108,7 +108,7 @@ def judge(points: list[Point]) -> Verdict:
 
 FAMILY = Family(
     name="step", title="Needles and disks: the longest step that keeps the attitude", summary="longest\nstep",
-    sweeps="inertia ratio, from a block (1) to a needle (1e-4), and a disk; steps from 4096 a turn (quick: 256) to one",
+    sweeps="inertia ratio, from a block (1) to a needle (1e-4), and a disk; steps from 4096 a turn (quick: 1024) to one",
     truth="closed form (FreeMotion)",
     holds="attitude within 0.1 rad over 10 turns for every body at h |omega| = 0.1, 63 steps a turn",
     degrades="at h |omega| = 0.01, 628 steps a turn",

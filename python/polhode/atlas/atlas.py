@@ -1,0 +1,135 @@
+"""The whole of an atlas: measure every family, judge, draw, write."""
+
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+import time
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from .._core import InvalidInput
+from . import pictures
+from .claims import find_broken
+from .family import Family, Point
+from .jobs import Job, find_families, rows_of
+from .results import FamilyResult, document, read_family, write_family
+from .work import work
+
+LIMIT = {True: 0.5, False: 15.0}   # seconds of CPU a point: quick, whole
+
+
+def _folder(folder: str | os.PathLike[str]) -> pathlib.Path:
+    output = pathlib.Path(folder)
+    try:
+        output.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InvalidInput(f"output: {output} cannot be made: {error.strerror}") from None
+    if not os.access(output, os.W_OK):
+        raise InvalidInput(f"output: {output} cannot be written to")
+    return output
+
+
+def atlas(
+    families: Iterable[str] = (),
+    folder: str | os.PathLike[str] = "atlas",
+    *,
+    quick: bool = False,
+    fresh: bool = False,
+    processes: int = 2,
+    limit: float | None = None,
+    draw: bool = True,
+    progress: Callable[[int, int, str], object] = lambda done, total, text: None,
+    show: Callable[[FamilyResult], object] = lambda result: None,
+) -> tuple[list[FamilyResult], dict[str, Any]]:
+    """Measure how methods fail, and write pictures, tables and a matrix to a folder.
+
+    Parameters
+    ----------
+    families : iterable of str
+        Names of `FAMILIES`; all of them when none is given.
+    folder : path
+        Made when it is not there. Gets a picture (.png and .svg) and a .json a family, ``matrix`` and ``atlas.json``.
+        Families that are finished there, under the same settings and version, are kept and not run again.
+    quick : bool
+        Fewer values of what is swept.
+    fresh : bool
+        Run what is finished too.
+    processes : int
+        Beside this one.
+    limit : float, optional
+        Seconds of CPU that a single run may take; what does not end in time is left out and says so.
+    draw : bool
+        Whether pictures are made, which need matplotlib.
+    progress : callable
+        ``progress(rows done, rows in all, what ended last)``.
+    show : callable
+        Is given each family's result as soon as it is there.
+
+    Returns
+    -------
+    results : list of FamilyResult
+    document : dict
+        What stands in atlas.json; its "broken_claims" are what polhode says of itself and does not hold.
+
+    Raises
+    ------
+    InvalidInput
+        For an unknown family, a folder that cannot be written, a limit that is not positive.
+    """
+    start = time.perf_counter()
+    wanted = find_families(families)
+    if processes < 1:
+        raise InvalidInput(f"processes: must be at least 1, got {processes}")
+    seconds = LIMIT[quick] if limit is None else limit
+    if not seconds > 0:
+        raise InvalidInput(f"limit: must be positive, got {seconds:g}")
+    output = _folder(folder)
+    results: dict[str, FamilyResult] = {}
+    for family in wanted:
+        kept = None if fresh else read_family(output / f"{family.name}.json", quick)
+        if kept is not None:
+            results[family.name] = kept
+            show(kept)
+    _measure([f for f in wanted if f.name not in results], results, output, quick, seconds, processes, progress, show)
+
+    ordered = [results[family.name] for family in wanted]
+    files: list[str] = []
+    if draw:
+        for index, result in enumerate(ordered):
+            progress(index, len(ordered) + 1, f"picture: {result.family.name}")
+            files += [path.name for path in pictures.draw_family(result, output)]
+        files += [path.name for path in pictures.draw_matrix(ordered, output)]
+    files += [f"{family.name}.json" for family in wanted] + ["atlas.json"]
+    content = document(ordered, time.perf_counter() - start, find_broken(ordered), files)
+    (output / "atlas.json").write_text(json.dumps(content, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    return ordered, content
+
+
+def _measure(
+    families: list[Family], results: dict[str, FamilyResult], output: pathlib.Path, quick: bool, limit: float,
+    processes: int, progress: Callable[[int, int, str], object], show: Callable[[FamilyResult], object],
+) -> None:
+    """Do the rows of all families; each family is written when its last row is in."""
+    jobs = [Job(f.name, e.name, quick, limit) for f in families for e in rows_of(f)]
+    by_name = {f.name: f for f in families}
+    order = {f.name: [e.name for e in rows_of(f)] for f in families}
+    rows: dict[str, dict[str, list[Point]]] = {f.name: {} for f in families}
+    count = 0
+
+    def done(job: Job, points: list[Point]) -> None:
+        nonlocal count
+        count += 1
+        progress(count, len(jobs), f"{job.family}: {job.entrant}")
+        found = rows[job.family]
+        found[job.entrant] = points
+        if len(found) == len(order[job.family]):
+            spent = sum(float(p.values.get("seconds") or 0.0) for ps in found.values() for p in ps)
+            result = FamilyResult(by_name[job.family], quick, {name: found[name] for name in order[job.family]}, spent,
+                                  made=time.strftime("%Y-%m-%d %H:%M"))
+            results[job.family] = result
+            write_family(result, output)
+            show(result)
+
+    work(jobs, done, processes=processes)

@@ -1,0 +1,63 @@
+"""What polhode says of its own methods. The atlas ends with a finding, and a test fails, where one does not hold.
+
+A claim names a level at least to be reached. Those of methods that are not there yet wait for them.
+"""
+
+from __future__ import annotations
+
+from .entrants import entrants
+from .family import LEVELS
+from .results import FamilyResult
+
+CLAIMS: dict[str, dict[str, str]] = {
+    # What `solve` chooses by itself.
+    "solve": {"racket": "holds", "gimbal": "holds", "long": "holds", "near": "holds", "scales": "holds",
+              "norm": "holds", "sleeping": "holds", "spin-up": "holds", "damping": "degrades", "chaos": "degrades"},
+    "exact": {"racket": "holds", "gimbal": "holds", "long": "holds", "near": "holds", "scales": "holds",
+              "norm": "holds", "sleeping": "holds"},
+    "taylor": {"racket": "degrades", "gimbal": "holds", "long": "degrades", "near": "holds", "scales": "holds",
+               "norm": "holds", "sleeping": "holds", "spin-up": "holds", "chaos": "holds", "damping": "degrades"},
+    "dop853": {"racket": "degrades", "gimbal": "holds", "scales": "holds", "norm": "holds", "near": "holds",
+               "sleeping": "holds", "damping": "degrades"},
+    "rk45": {"racket": "degrades", "gimbal": "holds", "scales": "holds", "norm": "holds", "near": "degrades",
+             "sleeping": "holds", "damping": "degrades"},
+    "radau": {"damping": "holds", "gimbal": "holds", "scales": "holds", "norm": "holds"},
+}
+KEPT = ("energy", "L")   # what a record may promise, and the invariant of `Motion.drift` that shows it
+DRIFT = {"energy": "energy", "L": "angular_momentum"}
+ROUNDING = 1e-9   # of an invariant that is kept, after up to a million turns
+
+
+def find_broken(results: list[FamilyResult]) -> list[str]:
+    """Return a sentence for each claim that these results do not bear out."""
+    there = {e.name for e in entrants()}
+    broken = []
+    for name, claims in CLAIMS.items():
+        for result in results:
+            least = claims.get(result.family.name)
+            if least is None or name not in there:
+                continue
+            verdict = result.verdict(name)
+            if verdict.level not in LEVELS[:LEVELS.index(least) + 1]:
+                broken.append(f"{name}, {result.family.name}: {verdict.level} ({verdict.text}), where it should be "
+                              f"{least} at least{': ' + verdict.why if verdict.why else ''}")
+    return broken + _not_kept(results)
+
+
+def _not_kept(results: list[FamilyResult]) -> list[str]:
+    """What a record says is kept must be kept through the long times."""
+    broken = []
+    for result in results:
+        if result.family.name != "long":
+            continue
+        for entrant in entrants():
+            promised = [name.strip() for name in entrant.record.get("keeps", "").split(",")]
+            for what in KEPT:
+                # Of those that keep |L| alone, the vector may go where it likes.
+                if what not in promised:
+                    continue
+                worst = max((p.get(DRIFT[what]) for p in result.rows.get(entrant.name, []) if p.status == "answered"),
+                            default=0.0)
+                if worst > ROUNDING:
+                    broken.append(f"{entrant.name}, long: keeps {what} by its record, which moved by {worst:.1e}")
+    return broken

@@ -1,0 +1,112 @@
+"""What is kept of a family: its points and verdicts, as JSON, with machine and versions."""
+
+from __future__ import annotations
+
+import json
+import math
+import pathlib
+import time
+from dataclasses import dataclass
+from typing import Any
+
+from .._core import build_info
+from ..charts.results import machine, versions
+from .entrants import KINDS, WITNESS, entrants
+from .family import Family, Point, Verdict
+from .jobs import find_family, rows_of
+from .work import from_json
+from .worker import to_json
+
+FORMAT = "polhode atlas 1"
+
+
+@dataclass
+class FamilyResult:
+    """All points of a family, by entrant, and what they come to."""
+
+    family: Family
+    quick: bool
+    rows: dict[str, list[Point]]
+    seconds: float            # of CPU that the answers took
+    kept: bool = False        # read from an earlier run
+    made: str = ""            # when
+
+    def verdict(self, entrant: str) -> Verdict:
+        """The cell of the matrix; one without points is empty, and says why."""
+        who = next((e for e in rows_of(self.family) if e.name == entrant), None)
+        if who is None or entrant not in self.rows:
+            everyone = {e.name: e for e in [*entrants(), WITNESS]}
+            return Verdict("none", "", why=self.family.takes(everyone[entrant]) if entrant in everyone else "not there")
+        points = self.rows[entrant]
+        broken = [p for p in points if math.isnan(p.x)]   # a fault, a crash or a hang
+        if broken:
+            return Verdict("fails", "hung" if broken[0].why.startswith("hung") else "crashed", math.inf, broken[0].why)
+        return self.family.judge(points)
+
+
+def signature(family: Family, quick: bool) -> dict[str, Any]:
+    """What an earlier result must agree with to be kept."""
+    return {"format": FORMAT, "quick": quick, "polhode": build_info()["version"], "rows": [e.name for e in rows_of(family)],
+            "sweeps": family.sweeps, "holds": family.holds, "degrades": family.degrades}
+
+
+def family_document(result: FamilyResult) -> dict[str, Any]:
+    """Return the content of <family>.json."""
+    family = result.family
+    return {
+        **signature(family, result.quick), "family": family.name, "title": family.title, "truth": family.truth,
+        "value": family.y, "value_means": family.y_label, "made": result.made, "seconds": result.seconds,
+        "machine": machine(), "versions": versions(), "build": build_info(),
+        "verdicts": {name: _verdict(result.verdict(name)) for name in result.rows},
+        "points": {name: [to_json(p) for p in points] for name, points in result.rows.items()},
+    }
+
+
+def _verdict(verdict: Verdict) -> dict[str, Any]:
+    number = verdict.number if math.isfinite(verdict.number) else None
+    return {"level": verdict.level, "text": verdict.text, "number": number, "why": verdict.why}
+
+
+def read_family(path: pathlib.Path, quick: bool | None = None) -> FamilyResult | None:
+    """Read a family's file; None when it is not there, not whole, or (with `quick` given) not what would be made now."""
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+        family = find_family(content["family"])
+        if quick is not None and any(content.get(k) != v for k, v in signature(family, quick).items()):
+            return None
+        rows = {name: [from_json(p) for p in points] for name, points in content["points"].items()}
+        return FamilyResult(family, content["quick"], rows, content["seconds"], True, content["made"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+def write_family(result: FamilyResult, folder: pathlib.Path) -> pathlib.Path:
+    """Write a family's file whole or not at all."""
+    path = folder / f"{result.family.name}.json"
+    text = json.dumps(family_document(result), indent=1, allow_nan=False)
+    draft = path.with_suffix(".part")
+    draft.write_text(text + "\n", encoding="utf-8")
+    draft.replace(path)
+    return path
+
+
+def matrix(results: list[FamilyResult]) -> dict[str, dict[str, Verdict]]:
+    """Return {entrant: {family: verdict}}, in the order of the list, without rows that say nothing."""
+    names = [e.name for e in [*entrants(), WITNESS]]
+    table = {name: {r.family.name: r.verdict(name) for r in results} for name in names}
+    return {name: row for name, row in table.items() if any(v.level != "none" for v in row.values())}
+
+
+def document(results: list[FamilyResult], seconds: float, broken: list[str], files: list[str]) -> dict[str, Any]:
+    """Return the content of atlas.json: the matrix and what stands behind its columns."""
+    kinds = {e.name: e.kind for e in [*entrants(), WITNESS]}
+    return {
+        "format": FORMAT, "made": time.strftime("%Y-%m-%d %H:%M"), "quick": all(r.quick for r in results),
+        "seconds": seconds, "polhode": build_info(), "machine": machine(), "versions": versions(),
+        "families": {r.family.name: {"title": r.family.title, "sweeps": r.family.sweeps, "truth": r.family.truth,
+                                     "holds": r.family.holds, "degrades": r.family.degrades, "seconds": r.seconds,
+                                     "kept": r.kept} for r in results},
+        "matrix": {name: {"group": KINDS[kinds[name]], **{f: _verdict(v) for f, v in row.items()}}
+                   for name, row in matrix(results).items()},
+        "broken_claims": broken, "files": files,
+    }

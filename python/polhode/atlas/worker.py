@@ -1,0 +1,50 @@
+"""A process that measures what it is told to, one job a line: `python -m polhode.atlas.worker`.
+
+In: {"family", "entrant", "quick", "limit"}. Out: one line a point, then {"end": true}. What happens to this process
+happens to one job.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+import sys
+from typing import Any, TextIO
+
+from .family import Point
+from .jobs import find_entrant, find_family
+
+
+def to_json(point: Point) -> dict[str, Any]:
+    """Return a point as JSON has it: what is not a finite number is null."""
+    content = dataclasses.asdict(point)
+    content["x"] = _finite(content["x"])
+    content["values"] = {name: _finite(value) for name, value in content["values"].items()}
+    return content
+
+
+def _finite(value: Any) -> Any:
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def serve(jobs: TextIO, answers: TextIO) -> None:
+    """Work until there is no more."""
+    def say(content: dict[str, Any]) -> None:
+        answers.write(json.dumps(content) + "\n")
+        answers.flush()
+
+    for line in jobs:
+        job = json.loads(line)
+        try:
+            family, entrant = find_family(job["family"]), find_entrant(job["entrant"])
+            for point in family.measure(entrant, job["quick"], job["limit"]):
+                say(to_json(point))
+        except Exception as error:   # a fault of a method, or of the atlas, is told and costs one row
+            say({"fault": f"{type(error).__name__}: {error}".splitlines()[0]})
+        say({"end": True})
+
+
+if __name__ == "__main__":
+    answers, sys.stdout = sys.stdout, sys.stderr   # what a library prints must not look like an answer
+    serve(sys.stdin, answers)
