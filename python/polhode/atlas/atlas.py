@@ -17,7 +17,7 @@ from .jobs import Job, find_families, rows_of
 from .results import FamilyResult, document, read_family, write_family
 from .work import work
 
-LIMIT = {True: 0.5, False: 15.0}   # seconds of CPU a point: quick, whole
+LIMIT = {True: 2.0, False: 15.0}   # seconds of CPU a point: quick, whole
 
 
 def _folder(folder: str | os.PathLike[str]) -> pathlib.Path:

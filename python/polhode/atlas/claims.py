@@ -18,9 +18,9 @@ CLAIMS: dict[str, dict[str, str]] = {
     "taylor": {"racket": "degrades", "gimbal": "holds", "long": "degrades", "near": "holds", "scales": "holds",
                "norm": "holds", "sleeping": "holds", "spin-up": "holds", "chaos": "holds", "damping": "degrades"},
     "dop853": {"racket": "degrades", "gimbal": "holds", "scales": "holds", "norm": "holds", "near": "holds",
-               "sleeping": "holds", "damping": "degrades"},
+               "sleeping": "holds"},
     "rk45": {"racket": "degrades", "gimbal": "holds", "scales": "holds", "norm": "holds", "near": "degrades",
-             "sleeping": "holds", "damping": "degrades"},
+             "sleeping": "holds"},
     "radau": {"damping": "holds", "gimbal": "holds", "scales": "holds", "norm": "holds"},
 }
 KEPT = ("energy", "L")   # what a record may promise, and the invariant of `Motion.drift` that shows it

@@ -33,6 +33,24 @@ class Point:
         return math.nan if value is None else float(value)
 
 
+def to_json(point: Point) -> dict[str, Any]:
+    """Return a point as JSON has it: what is not a finite number is null."""
+    def finite(value: Any) -> Any:
+        return None if isinstance(value, float) and not math.isfinite(value) else value
+
+    return {"x": finite(point.x), "series": point.series, "status": point.status, "why": point.why,
+            "values": {name: finite(value) for name, value in point.values.items()}}
+
+
+def from_json(content: dict[str, Any]) -> Point:
+    """Read a point back: null is NaN."""
+    def number(value: Any) -> Any:
+        return math.nan if value is None else value
+
+    values = {name: number(value) for name, value in content["values"].items()}
+    return Point(number(content["x"]), content["series"], values, content["why"], content["status"])
+
+
 @dataclass
 class Verdict:
     """What the matrix says: a level, and the number behind it in a few characters."""
@@ -69,6 +87,8 @@ class Family:
     y_log: bool = True
     x_scale: str = "log"         # "log" | "symlog" | "linear" | "list" (one place for each value)
     y_limits: tuple[float, float] | None = None
+    tick_names: tuple[tuple[float, str], ...] = ()   # values that are called something else
+    failed_below: bool = False   # a run that broke off is drawn at the bottom: where more is better
     summary: str = ""            # what the column of the matrix is headed by
 
 

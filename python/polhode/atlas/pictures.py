@@ -13,7 +13,7 @@ from .family import Family, Point
 from .look import LEVELS, WORDS, looks
 from .results import FamilyResult, matrix
 
-PANEL, MARGIN, LABELS = 4.5, 0.85, 1.65   # inches: a panel, what is left of it, the names at its right
+PANEL, MARGIN, LABELS = 4.6, 0.85, 1.75   # inches: a panel, what is left of it, the names at its right
 APART = 0.034                            # of the axes' height: names closer than that share a line
 
 
@@ -25,15 +25,17 @@ def draw_family(result: FamilyResult, folder: pathlib.Path) -> list[pathlib.Path
     with style.used() as plt:
         columns = min(2, len(shown)) or 1
         rows = max(1, math.ceil(len(shown) / columns))
-        width, height = columns * (PANEL + MARGIN + LABELS), 1.2 + 4.0 * rows
+        caption = _caption(family)
+        head = 0.95 + 0.19 * (caption.count("\n") + 1)
+        width, height = columns * (PANEL + MARGIN + LABELS), head + 0.55 + 3.4 * rows + 0.75 * (rows - 1)
         figure, grid = plt.subplots(rows, columns, figsize=(width, height), squeeze=False)
-        figure.subplots_adjust(left=MARGIN / width, right=1 - LABELS / width, top=1 - 1.35 / height, bottom=0.55 / height,
-                               wspace=(MARGIN + LABELS) / PANEL, hspace=0.3)
+        figure.subplots_adjust(left=MARGIN / width, right=1 - LABELS / width, top=1 - head / height, bottom=0.55 / height,
+                               wspace=(MARGIN + LABELS) / PANEL, hspace=0.75 / 3.4)
         for axes in grid.flat[len(shown):]:
             axes.set_visible(False)
         for axes, (name, title) in zip(grid.flat, shown):
             _panel(axes, result, name, title)
-        style.heading(figure, family.title, _caption(family), MARGIN / width)
+        style.heading(figure, family.title, caption, MARGIN / width)
         paths = style.save(figure, folder, family.name)
         plt.close(figure)
     return paths
@@ -41,7 +43,7 @@ def draw_family(result: FamilyResult, folder: pathlib.Path) -> list[pathlib.Path
 
 def _caption(family: Family) -> str:
     text = [f"swept: {family.sweeps}", f"holds: {family.holds}; degrades: {family.degrades}"]
-    return "\n".join(line for part in text for line in textwrap.wrap(part, 108 if len(family.series) > 1 else 92))
+    return "\n".join(line for part in text for line in textwrap.wrap(part, 165 if len(family.series) > 1 else 88))
 
 
 def _points(points: list[Point], series: str) -> list[Point]:
@@ -58,7 +60,9 @@ def _panel(axes: Any, result: FamilyResult, series: str, title: str) -> None:
     low, high = family.y_limits or _range(family, curves)
 
     def clip(value: float) -> float:
-        return high if math.isnan(value) else min(max(value, low), high)
+        if not math.isfinite(value):
+            return low if family.failed_below else high
+        return min(max(value, low), high)
 
     ends: list[tuple[float, str]] = []
     if family.x_scale == "log" and len(values) > 1:
@@ -77,7 +81,8 @@ def _panel(axes: Any, result: FamilyResult, series: str, title: str) -> None:
         ends.append((ys[last], name))
     axes.set_ylim(low, high)
     if family.x_scale == "list":
-        axes.set_xticks(list(places.values()), [_tick(x) for x in places])
+        called = dict(family.tick_names)
+        axes.set_xticks(list(places.values()), [called.get(x) or _tick(x) for x in places])
         axes.tick_params(axis="x", labelsize=8)
     elif family.x_inverted:
         axes.invert_xaxis()
@@ -85,7 +90,7 @@ def _panel(axes: Any, result: FamilyResult, series: str, title: str) -> None:
         if low <= value <= high:
             axes.axhline(value, color=style.QUIET, linewidth=1, linestyle=(0, (1, 1.5)), zorder=2)
             axes.annotate(word, (0, value), xycoords=("axes fraction", "data"), xytext=(3, 2), textcoords="offset points",
-                          fontsize=8, color=style.QUIET, zorder=9)
+                          fontsize=8, color=style.QUIET, zorder=9, bbox=style.HALO)
     axes.set_xlabel(family.x_label)
     axes.set_ylabel(family.y_label)
     axes.set_title(title)
@@ -116,7 +121,7 @@ def _names(axes: Any, ends: list[tuple[float, str]], low: float, high: float, lo
             groups[-1][1].append(name)
         else:
             groups.append((at, [name]))
-    blocks = [(at, textwrap.wrap(", ".join(names), 24), names) for at, names in groups]
+    blocks = [(at, textwrap.wrap(", ".join(names), 27), names) for at, names in groups]
     # From below: each block at its place, or above the one before it; then down again where the top is passed.
     tops, floor = [], -1.0
     for at, lines, _ in blocks:
@@ -132,8 +137,8 @@ def _names(axes: Any, ends: list[tuple[float, str]], low: float, high: float, lo
     for (at, lines, names), centre in zip(blocks, tops):
         colours = {everyone[name]["color"] for name in names}
         axes.annotate("\n".join(lines), (1, at), xycoords="axes fraction", xytext=(1.05, centre), textcoords="axes fraction",
-                      fontsize=8, va="center", ha="left", color=colours.pop() if len(colours) == 1 else style.INK,
-                      fontweight="bold" if {"solve", "exact"} & set(names) else "normal", linespacing=1.0, zorder=9,
+                      fontsize=7.8, va="center", ha="left", color=colours.pop() if len(colours) == 1 else style.INK,
+                      fontweight="bold" if {"solve", "exact"} >= set(names) else "normal", linespacing=1.0, zorder=9,
                       arrowprops={"arrowstyle": "-", "color": style.FLOOR, "linewidth": 0.6, "shrinkA": 0, "shrinkB": 3})
 
 

@@ -12,10 +12,8 @@ from typing import Any
 from .._core import build_info
 from ..charts.results import machine, versions
 from .entrants import KINDS, WITNESS, entrants
-from .family import Family, Point, Verdict
+from .family import Family, Point, Verdict, from_json, to_json
 from .jobs import find_family, rows_of
-from .work import from_json
-from .worker import to_json
 
 FORMAT = "polhode atlas 1"
 

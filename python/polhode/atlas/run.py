@@ -44,7 +44,8 @@ def run(entrant: Entrant, scene: Scene, setting: dict[str, float], limit: float)
         return time.thread_time() < end
 
     try:
-        motion = solve(scene, max_steps=2**62, progress=in_time, **entrant.options, **setting)
+        options: dict[str, Any] = {**entrant.options, **setting}
+        motion = solve(scene, max_steps=2**62, progress=in_time, **options)
     except InvalidInput as error:
         raise Refused(str(error)) from None
     except IntegrationFailure as error:

@@ -89,4 +89,4 @@ def sleeping(excess: float) -> Case:
 def tilt(attitude: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     """The angle between the body's z axis and the vertical, right where it is small [rad]."""
     x, y, z, w = np.moveaxis(attitude, -1, 0)
-    return 2 * np.arctan2(np.hypot(x, y), np.hypot(z, w))
+    return np.asarray(2 * np.arctan2(np.hypot(x, y), np.hypot(z, w)))

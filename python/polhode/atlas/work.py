@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable, Sequence
 from typing import IO, Any
 
-from .family import Point
+from .family import Point, from_json
 from .jobs import Job
 
 COMMAND = (sys.executable, "-m", "polhode.atlas.worker")
@@ -72,15 +72,6 @@ class _Worker:
                 except BrokenPipeError:
                     pass
         return code
-
-
-def from_json(content: dict[str, Any]) -> Point:
-    """Read a point back: null is NaN."""
-    def number(value: Any) -> Any:
-        return float("nan") if value is None else value
-
-    values = {name: number(value) for name, value in content["values"].items()}
-    return Point(number(content["x"]), content["series"], values, content["why"], content["status"])
 
 
 def _how_it_ended(code: int) -> str:

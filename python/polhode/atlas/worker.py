@@ -6,26 +6,12 @@ happens to one job.
 
 from __future__ import annotations
 
-import dataclasses
 import json
-import math
 import sys
 from typing import Any, TextIO
 
-from .family import Point
+from .family import to_json
 from .jobs import find_entrant, find_family
-
-
-def to_json(point: Point) -> dict[str, Any]:
-    """Return a point as JSON has it: what is not a finite number is null."""
-    content = dataclasses.asdict(point)
-    content["x"] = _finite(content["x"])
-    content["values"] = {name: _finite(value) for name, value in content["values"].items()}
-    return content
-
-
-def _finite(value: Any) -> Any:
-    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def serve(jobs: TextIO, answers: TextIO) -> None:

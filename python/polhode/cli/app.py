@@ -221,3 +221,37 @@ def report(
                            progress=bar.step)
     print(page)
     return 0
+
+
+@_command
+def atlas(
+    families: Annotated[list[str] | None, typer.Argument(help="Names of families; all of them when none is given.")] = None,
+    output: Annotated[
+        pathlib.Path, typer.Option("-o", "--output", help="The folder; what is finished there is kept.")] = pathlib.Path("atlas"),
+    quick: Annotated[bool, typer.Option("--quick", help="Fewer values: a minute instead of a quarter of an hour.")] = False,
+    fresh: Annotated[bool, typer.Option("--fresh", help="Run finished families again.")] = False,
+    processes: Annotated[int, typer.Option(help="How many work at a time.")] = 2,
+    limit: Annotated[
+        float | None, typer.Option(help="Seconds of CPU a single run may take; 15, quick 2.")] = None,
+    as_json: Json = False,
+) -> int:
+    """Chart where methods fail.
+
+    Every method on families of hard problems, from the racket to stiff damping, each against a truth and a threshold.
+    """
+    try:
+        import matplotlib  # noqa: F401
+    except ImportError:
+        raise InvalidInput("the atlas needs matplotlib: pip install 'polhode[plot]'") from None
+    from ..atlas import atlas as make_atlas
+    from . import atlas as tables
+
+    with show.Bar("atlas") as bar:
+        _, content = make_atlas(families or (), output, quick=quick, fresh=fresh, processes=processes, limit=limit,
+                                progress=bar.of, show=(lambda r: None) if as_json else (lambda r: bar.above(tables.family, r)))
+    if as_json:
+        _print_json(content)
+    else:
+        tables.matrix(content)
+        tables.end(content, output)
+    return 1 if content["broken_claims"] else 0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pathlib
 import sys
 import time
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from rich import box
@@ -62,14 +63,23 @@ class Bar:
             print(text, file=sys.stderr, flush=True)
             self._last = text
 
+    def of(self, done: int, total: int, text: str) -> None:
+        """The callback of `atlas`."""
+        self._bar.update(self._task, total=total)
+        self.step(done, text)
+
     def print_above(self, result: SceneResult) -> None:
         """Print a scene's table while the bar goes on below it."""
+        self.above(scene, result)
+
+    def above(self, show: Callable[[Any], object], result: Any) -> None:
+        """Print something while the bar goes on below it."""
         if self._console.is_terminal and sys.stdout.isatty():
             self._bar.stop()
-            scene(result)
+            show(result)
             self._bar.start()
         else:
-            scene(result)
+            show(result)
             sys.stdout.flush()
 
 

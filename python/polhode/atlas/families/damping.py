@@ -14,25 +14,26 @@ from ..run import Failed, Refused, run, values_of
 
 GOAL = 1e-6
 CHEAP = 10_000    # steps
+ASKEW = 1e9       # where S7b stands among the strengths: behind them all
 TOLERANCES = (1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12)
 STEPS = (1e3, 1e4, 1e5, 1e6, 1e7)
 
 
-def _settings(entrant: Entrant, scene: Scene) -> list[dict[str, float]]:
+def _settings(entrant: Entrant, scene: Scene, quick: bool) -> list[dict[str, float]]:
     """From loose to tight."""
     if entrant.kind == "solve":
         return [{"accuracy": GOAL}]
     if entrant.fixed:
-        return [{"step": float(scene.times.max()) / n} for n in STEPS]
+        return [{"step": float(scene.times.max()) / n} for n in (STEPS[:-1] if quick else STEPS)]
     return [{"rtol": rtol} for rtol in TOLERANCES]
 
 
-def _reach(entrant: Entrant, case: Case, limit: float) -> Point:
+def _reach(entrant: Entrant, case: Case, quick: bool, limit: float) -> Point:
     """The loosest setting that reaches the goal, and what it costs."""
     point, end = Point(case.x, case.series), time.thread_time() + limit
     truth = truth_of("damping", case)
     why = ""
-    for setting in _settings(entrant, case.scene):
+    for setting in _settings(entrant, case.scene, quick):
         try:
             motion = run(entrant, case.scene, setting, max(end - time.thread_time(), 0.05))
         except Refused as refusal:
@@ -57,10 +58,10 @@ def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
     """What 1e-6 costs for each strength, and on S7b, whose damping is not along the axes."""
     cases = [scenes.damped(c) for c in (scenes.STIFF[::2] if quick else scenes.STIFF)]
     refused = False
-    for case in [*cases, Case(1e5, Scene.load("S7b"), "S7b")]:
+    for case in [*cases, Case(ASKEW, Scene.load("S7b"))]:
         if refused:
             return
-        point = _reach(entrant, case, limit)
+        point = _reach(entrant, case, quick, limit)
         refused = point.status == "refused"
         yield point
         if point.status == "failed":   # harder ones are not easier
@@ -85,6 +86,7 @@ def judge(points: list[Point]) -> Verdict:
         first = min(failed, key=lambda p: p.x)
         reached = [p.x for p in tried if p.status == "answered" and p.x < first.x]
         text = f"to c = {max(reached):.0e}".replace("e+0", "e") if reached else "never"
+        text = "not S7b" if first.x == ASKEW else text
         return Verdict("fails", text, max(reached, default=0.0), first.why)
     steps = max(int(p.values["steps"]) for p in tried)
     level = "holds" if steps <= CHEAP else "degrades"
@@ -97,6 +99,6 @@ FAMILY = Family(
     truth="113-bit Gauss collocation of order 24; S7b: the scene's stored truth",
     holds="1e-6 within 10,000 steps for every c and on S7b", degrades="1e-6 reached, at any cost within the time limit",
     measure=measure, judge=judge, x_label="damping c [N m s]", y="steps", y_label="steps for an error of 1e-6",
-    series=(("", "damped about one axis"), ("S7b", "S7b, askew")), lines=((CHEAP, "holds"),),
+    x_scale="list", tick_names=((ASKEW, "S7b"),), lines=((CHEAP, "holds"),),
     takes=lambda entrant: "no closed form" if entrant.kind in ("exact", "witness") else "",
 )

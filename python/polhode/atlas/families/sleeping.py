@@ -58,7 +58,7 @@ def judge(points: list[Point]) -> Verdict:
 
 
 FAMILY = Family(
-    name="sleeping", title="The sleeping top: stands just above the critical rate, falls just below", summary="sleeping\ntop",
+    name="sleeping", title="The sleeping top: it stands, or just falls", summary="sleeping\ntop",
     sweeps="the rate's excess s over the critical one, 0.1 to -0.1, tilted by 1e-6 rad at the start, 200 s",
     truth="113-bit Taylor series",
     holds="the greatest tilt within a relative 1e-3 for every s", degrades="it stands and falls as it should for |s| >= 1e-3",
