@@ -12,8 +12,10 @@ from typing import Any
 from .._core import InvalidInput
 from . import pictures
 from .claims import find_broken
+from .families import FAMILIES
 from .family import Family, Point
 from .jobs import Job, find_families, rows_of
+from .page import page
 from .results import FamilyResult, document, read_family, write_family
 from .work import work
 
@@ -50,7 +52,8 @@ def atlas(
     families : iterable of str
         Names of `FAMILIES`; all of them when none is given.
     folder : path
-        Made when it is not there. Gets a picture (.png and .svg) and a .json a family, ``matrix`` and ``atlas.json``.
+        Made when it is not there. Gets a picture (.png and .svg) and a .json a family, and of all families
+        in the folder together ``matrix``, ``atlas.json`` and, to be read, ``atlas.md``.
         Families that are finished there, under the same settings and version, are kept and not run again.
     quick : bool
         Fewer values of what is swept.
@@ -95,15 +98,19 @@ def atlas(
     _measure([f for f in wanted if f.name not in results], results, output, quick, seconds, processes, progress, show)
 
     ordered = [results[family.name] for family in wanted]
+    # The matrix is of all that the folder holds.
+    there = [results.get(f.name) or read_family(output / f"{f.name}.json", quick) for f in FAMILIES]
+    everything = [result for result in there if result is not None]
     files: list[str] = []
     if draw:
         for index, result in enumerate(ordered):
             progress(index, len(ordered) + 1, f"picture: {result.family.name}")
             files += [path.name for path in pictures.draw_family(result, output)]
-        files += [path.name for path in pictures.draw_matrix(ordered, output)]
-    files += [f"{family.name}.json" for family in wanted] + ["atlas.json"]
-    content = document(ordered, time.perf_counter() - start, find_broken(ordered), files)
+        files += [path.name for path in pictures.draw_matrix(everything, output)]
+    files += [f"{family.name}.json" for family in wanted] + ["atlas.json", "atlas.md"]
+    content = document(everything, time.perf_counter() - start, find_broken(everything), files)
     (output / "atlas.json").write_text(json.dumps(content, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    (output / "atlas.md").write_text(page(content), encoding="utf-8")
     return ordered, content
 
 

@@ -49,8 +49,8 @@ def stored(name: str) -> Floats:
 
 
 def truth_of(family: str, case: Case) -> Truth:
-    """Return what is true at the case's times: stored, made in 113-bit arithmetic or with 60 digits of a closed form."""
+    """Return what is true at the case's times: stored, from 113-bit arithmetic or a closed form in mpmath."""
     if case.scene.name:
         return find_truth(case.scene)
     rows: npt.NDArray[np.float64] = stored(key(family, case))
-    return Truth(rows[:, :3], rows[:, 3:], "stored", "113-bit Taylor series or 60-digit closed form", 3e-16, None)
+    return Truth(rows[:, :3], rows[:, 3:], "stored", "113-bit Taylor series or closed form in mpmath", 3e-16, None)

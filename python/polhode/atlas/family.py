@@ -65,8 +65,8 @@ class Verdict:
 class Family:
     """One family: the whole of what the atlas knows of it.
 
-    `measure(entrant, quick, limit)` yields points; `judge(points)` reads them. `takes(entrant)` says why someone does not
-    take part, or "". What a scene itself refuses needs no line there.
+    `measure(entrant, quick, limit)` yields points; `judge(points)` reads them. `takes(entrant)` says why someone
+    does not take part, or "". What a scene itself refuses needs no line there.
     """
 
     name: str
@@ -75,6 +75,7 @@ class Family:
     truth: str
     holds: str           # the threshold, in words
     degrades: str
+    about: str           # two sentences for a reader
     measure: Callable[[Entrant, bool, float], Iterator[Point]]
     judge: Callable[[list[Point]], Verdict]
     x_label: str

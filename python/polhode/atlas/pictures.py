@@ -29,8 +29,8 @@ def draw_family(result: FamilyResult, folder: pathlib.Path) -> list[pathlib.Path
         head = 0.95 + 0.19 * (caption.count("\n") + 1)
         width, height = columns * (PANEL + MARGIN + LABELS), head + 0.55 + 3.4 * rows + 0.75 * (rows - 1)
         figure, grid = plt.subplots(rows, columns, figsize=(width, height), squeeze=False)
-        figure.subplots_adjust(left=MARGIN / width, right=1 - LABELS / width, top=1 - head / height, bottom=0.55 / height,
-                               wspace=(MARGIN + LABELS) / PANEL, hspace=0.75 / 3.4)
+        figure.subplots_adjust(left=MARGIN / width, right=1 - LABELS / width, top=1 - head / height,
+                               bottom=0.55 / height, wspace=(MARGIN + LABELS) / PANEL, hspace=0.75 / 3.4)
         for axes in grid.flat[len(shown):]:
             axes.set_visible(False)
         for axes, (name, title) in zip(grid.flat, shown):
@@ -89,8 +89,12 @@ def _panel(axes: Any, result: FamilyResult, series: str, title: str) -> None:
     for value, word in family.lines:
         if low <= value <= high:
             axes.axhline(value, color=style.QUIET, linewidth=1, linestyle=(0, (1, 1.5)), zorder=2)
-            axes.annotate(word, (0, value), xycoords=("axes fraction", "data"), xytext=(3, 2), textcoords="offset points",
-                          fontsize=8, color=style.QUIET, zorder=9, bbox=style.HALO)
+            axes.annotate(word, (0, value), xycoords=("axes fraction", "data"), xytext=(3, 2),
+                          textcoords="offset points", fontsize=8, color=style.QUIET, zorder=9, bbox=style.HALO)
+    for axis, log in ((axes.xaxis, axes.get_xscale() == "log"), (axes.yaxis, family.y_log)):
+        if log:   # plain text: powers set as formulas are slow to draw and small to read
+            axis.set_major_formatter(lambda value, _: _tick(value))
+            axis.set_minor_formatter(lambda value, _: "")
     axes.set_xlabel(family.x_label)
     axes.set_ylabel(family.y_label)
     axes.set_title(title)
@@ -136,10 +140,11 @@ def _names(axes: Any, ends: list[tuple[float, str]], low: float, high: float, lo
         ceiling = tops[i] - half
     for (at, lines, names), centre in zip(blocks, tops):
         colours = {everyone[name]["color"] for name in names}
-        axes.annotate("\n".join(lines), (1, at), xycoords="axes fraction", xytext=(1.05, centre), textcoords="axes fraction",
-                      fontsize=7.8, va="center", ha="left", color=colours.pop() if len(colours) == 1 else style.INK,
+        axes.annotate("\n".join(lines), (1, at), xycoords="axes fraction", xytext=(1.05, centre),
+                      textcoords="axes fraction", fontsize=7.8, va="center", ha="left", color=colours.pop() if len(colours) == 1 else style.INK,
                       fontweight="bold" if {"solve", "exact"} >= set(names) else "normal", linespacing=1.0, zorder=9,
-                      arrowprops={"arrowstyle": "-", "color": style.FLOOR, "linewidth": 0.6, "shrinkA": 0, "shrinkB": 3})
+                      arrowprops={"arrowstyle": "-", "color": style.FLOOR, "linewidth": 0.6, "shrinkA": 0,
+                                  "shrinkB": 3})
 
 
 def draw_matrix(results: list[FamilyResult], folder: pathlib.Path, name: str = "matrix") -> list[pathlib.Path]:

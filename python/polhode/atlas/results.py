@@ -44,8 +44,8 @@ class FamilyResult:
 
 def signature(family: Family, quick: bool) -> dict[str, Any]:
     """What an earlier result must agree with to be kept."""
-    return {"format": FORMAT, "quick": quick, "polhode": build_info()["version"], "rows": [e.name for e in rows_of(family)],
-            "sweeps": family.sweeps, "holds": family.holds, "degrades": family.degrades}
+    return {"format": FORMAT, "quick": quick, "polhode": build_info()["version"],
+            "rows": [e.name for e in rows_of(family)], "sweeps": family.sweeps, "holds": family.holds, "degrades": family.degrades}
 
 
 def family_document(result: FamilyResult) -> dict[str, Any]:
@@ -66,7 +66,7 @@ def _verdict(verdict: Verdict) -> dict[str, Any]:
 
 
 def read_family(path: pathlib.Path, quick: bool | None = None) -> FamilyResult | None:
-    """Read a family's file; None when it is not there, not whole, or (with `quick` given) not what would be made now."""
+    """Read a family's file; None when it is not there, not whole, or (given `quick`) not what would be made."""
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
         family = find_family(content["family"])
@@ -101,8 +101,8 @@ def document(results: list[FamilyResult], seconds: float, broken: list[str], fil
     return {
         "format": FORMAT, "made": time.strftime("%Y-%m-%d %H:%M"), "quick": all(r.quick for r in results),
         "seconds": seconds, "polhode": build_info(), "machine": machine(), "versions": versions(),
-        "families": {r.family.name: {"title": r.family.title, "sweeps": r.family.sweeps, "truth": r.family.truth,
-                                     "holds": r.family.holds, "degrades": r.family.degrades, "seconds": r.seconds,
+        "families": {r.family.name: {"title": r.family.title, "about": r.family.about, "sweeps": r.family.sweeps,
+                                     "truth": r.family.truth, "holds": r.family.holds, "degrades": r.family.degrades, "seconds": r.seconds,
                                      "kept": r.kept} for r in results},
         "matrix": {name: {"group": KINDS[kinds[name]], **{f: _verdict(v) for f, v in row.items()}}
                    for name, row in matrix(results).items()},

@@ -86,7 +86,7 @@ def work(jobs: Sequence[Job], done: Done, *, processes: int = 2, command: Sequen
     ----------
     jobs : sequence of Job
     done : callable
-        ``done(job, points)``, in this process. The points of a job whose process crashed or hung end with one that says so.
+        ``done(job, points)``, in this process. A job whose process crashed or hung has a last point that says so.
     processes : int
     command : sequence of str
         What starts a worker.

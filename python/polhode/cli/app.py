@@ -225,10 +225,10 @@ def report(
 
 @_command
 def atlas(
-    families: Annotated[list[str] | None, typer.Argument(help="Names of families; all of them when none is given.")] = None,
-    output: Annotated[
-        pathlib.Path, typer.Option("-o", "--output", help="The folder; what is finished there is kept.")] = pathlib.Path("atlas"),
-    quick: Annotated[bool, typer.Option("--quick", help="Fewer values: a minute instead of a quarter of an hour.")] = False,
+    families: Annotated[list[str] | None, typer.Argument(help="Names of families; all when none is given.")] = None,
+    output: Annotated[pathlib.Path, typer.Option(
+        "-o", "--output", help="The folder; what is finished there is kept.")] = pathlib.Path("atlas"),
+    quick: Annotated[bool, typer.Option("--quick", help="Fewer values: a minute, not a quarter of an hour.")] = False,
     fresh: Annotated[bool, typer.Option("--fresh", help="Run finished families again.")] = False,
     processes: Annotated[int, typer.Option(help="How many work at a time.")] = 2,
     limit: Annotated[
@@ -246,9 +246,13 @@ def atlas(
     from ..atlas import atlas as make_atlas
     from . import atlas as tables
 
+    def table(result: Any) -> None:
+        if not as_json:
+            bar.above(tables.family, result)
+
     with show.Bar("atlas") as bar:
         _, content = make_atlas(families or (), output, quick=quick, fresh=fresh, processes=processes, limit=limit,
-                                progress=bar.of, show=(lambda r: None) if as_json else (lambda r: bar.above(tables.family, r)))
+                                progress=bar.of, show=table)
     if as_json:
         _print_json(content)
     else:

@@ -64,8 +64,11 @@ FAMILY = Family(
     truth="113-bit Taylor series",
     holds="attitude within 0.1 rad for 180 s or longer at the best setting (the best double known to us: 246 s)",
     degrades="for 60 s",
+    about="Neighbouring motions part in bursts, so each digit of the tolerance buys some more seconds and no "
+          "more. Past the horizon of float64 every answer is a guess, whatever it costs.",
     measure=measure, judge=judge, x_label="tolerance, or step [s]", x_inverted=True, y="horizon",
     y_label="time until the attitude is lost [s]", y_log=False, y_limits=(0.0, 300.0),
-    series=(("tolerance", "against the tolerance"), ("step", "against the step")), failed_below=True, lines=((180.0, "holds"), (60.0, "degrades")),
+    series=(("tolerance", "against the tolerance"), ("step", "against the step")), failed_below=True,
+    lines=((180.0, "holds"), (60.0, "degrades")),
     takes=lambda entrant: "no closed form" if entrant.kind in ("exact", "witness") else "",
 )

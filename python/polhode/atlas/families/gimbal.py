@@ -39,9 +39,14 @@ def judge(points: list[Point]) -> Verdict:
 
 FAMILY = Family(
     name="gimbal", title="Gimbal lock: the axis passes near the vertical", summary="gimbal\nlock",
-    sweeps="the least angle to the vertical, theta = 0.5 to 1e-3: a free disk and a heavy top, 20 s, fixed steps 1e-3 s",
+    sweeps="the least angle to the vertical, theta = 0.5 to 1e-3: a free disk and a heavy top, 20 s, "
+           "fixed steps 1e-3 s",
     truth="113-bit Taylor series",
-    holds="the error at every theta within twice that at 0.5 (or below 1e-10)", degrades="not lost (0.1 rad) at any theta",
+    holds="the error at every theta within twice that at 0.5 (or below 1e-10)",
+    degrades="not lost (0.1 rad) at any theta",
+    about="The textbook's three angles end where the body's axis is vertical, and Lagrange's equations divide "
+          "by the sine of its tilt. Methods that turn a quaternion do not notice; those in angles need shorter "
+          "steps, or jump over the barrier and burst.",
     measure=measure, judge=judge, x_label="least angle to the vertical [rad]", x_inverted=True,
     y="error", y_label="largest error over 20 s [rad]", series=(("free", "a free disk"), ("top", "a heavy top")),
     y_limits=(1e-16, 10.0),

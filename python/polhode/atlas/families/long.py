@@ -41,6 +41,9 @@ FAMILY = Family(
     truth="closed form with 110 digits",
     holds="attitude within 1e-7 rad after the longest time reached",
     degrades="attitude not lost (0.1 rad), or energy and angular momentum within 1e-3",
+    about="Energy and angular momentum can be kept to rounding for ever while the phase runs away: conserving "
+          "is not being right. What grows as the square of the time, as the time, or not at all, is the slope "
+          "in this picture.",
     measure=measure, judge=judge, x_label="turns", y="error", y_label="error of the attitude [rad]",
     lines=((1e-7, "holds"), (LOST, "lost")), y_limits=(1e-16, 10.0),
 )

@@ -78,6 +78,9 @@ FAMILY = Family(
     sweeps="the length of a step (of methods that choose theirs: the mean), S1's block, 100 s",
     truth="1",
     holds="every quaternion returned is unit within 1e-15", degrades="within 1e-6",
+    about="A Runge-Kutta step leaves the unit sphere by its own error, so the norm of a quaternion nobody tends "
+          "shows how wrong the attitude is. Bringing it back hides the symptom and changes the attitude's error "
+          "not at all.",
     measure=measure, judge=judge, x_label="step [s]", x_inverted=True, y="norm", y_label="largest | |q| - 1 |",
     y_limits=(3e-17, 1.0), lines=((1e-15, "holds"),), takes=lambda entrant: "",
 )

@@ -20,7 +20,7 @@ from ..run import Failed, Refused, run
 def find_flip(motion: Motion, flip: float, slope: float) -> float:
     """The error of the zero of omega_y that lies near `flip` [s]; NaN when there is none within half a second.
 
-    Samples are 0.01 s apart, `flip` itself the one in the middle, where a small error is read off without interpolation.
+    Samples are 0.01 s apart, `flip` in the middle: there a small error is read off without interpolation.
     """
     assert motion.omega is not None
     t, y = motion.t, motion.omega[:, 1]
@@ -84,6 +84,9 @@ FAMILY = Family(
     sweeps="how closely the intermediate axis is hit: omega = (e, 5, e) rad/s, e = 1e-1 to 1e-12, 200 s",
     truth="closed form with 110 digits; first flip to 1e-15",
     holds="attitude within 1e-9 rad for every e", degrades="the first flip within 1e-3 s for every e",
+    about="A throw about the intermediate axis turns over again and again, and each flip forgets how close the "
+          "throw was. Every stepper gets the first flip; the later ones hang on digits that rounding took away, "
+          "unless they are evaluated rather than stepped.",
     measure=measure, judge=judge, x_label="distance from the axis e [rad/s]", x_inverted=True,
     y="error", y_label="largest error over 200 s [rad]", lines=((1e-9, "holds"), (LOST, "lost")),
     y_limits=(1e-16, 10.0),

@@ -34,7 +34,8 @@ def scaled(name: str, what: str, power: int) -> Scene:
     # Weight, and not the arm, takes the scale; above 1e308 there is no such number, so it is split between the two.
     torques = [Gravity(t.weight * heavier * faster, tuple(a * faster for a in t.arm)) for t in base.torques]
     times = np.linspace(0, TURNS * turn_of(base), 11) / faster
-    return Scene(inertia=inertia * heavier, omega=base.omega * faster, attitude=base.attitude, torques=torques, times=times)
+    return Scene(inertia=inertia * heavier, omega=base.omega * faster, attitude=base.attitude,
+                 torques=torques, times=times)
 
 
 def _run(entrant: Entrant, scene: Scene, limit: float) -> Motion:
@@ -56,11 +57,12 @@ def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
         point = Point(float(power), values={"error": 0.0})
         for (name, what), motion in plain.items():
             try:
-                point.values["error"] = max(point.values["error"], _difference(entrant, name, what, power, motion, limit))
-            except (Refused, Failed, ValueError) as error:   # ValueError: no such scene can be made
-                named = 0.0 if "NaN" in str(error) else 1.0
+                error = _difference(entrant, name, what, power, motion, limit)
+                point.values["error"] = max(point.values["error"], error)
+            except (Refused, Failed, ValueError) as why:   # ValueError: no such scene can be made
+                named = 0.0 if "NaN" in str(why) else 1.0
                 point.values["named"] = min(named, point.values.get("named", 1.0))
-                point.status, point.why = "failed", f"{name}, {what}: {error}"
+                point.status, point.why = "failed", f"{name}, {what}: {why}"
         yield point
 
 
@@ -95,6 +97,8 @@ FAMILY = Family(
     sweeps="inertia, or rates and 1/time, times 1e-150 to 1e150, on ten turns of scenes S1 and S4",
     truth="the same method's answer without the factor (a power of two)",
     holds="the same answer to 1e-12 at every scale", degrades="or an error that says so",
+    about="Grams or tonnes, seconds or years: the same motion in other units must be the same motion. Factors "
+          "are powers of two, so that a method which scales its work returns the very same bits.",
     measure=measure, judge=judge, x_label="power of ten of the factor", x_scale="linear",
     y="error", y_label="difference from the plain answer", y_limits=(1e-17, 10.0),
     lines=((1e-12, "holds"),),

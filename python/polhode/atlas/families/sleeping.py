@@ -61,7 +61,11 @@ FAMILY = Family(
     name="sleeping", title="The sleeping top: it stands, or just falls", summary="sleeping\ntop",
     sweeps="the rate's excess s over the critical one, 0.1 to -0.1, tilted by 1e-6 rad at the start, 200 s",
     truth="113-bit Taylor series",
-    holds="the greatest tilt within a relative 1e-3 for every s", degrades="it stands and falls as it should for |s| >= 1e-3",
+    holds="the greatest tilt within a relative 1e-3 for every s",
+    degrades="it stands and falls as it should for |s| >= 1e-3",
+    about="Spun a little faster than the critical rate a top stands upright, a little slower it falls, however "
+          "small the difference. A method's own error acts like a torque and moves the critical rate, so it may "
+          "let a sleeping top fall or keep a falling one up.",
     measure=measure, judge=judge, x_label="excess over the critical rate", x_inverted=True, x_scale="list",
     y="tilt", y_label="greatest tilt within 200 s [rad]", y_limits=(3e-7, 10.0),
 )

@@ -107,10 +107,14 @@ def judge(points: list[Point]) -> Verdict:
 
 FAMILY = Family(
     name="step", title="Needles and disks: the longest step that keeps the attitude", summary="longest\nstep",
-    sweeps="inertia ratio, from a disk (1) by S1's block (0.5) to a needle (1e-4); steps from 4096 a turn (quick: 1024) to one",
+    sweeps="inertia ratio, from a disk (1) by S1's block (0.5) to a needle (1e-4); "
+           "steps from 4096 a turn (quick: 1024) to one",
     truth="closed form (FreeMotion)",
     holds="attitude within 0.1 rad over 10 turns for every body at h |omega| = 0.1, 63 steps a turn",
     degrades="at h |omega| = 0.01, 628 steps a turn",
+    about="No body makes the free equations stiff, since no moment differs from another by more than the third: "
+          "what a step may be is an angle, h times the rate. Bounded energy says little about being right, so "
+          "the attitude decides.",
     measure=measure, judge=judge, takes=fixed_only, x_label="smallest moment over the middle one", x_inverted=True,
     y="right", y_label="longest step h |omega| [rad]", failed_below=True,
     lines=((0.1, "holds"), (0.01, "degrades")),

@@ -1,0 +1,52 @@
+"""The atlas as a page to read: the matrix and every picture, made from the results alone."""
+
+from __future__ import annotations
+
+from typing import Any
+
+SYMBOLS = {"holds": "●", "degrades": "◐", "fails": "✕", "unknown": "?", "none": ""}
+
+
+def _matrix(content: dict[str, Any]) -> list[str]:
+    families = list(content["families"])
+    lines = ["| | " + " | ".join(f"[{name}](#{name})" for name in families) + " |",
+             "|---" * (len(families) + 1) + "|"]
+    for name, row in content["matrix"].items():
+        cells = [f"{SYMBOLS[row[f]['level']]} {row[f]['text']}".strip() for f in families]
+        lines.append(f"| **{name}** | " + " | ".join(cells) + " |")
+    return lines
+
+
+def _listed(content: dict[str, Any], family: str, level: str) -> str:
+    names = [name for name, row in content["matrix"].items() if row[family]["level"] == level]
+    return ", ".join(names) if names else "nobody"
+
+
+def page(content: dict[str, Any], pictures: str = "", introduction: str = "") -> str:
+    """Return Markdown.
+
+    Parameters
+    ----------
+    content : dict
+        What stands in atlas.json.
+    pictures : str
+        Where the pictures are, as a prefix of their names.
+    introduction : str
+        What stands before the matrix.
+    """
+    machine = content["machine"]
+    whole = "" if not content["quick"] else " --quick"
+    lines = ["# Where methods fail", "", introduction.strip(), ""] if introduction else ["# Where methods fail", ""]
+    lines += [f"![Methods against families: what holds, what degrades, what fails]({pictures}matrix.svg)", "",
+              f"`polhode atlas{whole}`, polhode {content['polhode']['version']}, {machine['processor']}, "
+              f"{content['made']}. ● holds, ◐ degrades, ✕ fails, ? too slow to be known, empty: does not apply.", "", *_matrix(content), ""]
+    for name, family in content["families"].items():
+        lines += [f"## {name}", "", f"**{family['title']}.** {family['about']}", "",
+                  f"![{family['title']}]({pictures}{name}.svg)", "",
+                  f"Swept: {family['sweeps']}. Truth: {family['truth']}. "
+                  f"`polhode atlas {name}{whole}` makes it again.", "",
+                  "| | threshold | who |", "|---|---|---|",
+                  f"| ● holds | {family['holds']} | {_listed(content, name, 'holds')} |",
+                  f"| ◐ degrades | {family['degrades']} | {_listed(content, name, 'degrades')} |",
+                  f"| ✕ fails | | {_listed(content, name, 'fails')} |", ""]
+    return "\n".join(lines).replace("||", "\\|\\|").rstrip() + "\n"
