@@ -1,4 +1,4 @@
-"""Principal axes of many tensors: time and error of polhode and of numpy.linalg.eigh, side by side in one run.
+"""Principal axes and physical checks of many tensors: time and error of polhode and of numpy.linalg, side by side.
 
     python benchmarks/inertia.py [--count 1000000] [--repeat 5]
 
@@ -51,6 +51,17 @@ def worst_errors(solver, tensors):
     return error, residual.max()
 
 
+def margins_by_numpy(tensors):
+    a, b, c = np.moveaxis(np.linalg.eigvalsh(tensors), -1, 0)
+    return (a + b - c) / c, None
+
+
+def worst_margin(check, tensors):
+    with mp.workdps(50):
+        exact = [sorted(mp.eigsy(mp.matrix(tensor.tolist()), eigvals_only=True)) for tensor in tensors]
+        return max(float(abs((a + b - c) / c - mp.mpf(x))) for (a, b, c), x in zip(exact, check(tensors)[0]))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=1_000_000)
@@ -65,6 +76,11 @@ def main():
             seconds = best_time(lambda: solver(tensors), options.repeat)
             error, residual = worst_errors(solver, tensors[: options.sample])
             print(f"{make.__name__:14} {name:18} {seconds / options.count * 1e9:8.0f} {error:9.1e} {residual:9.1e}")
+    print(f"\n{'physical checks':33} {'ns each':>8} {'margins':>9}")
+    tensors = bodies(options.count, np.random.default_rng(7))
+    for name, check in {"polhode.inertia.check": ph.inertia.check, "numpy.linalg.eigvalsh": margins_by_numpy}.items():
+        seconds = best_time(lambda: check(tensors), options.repeat)
+        print(f"{name:33} {seconds / options.count * 1e9:8.0f} {worst_margin(check, tensors[: options.sample]):9.1e}")
 
 
 if __name__ == "__main__":

@@ -157,6 +157,17 @@ def test_a_point_of_reference_may_be_told():
     np.testing.assert_allclose(missing.findings[0].matrix, block.inertia.matrix, rtol=1e-12)
 
 
+def test_axes_are_told_in_their_order():
+    """x, y, z taken round in a ring, in tensor and centre: what was along y stands where x should be."""
+    link = Link(np.random.default_rng(5))
+    ring = np.eye(3)[[1, 2, 0]]
+    (finding,) = diagnose(link.props.mass, ring @ link.props.com, ring @ link.props.inertia.matrix @ ring.T,
+                          geometry=link.props).findings
+    assert finding.cause == "axes" and "x, y, z should be z, x, y, in tensor and centre" in finding.advice
+    np.testing.assert_allclose(finding.matrix, link.props.inertia.matrix, rtol=1e-12)
+    np.testing.assert_allclose(finding.com, link.props.com, rtol=1e-12)
+
+
 def test_what_is_given_is_asked_for():
     for wrong in (lambda: diagnose(), lambda: diagnose(1.0, BLOCK), lambda: diagnose(np.eye(2)),
                   lambda: diagnose("heavy", (0, 0, 0), BLOCK), lambda: diagnose(BLOCK, geometry=BLOCK),

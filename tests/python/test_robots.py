@@ -227,12 +227,33 @@ def test_sdf(write, attributes, pose):
     assert judged(write("b.sdf", SDF.format(*block.tolist(), attributes=attributes, pose=pose)))[0] == 1
 
 
+def test_the_repaired_centre_is_in_the_links_axes(write):
+    """Of an inertial frame turned against the link's, with its centre in millimetres."""
+    body = ph.shapes.box(12.0, (0.1, 0.2, 0.3))
+    text = urdf(f'<origin xyz="100 200 300" rpy="0.3 -0.7 1.9"/><mass value="12"/>{tensor(body.inertia.matrix)}')
+    placed = text.replace("<geometry>", '<origin xyz="0.1 0.2 0.3" rpy="0.3 -0.7 1.9"/><geometry>')
+    (finding,) = judged(write("a.urdf", placed))[1]["a"]["findings"]
+    assert finding["cause"] == "units"
+    np.testing.assert_allclose(finding["com"], (0.1, 0.2, 0.3), rtol=1e-9)
+
+
+def test_the_box_round_a_turned_part_is_seen_from_the_inertial_axes(write):
+    angles, shown = (0.3, -0.7, 1.9), (1.1, 0.4, -0.6)
+    text = urdf(f'<origin rpy="{" ".join(map(str, angles))}"/><mass value="12"/>{tensor(np.eye(3))}')
+    text = text.replace("<geometry>", f'<origin xyz="0.1 0.2 0.3" rpy="{" ".join(map(str, shown))}"/><geometry>')
+    (link,) = robots.read(write("a.urdf", text)).links
+    turn = ph.Rotation.from_euler("xyz", angles).as_matrix().T @ ph.Rotation.from_euler("xyz", shown).as_matrix()
+    reach = np.abs(turn) @ (0.1, 0.2, 0.3)
+    place = ph.Rotation.from_euler("xyz", angles).as_matrix().T @ (0.1, 0.2, 0.3)
+    np.testing.assert_allclose(link.geometry().box, [place - reach, place + reach], rtol=1e-12)
+
+
 BOMB = '<!DOCTYPE robot [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;">]><robot name="&b;"/>'
 OUTSIDE = '<!DOCTYPE robot [<!ENTITY a SYSTEM "file:///etc/hostname">]><robot name="&a;"/>'
 
 
 @pytest.mark.parametrize("text, said", [
-    (BOMB, "entities"), (OUTSIDE, "entities"), ("<robot><link", "is no XML"), ("", "is no XML"), ("<html/>", "must have the root"),
+    (BOMB, "entities"), (OUTSIDE, "entities"), ('<!DOCTYPE robot SYSTEM "http://a/b.dtd"><robot/>', "document type"), ("<robot><link", "is no XML"), ("", "is no XML"), ("<html/>", "must have the root"),
     ("<robot/>", "<link> is missing"), ('<robot name="r"><link/></robot>', "name is missing"),
     (urdf("<inertia ixx='1'/>"), "'a'> <inertial>: <mass> is missing"), (urdf('<mass value="1"/>'), "<inertia> is missing"),
     (urdf('<mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0"/>'), "izz is missing"),
@@ -241,7 +262,8 @@ OUTSIDE = '<!DOCTYPE robot [<!ENTITY a SYSTEM "file:///etc/hostname">]><robot na
     ('<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r"><xacro:macro/></robot>', "xacro"),
     ("<robot>" + "<link>" * 2000 + "</link>" * 2000 + "</robot>", "nested"),
     ('<mujoco><worldbody><body name="b"><inertial pos="0 0 0" mass="1"/></body></worldbody></mujoco>', "diaginertia or fullinertia"),
-    ('<mujoco><worldbody/></mujoco>', "no <body>"), ("<sdf/>", "<link> is missing"),
+    ('<mujoco><worldbody><body><geom size="1" quat="0 0 0 0"/></body></worldbody></mujoco>', "length zero"),
+    (urdf('<mass value="1e40"/>'), "below 1e+30"), ('<mujoco><worldbody/></mujoco>', "no <body>"), ("<sdf/>", "<link> is missing"),
 ])
 def test_what_is_no_robot_is_one_line(write, text, said):
     file = write("bad.urdf", text)
@@ -253,6 +275,13 @@ def test_what_is_no_robot_is_one_line(write, text, said):
 def test_a_missing_file_is_one_line(tmp_path):
     result = call("inertia", tmp_path / "gone.urdf")
     assert result.exit_code == 2 and result.stderr.count("\n") == 1 and "cannot be read" in result.stderr
+
+
+@pytest.mark.parametrize("value", ["nan", "inf", "1e308", "-1e308", "1e-320", "1e200"])
+def test_numbers_out_of_range_are_findings(write, value):
+    file = write("a.urdf", urdf('<mass value="1"/>' + tensor(np.eye(3)).replace('izz="1.0"', f'izz="{value}"')))
+    result = call("inertia", file, "--json")
+    assert result.exit_code == 1 and json.loads(result.stdout)["links"][0]["findings"]
 
 
 def test_shapes_without_size_are_named_not_fatal(write):

@@ -21,7 +21,7 @@ def is_robot(file: str) -> bool:
 def examine(file: str) -> dict[str, Any]:
     """Judge every link of a file."""
     robot = robots.read(file)
-    links = [_link(link) for link in robot.links]
+    links = [_plain(_link(link)) for link in robot.links]
     return {"file": str(file), "format": robot.kind, "name": robot.name,
             "valid": not any(link["findings"] for link in links), "notes": robot.notes, "links": links}
 
@@ -44,10 +44,17 @@ def _link(link: Link) -> dict[str, Any]:
     return content
 
 
+def _plain(content: Any) -> Any:
+    """None for what is not finite: JSON has no word for it."""
+    if isinstance(content, dict):
+        return {key: _plain(value) for key, value in content.items()}
+    if isinstance(content, list):
+        return [_plain(value) for value in content]
+    return None if isinstance(content, float) and not math.isfinite(content) else content
+
+
 def _finding(finding: Finding, link: Link) -> dict[str, Any]:
     content = finding.to_dict()
-    if not math.isfinite(content["per_cent"]):
-        content["per_cent"] = None
     if finding.com is not None:
         com = link.pose.turn @ finding.com   # back to the link's axes, as in the file
         content["com"] = np.where(np.abs(com) < 1e-9 * np.abs(com).max(), 0.0, com).tolist()

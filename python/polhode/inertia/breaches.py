@@ -27,7 +27,7 @@ def breaches(given: Bodies, found: Evidence, flaws: Flaw, margin: float, geometr
     broken = []
     values, axes = np.linalg.eigh(matrix)
     largest = np.abs(values).max()
-    if mass <= 0:
+    if mass <= 1e-100:
         broken.append(Breach("mass", 100.0, f"the mass is {mass:.6g} kg"))
     if largest == 0 and np.isfinite(mass):
         broken.append(Breach("positive", 100.0, "all moments are zero"))

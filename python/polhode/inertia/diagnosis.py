@@ -18,13 +18,16 @@ from .findings import Diagnosis, Finding
 
 Array = npt.NDArray[np.float64]
 
-CONVINCED = 14.0   # nats a cause must gain on the data as given: one false alarm in a million bodies by chance
+CONVINCED = 10.0   # nats a cause must gain on the data as given, its own rarity paid: 20 000 to one
 GEOMETRY_UNITS = (
     (1e-3, "the geometry is in millimetres: a mesh without scale 0.001?"),
     (1e-2, "the geometry is in centimetres: a mesh without scale 0.01?"),
     (0.0254, "the geometry is in inches: a mesh without scale 0.0254?"),
     (1e3, "the geometry was scaled from millimetres to metres once too often"),
 )
+
+
+LARGEST = 1e100    # of any number: beyond it squares overflow
 
 
 def diagnose(*body: Any, geometry: MassProperties | None = None, extents: npt.ArrayLike | None = None,
@@ -64,7 +67,8 @@ def diagnose(*body: Any, geometry: MassProperties | None = None, extents: npt.Ar
         if mass is None or com is None:
             raise InvalidInput("about: needs mass and com beside the matrix")
         shift = mass * ev.point_term(np.asarray(_core.to_numbers(about, "about", [3])) - com)
-    return judge(mass, com, matrix - shift, known)
+    with np.errstate(all="ignore"):   # what overflows is scored as no body
+        return judge(mass, com, matrix - shift, known)
 
 
 def _given(body: tuple[Any, ...]) -> tuple[float | None, Array | None, Array]:
@@ -79,8 +83,10 @@ def _given(body: tuple[Any, ...]) -> tuple[float | None, Array | None, Array]:
     mass, com, matrix = body
     if isinstance(matrix, InertiaTensor):
         matrix = matrix.matrix
-    return (float(_core.to_numbers(mass, "mass", [])), _core.to_numbers(com, "com", [3]),
-            _core.to_numbers(matrix, "matrix", [3, 3], finite=False))
+    kilograms, place = float(_core.to_numbers(mass, "mass", [])), _core.to_numbers(com, "com", [3])
+    if not (abs(kilograms) < LARGEST and np.abs(place).max() < LARGEST):
+        raise InvalidInput(f"mass, com: must be below {LARGEST:g}; got {kilograms:g}, {place.tolist()}")
+    return kilograms, place, _core.to_numbers(matrix, "matrix", [3, 3], finite=False)
 
 
 def _geometry(body: MassProperties | None, extents: npt.ArrayLike | None, volume: float | None) -> ev.Geometry:
@@ -99,10 +105,11 @@ def _geometry(body: MassProperties | None, extents: npt.ArrayLike | None, volume
 def judge(mass: float | None, com: Array | None, matrix: Array, geometry: ev.Geometry,
           more: Sequence[Cause] = ()) -> Diagnosis:
     """Diagnose numbers that passed the door; `more` are causes that only the file knows of."""
-    if not np.isfinite(matrix).all():
-        i, j = np.argwhere(~np.isfinite(matrix))[0]
-        finding = Finding("finite", 100.0, f"{matrix[i, j]} at [{i}, {j}]", "unknown", "a number never computed")
-        return Diagnosis((finding,), np.nan)
+    usable = np.abs(matrix) < LARGEST   # NaN is not
+    if not usable.all():
+        i, j = np.argwhere(~usable)[0]
+        advice = "a slip in an exponent?" if np.isfinite(matrix[i, j]) else "a number never computed"
+        return Diagnosis((Finding("finite", 100.0, f"{matrix[i, j]} at [{i}, {j}]", "unknown", advice),), np.nan)
     findings = []
     if Flaw.NOT_SYMMETRIC in _judged(matrix)[1]:
         finding, matrix = _symmetric(mass, com, matrix, geometry)

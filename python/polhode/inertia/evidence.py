@@ -125,7 +125,7 @@ def weigh(bodies: Bodies, geometry: Geometry) -> Evidence:
     mass, com, matrix = bodies
     n = len(mass)
     with np.errstate(all="ignore"):
-        known = np.where(np.isfinite(mass), mass, 1.0)
+        known = np.where(np.isfinite(mass) & (np.abs(mass) > 1e-100), mass, 1.0)
         moments = np.linalg.eigvalsh(matrix)
         largest = np.abs(moments).max(-1)
         margin = np.where(largest > 0, (moments[:, 0] + moments[:, 1] - moments[:, 2]) / largest, 0.0)

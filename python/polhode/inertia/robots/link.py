@@ -79,9 +79,11 @@ class Link:
         if self.matrix is None or self.mass is None:
             return None
         turn = self.pose.turn
-        return judge(self.mass, turn.T @ self.pose.place, self.matrix, self._geometry(), self._turned())
+        with np.errstate(all="ignore"):
+            return judge(self.mass, turn.T @ self.pose.place, self.matrix, self.geometry(), self._turned())
 
-    def _geometry(self) -> ev.Geometry:
+    def geometry(self) -> ev.Geometry:
+        """What the tensor is compared with, in its own axes."""
         back = Rotation.from_matrix(self.pose.turn.T)
         sets = [parts for parts in (self.visual, self.collision) if parts.parts and parts.whole]
         solids = [solid for parts in sets if (solid := parts.solid()) is not None]
@@ -152,13 +154,11 @@ def mesh(file: pathlib.Path, scale: Array, pose: Pose) -> Part:
 
     vertices, faces = files.read(file)
     vertices = vertices * scale @ pose.turn.T + pose.place
-    if scale.prod() < 0:
-        faces = faces[:, ::-1]
     used = vertices[np.unique(faces)]
     signs = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
     low, high = used.min(0), used.max(0)
     try:
-        with warnings.catch_warnings():   # what it warns of, size and winding, is compared here
+        with warnings.catch_warnings():   # of its size, which is compared here, and of a mirrored scale's winding
             warnings.simplefilter("ignore")
             solid = MassProperties.from_mesh(vertices, faces, density=1.0, repair="flip")
     except InvalidInput:

@@ -100,31 +100,39 @@ def _orientation(node: Node, compiler: Compiler, attributes: dict[str, str] | No
     def numbers(name: str, count: int) -> Array:
         return to_numbers(told[name], count, f"{node.where}: {name}")
 
-    unit = np.pi / 180 if compiler.degrees else 1.0
+    def unit(v: Array) -> Array:
+        return _unit(v, node)
+
+    radians = np.pi / 180 if compiler.degrees else 1.0
     if "quat" in told:
-        w, x, y, z = numbers("quat", 4) / np.linalg.norm(numbers("quat", 4))   # MuJoCo's scalar comes first
+        w, x, y, z = unit(numbers("quat", 4))   # MuJoCo's scalar comes first
         turn = Rotation.from_quat((x, y, z, w))
     elif "axisangle" in told:
-        *axis, angle = numbers("axisangle", 4)
-        turn = Rotation.from_rotvec(np.array(axis) / np.linalg.norm(axis) * angle * unit)
+        axis, angle = numbers("axisangle", 4)[:3], numbers("axisangle", 4)[3]
+        turn = Rotation.from_rotvec(unit(axis) * angle * radians)
     elif "euler" in told:   # MuJoCo's lower case turns with the body, as SciPy's upper case does
-        turn = Rotation.from_euler(compiler.euler.swapcase(), numbers("euler", 3) * unit)
+        turn = Rotation.from_euler(compiler.euler.swapcase(), numbers("euler", 3) * radians)
     elif "xyaxes" in told:
         x, y = np.split(numbers("xyaxes", 6), 2)
-        x = x / np.linalg.norm(x)
-        y = y - x * (x @ y)
-        y = y / np.linalg.norm(y)
+        x = unit(x)
+        y = unit(y - x * (x @ y))
         return np.column_stack([x, y, np.cross(x, y)])
     elif "zaxis" in told:
-        return _onto(numbers("zaxis", 3))
+        return _onto(unit(numbers("zaxis", 3)))
     else:
         return np.eye(3)
     return np.asarray(turn.as_matrix())
 
 
-def _onto(axis: Array) -> Array:
-    """The smallest turn that takes z onto an axis."""
-    z = axis / np.linalg.norm(axis)
+def _unit(v: Array, node: Node) -> Array:
+    length = float(np.linalg.norm(v))
+    if not length > 0:
+        raise node.wrong("a direction, quaternion or line must not have the length zero")
+    return np.asarray(v / length)
+
+
+def _onto(z: Array) -> Array:
+    """The smallest turn that takes the z axis onto this unit vector."""
     v, c = np.cross((0, 0, 1), z), z[2]
     if c < -1 + 1e-12:
         return np.diag([1.0, -1.0, -1.0])
@@ -212,7 +220,7 @@ def _geom(node: Node, style: str, model: Model, link: Link) -> list[tuple[parts.
         along = ends[3:] - ends[:3]
         size = np.concatenate([size[:1] if kind in ("capsule", "cylinder") else np.repeat(size[:1], 2),
                                [float(np.linalg.norm(along)) / 2]])
-        pose = Pose(_onto(along), (ends[:3] + ends[3:]) / 2)
+        pose = Pose(_onto(_unit(along, node)), (ends[:3] + ends[3:]) / 2)
     makers: dict[str, tuple[int, Callable[[], parts.Part]]] = {
         "sphere": (1, lambda: parts.ball(size[0], pose)),
         "capsule": (2, lambda: parts.capsule(size[0], 2 * size[1], pose)),

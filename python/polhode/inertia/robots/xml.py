@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import pathlib
 from collections.abc import Iterator
 from xml.etree.ElementTree import Element, ParseError
@@ -14,7 +13,8 @@ from ..._core import InvalidInput
 
 Array = npt.NDArray[np.float64]
 
-LARGEST = 64_000_000   # bytes; robots take thousands
+LARGEST = 1e30         # number; squares and volumes of it are finite
+LONGEST = 64_000_000   # bytes; robots take thousands
 DEEPEST = 1000
 
 
@@ -75,8 +75,8 @@ def to_numbers(text: str, count: int | None, where: str, finite: bool = True) ->
         raise InvalidInput(f"{where}: must be numbers, got {_short(text)}") from None
     if count is not None and len(values) != count:
         raise InvalidInput(f"{where}: must be {count} number{'s' if count > 1 else ''}, got {_short(text)}")
-    if finite and not all(map(math.isfinite, values)):
-        raise InvalidInput(f"{where}: must be finite, got {_short(text)}")
+    if finite and not all(abs(value) < LARGEST for value in values):   # NaN is not
+        raise InvalidInput(f"{where}: must be finite and below {LARGEST:g}, got {_short(text)}")
     return np.array(values, dtype=float)
 
 
@@ -92,8 +92,8 @@ def parse(file: pathlib.Path) -> Node:
     except ImportError:
         raise InvalidInput("robot files need defusedxml: pip install 'polhode[cli]'") from None
     try:
-        if file.stat().st_size > LARGEST:
-            raise InvalidInput(f"{file}: must be below {LARGEST // 1_000_000} MB; got {file.stat().st_size} bytes")
+        if file.stat().st_size > LONGEST:
+            raise InvalidInput(f"{file}: must be below {LONGEST // 1_000_000} MB; got {file.stat().st_size} bytes")
         data = file.read_bytes()
     except OSError as error:
         raise InvalidInput(f"{file}: cannot be read: {error.strerror}") from None
