@@ -1,8 +1,10 @@
 """The atlas's machinery: who takes part, runs, workers, what it writes, and the command."""
 
+import importlib.util
 import json
 import math
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -19,6 +21,7 @@ from polhode.atlas.run import Failed, Refused, run
 from polhode.atlas.work import work
 from polhode.cli import _run as command
 
+ROOT = Path(__file__).parents[2]
 WHO = {entrant.name: entrant for entrant in entrants()}
 BY_NAME = {family.name: family for family in FAMILIES}
 
@@ -79,23 +82,25 @@ for line in sys.stdin:
     if job["entrant"] == "crash": os.abort()
     if job["entrant"] == "leave": sys.exit(3)
     if job["entrant"] == "hang": time.sleep(60)
+    for cpu in range(60 * (job["entrant"] == "spin")): print(json.dumps({"cpu": cpu}), flush=True); time.sleep(0.1)
     if job["entrant"] == "fault": print(json.dumps({"fault": "ZeroDivisionError: float"}), flush=True)
     print(json.dumps({"end": True}), flush=True)
 """
 
 
 def test_crashes_hangs_and_faults_cost_one_row_each():
-    names = ["good", "crash", "fine", "leave", "hang", "fault", "last"]
+    names = ["good", "crash", "fine", "leave", "hang", "fault", "spin", "last"]
     rows = {}
-    work([Job("f", name, True, 0.01) for name in names], lambda job, ps: rows.update({job.entrant: ps}),
-         command=(sys.executable, "-c", WORKER), least_patience=1.0)
+    work([Job("f", name, True, 1.0) for name in names], lambda job, ps: rows.update({job.entrant: ps}),
+         command=(sys.executable, "-c", WORKER), silence=1.0)
     assert set(rows) == set(names)
     assert all(len(rows[n]) == 1 and rows[n][0].values == {"error": 1e-3} for n in ("good", "fine", "last"))
     whys = {name: rows[name][-1].why for name in ("crash", "leave", "hang", "fault")}
+    assert rows["spin"][-1].why.startswith("hung: no answer for 1")
     assert "SIGABRT" in whys["crash"] and "status 3" in whys["leave"] and whys["hang"].startswith("hung")
     assert whys["fault"] == "ZeroDivisionError: float"
     # What they said before stays, and the verdict is what happened.
-    result = FamilyResult(BY_NAME["norm"], True, {"rk4": rows["crash"], "rk45": rows["hang"]}, 0.0)
+    result = FamilyResult(BY_NAME["norm"], True, 2.0, {"rk4": rows["crash"], "rk45": rows["hang"]}, 0.0)
     assert len(rows["crash"]) == 2
     assert (result.verdict("rk4").level, result.verdict("rk4").text) == ("fails", "crashed")
     assert (result.verdict("rk45").level, result.verdict("rk45").text) == ("fails", "hung")
@@ -149,9 +154,9 @@ def test_what_is_finished_is_kept(made, monkeypatch):
     assert len(again) == 1 and list(content["families"]) == ["scales", "norm"]   # the matrix is of all that is there
     assert again[0].kept and again[0].rows.keys() == results[1].rows.keys()
     assert content["matrix"]["rk4"]["norm"] == made[2]["matrix"]["rk4"]["norm"]
-    assert read_family(folder / "norm.json", quick=False) is None   # other settings
+    assert read_family(folder / "norm.json", (False, 2.0)) is read_family(folder / "norm.json", (True, 3.0)) is None   # other settings
     (folder / "norm.json").write_text("{")
-    assert read_family(folder / "norm.json", quick=True) is None    # not whole
+    assert read_family(folder / "norm.json", (True, 2.0)) is None    # not whole
     write_family(results[1], folder)
 
 
@@ -181,16 +186,16 @@ def test_unknown_families_and_folders_are_refused(tmp_path):
 
 def test_a_broken_claim_is_found():
     family = BY_NAME["near"]
-    result = FamilyResult(family, True, {"exact": [Point(0.0, "sphere", {"error": 1e-3})]}, 0.0)
+    result = FamilyResult(family, True, 2.0, {"exact": [Point(0.0, "sphere", {"error": 1e-3})]}, 0.0)
     (sentence,) = [s for s in claims.find_broken([result]) if s.startswith("exact")]
     assert "near: degrades (1e-3), where it should be holds" in sentence
-    good = FamilyResult(family, True, {"exact": [Point(0.0, "sphere", {"error": 1e-15})]}, 0.0)
+    good = FamilyResult(family, True, 2.0, {"exact": [Point(0.0, "sphere", {"error": 1e-15})]}, 0.0)
     assert not [s for s in claims.find_broken([good]) if s.startswith("exact")]
 
 
 def test_a_record_that_promises_too_much_is_found():
     rows = {"dmv2": [Point(1e2, "", {"error": 2.0, "energy": 1e-6, "angular_momentum": 1e-14})]}
-    (sentence,) = [s for s in claims.find_broken([FamilyResult(BY_NAME["long"], True, rows, 0.0)]) if "dmv2" in s]
+    (sentence,) = [s for s in claims.find_broken([FamilyResult(BY_NAME["long"], True, 2.0, rows, 0.0)]) if "dmv2" in s]
     assert "keeps energy by its record, which moved by 1.0e-06" in sentence
 
 

@@ -40,7 +40,7 @@ def test_what_a_record_keeps_is_kept_through_ten_thousand_turns(name):
     points = list(family.measure(WHO[name], True, LIMIT))
     if all(p.status == "refused" for p in points):
         pytest.skip("the free block is not for it")
-    assert not [s for s in claims.find_broken([FamilyResult(family, True, {name: points}, 0.0)]) if s.startswith(name + ",")]
+    assert not [s for s in claims.find_broken([FamilyResult(family, True, LIMIT, {name: points}, 0.0)]) if s.startswith(name + ",")]
 
 
 def test_conserving_is_not_being_right():

@@ -8,10 +8,11 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import polhode as ph
-from polhode.atlas import FAMILIES, scenes
+from polhode.atlas import FAMILIES, claims, scenes
 from polhode.atlas.case import Case, key, stored, truth_of
 from polhode.atlas.families import damping, racket, sleeping
 from polhode.atlas.family import Point, to_short
+from polhode.atlas.results import FamilyResult
 
 BY_NAME = {family.name: family for family in FAMILIES}
 
@@ -206,3 +207,20 @@ def test_few_digits_of_a_count(count, text):
 
 def test_cases_of_scenes_that_are_stored_take_their_truth():
     assert truth_of("damping", Case(1.0, ph.Scene.load("S7b"))).kind == "stored"
+
+
+def test_a_stated_error_that_is_too_small_is_found():
+    def found(**values):
+        result = FamilyResult(BY_NAME["near"], True, 2.0, {"solve": [Point(0.1, "sphere", values)]}, 0.0)
+        return [s for s in claims.find_broken([result]) if "states" in s]
+
+    assert found(error=2e-12, stated=1e-12) == ["solve, near, at 0.1 sphere: states an error of 1.0e-12, which is 2.0e-12"]
+    assert not found(error=1e-12, stated=1e-12) and not found(error=2e-12)   # nothing stated, nothing claimed
+
+
+def test_a_chaotic_answer_that_claims_too_much_fails():
+    def judged(**values):
+        return BY_NAME["chaos"].judge([Point(1e-9, "tolerance", {"horizon": 250.0, "lost": 1.0, **values})])
+
+    assert judged(claims=1.0, stated=1e-9).text == "overclaims"
+    assert judged(claims=0.0, stated=1e-9).level == "holds" and judged(claims=1.0, stated=3.0).level == "holds"

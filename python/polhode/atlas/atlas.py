@@ -91,7 +91,7 @@ def atlas(
     output = _folder(folder)
     results: dict[str, FamilyResult] = {}
     for family in wanted:
-        kept = None if fresh else read_family(output / f"{family.name}.json", quick)
+        kept = None if fresh else read_family(output / f"{family.name}.json", (quick, seconds))
         if kept is not None:
             results[family.name] = kept
             show(kept)
@@ -99,7 +99,7 @@ def atlas(
 
     ordered = [results[family.name] for family in wanted]
     # The matrix is of all that the folder holds.
-    there = [results.get(f.name) or read_family(output / f"{f.name}.json", quick) for f in FAMILIES]
+    there = [results.get(f.name) or read_family(output / f"{f.name}.json", (quick, seconds)) for f in FAMILIES]
     everything = [result for result in there if result is not None]
     files: list[str] = []
     if draw:
@@ -133,7 +133,8 @@ def _measure(
         found[job.entrant] = points
         if len(found) == len(order[job.family]):
             spent = sum(float(p.values.get("seconds") or 0.0) for ps in found.values() for p in ps)
-            result = FamilyResult(by_name[job.family], quick, {name: found[name] for name in order[job.family]}, spent,
+            ordered = {name: found[name] for name in order[job.family]}
+            result = FamilyResult(by_name[job.family], quick, limit, ordered, spent,
                                   made=time.strftime("%Y-%m-%d %H:%M"))
             results[job.family] = result
             write_family(result, output)

@@ -41,7 +41,20 @@ def find_broken(results: list[FamilyResult]) -> list[str]:
             if verdict.level not in LEVELS[:LEVELS.index(least) + 1]:
                 broken.append(f"{name}, {result.family.name}: {verdict.level} ({verdict.text}), where it should be "
                               f"{least} at least{': ' + verdict.why if verdict.why else ''}")
-    return broken + _not_kept(results)
+    return broken + _not_kept(results) + _overclaimed(results)
+
+
+def _overclaimed(results: list[FamilyResult]) -> list[str]:
+    """Where a stated error is less than the true one, beyond what the stored truth itself is rounded to."""
+    broken = []
+    for result in results:
+        for name in ("solve", "exact"):
+            for p in result.rows.get(name, []):
+                stated, true = p.get("stated"), p.get("error")
+                if p.status == "answered" and true > 1.1 * stated + 1e-15:
+                    broken.append(f"{name}, {result.family.name}, at {p.x:g}{' ' + p.series if p.series else ''}: "
+                                  f"states an error of {stated:.1e}, which is {true:.1e}")
+    return broken
 
 
 def _not_kept(results: list[FamilyResult]) -> list[str]:

@@ -24,8 +24,9 @@ class FamilyResult:
 
     family: Family
     quick: bool
+    limit: float              # seconds of CPU that a run might take
     rows: dict[str, list[Point]]
-    seconds: float            # of CPU that the answers took
+    seconds: float            # that the answers took, inside the compiled core
     kept: bool = False        # read from an earlier run
     made: str = ""            # when
 
@@ -42,9 +43,9 @@ class FamilyResult:
         return self.family.judge(points)
 
 
-def signature(family: Family, quick: bool) -> dict[str, Any]:
+def signature(family: Family, quick: bool, limit: float) -> dict[str, Any]:
     """What an earlier result must agree with to be kept."""
-    return {"format": FORMAT, "quick": quick, "polhode": build_info()["version"],
+    return {"format": FORMAT, "quick": quick, "limit": limit, "polhode": build_info()["version"],
             "rows": [e.name for e in rows_of(family)], "sweeps": family.sweeps, "holds": family.holds, "degrades": family.degrades}
 
 
@@ -52,7 +53,7 @@ def family_document(result: FamilyResult) -> dict[str, Any]:
     """Return the content of <family>.json."""
     family = result.family
     return {
-        **signature(family, result.quick), "family": family.name, "title": family.title, "truth": family.truth,
+        **signature(family, result.quick, result.limit), "family": family.name, "title": family.title, "truth": family.truth,
         "value": family.y, "value_means": family.y_label, "made": result.made, "seconds": result.seconds,
         "machine": machine(), "versions": versions(), "build": build_info(),
         "verdicts": {name: _verdict(result.verdict(name)) for name in result.rows},
@@ -65,15 +66,15 @@ def _verdict(verdict: Verdict) -> dict[str, Any]:
     return {"level": verdict.level, "text": verdict.text, "number": number, "why": verdict.why}
 
 
-def read_family(path: pathlib.Path, quick: bool | None = None) -> FamilyResult | None:
-    """Read a family's file; None when it is not there, not whole, or (given `quick`) not what would be made."""
+def read_family(path: pathlib.Path, settings: tuple[bool, float] | None = None) -> FamilyResult | None:
+    """Read a family's file; None when it is not there, not whole, or not of these settings (`quick`, `limit`)."""
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
         family = find_family(content["family"])
-        if quick is not None and any(content.get(k) != v for k, v in signature(family, quick).items()):
+        if settings is not None and any(content.get(k) != v for k, v in signature(family, *settings).items()):
             return None
         rows = {name: [from_json(p) for p in points] for name, points in content["points"].items()}
-        return FamilyResult(family, content["quick"], rows, content["seconds"], True, content["made"])
+        return FamilyResult(family, content["quick"], content["limit"], rows, content["seconds"], True, content["made"])
     except (OSError, ValueError, KeyError, TypeError):
         return None
 

@@ -28,8 +28,8 @@ class Failed(Exception):
         self.late = late   # out of time: nothing is said about the method
 
 
-def run(entrant: Entrant, scene: Scene, setting: dict[str, float], limit: float) -> Motion:
-    """Solve, within `limit` seconds of the thread's time.
+def run(entrant: Entrant, scene: Scene, setting: dict[str, float], limit: float, partial: bool = False) -> Motion:
+    """Solve, within `limit` seconds of the thread's time; `partial`: the first samples will do.
 
     Raises
     ------
@@ -54,6 +54,8 @@ def run(entrant: Entrant, scene: Scene, setting: dict[str, float], limit: float)
         raise Failed(f"not done within {limit:g} s", late=True)
     if motion.status not in ("finished", "event"):
         raise Failed(motion.message.split(";")[0])
+    if not partial and motion.t.size < scene.times.size:
+        raise Failed(f"ended at t = {motion.t[-1] if motion.t.size else scene.t0:.3g} s: {motion.message}")
     for array in (motion.omega, motion.attitude):
         if array is None or not np.isfinite(array).all():
             raise Failed("returned NaN")
@@ -61,7 +63,7 @@ def run(entrant: Entrant, scene: Scene, setting: dict[str, float], limit: float)
 
 
 def values_of(motion: Motion, truth: Truth | None) -> dict[str, Any]:
-    """What is written down of a run: errors against the truth, drift of the invariants, steps, seconds."""
+    """What is written down of a run: errors against the truth and as stated, drift, steps, wall seconds."""
     values: dict[str, Any] = {"steps": motion.stats["steps"], "seconds": motion.stats["seconds"]}
     if truth is not None:
         assert motion.omega is not None and motion.attitude is not None
@@ -70,4 +72,5 @@ def values_of(motion: Motion, truth: Truth | None) -> dict[str, Any]:
     values |= motion.drift
     if math.isfinite(motion.error):
         values["stated"] = motion.error
+        values["claims"] = float(motion.success)
     return values

@@ -16,8 +16,8 @@ from .family import Point, from_json
 from .jobs import Job
 
 COMMAND = (sys.executable, "-m", "polhode.atlas.worker")
-PATIENCE = 10.0   # times the limit of a point, in wall time, without a word: a busy machine is not a hang
-LEAST_PATIENCE = 30.0   # seconds
+PATIENCE = 10.0   # times the limit of a run, in CPU: a point is a few runs
+SILENCE = 60.0    # seconds of wall time without a sign of life
 
 Done = Callable[[Job, list[Point]], object]
 
@@ -30,6 +30,7 @@ class _Worker:
         self.job: Job | None = None
         self.points: list[Point] = []
         self.heard = time.monotonic()
+        self.cpu = self.mark = 0.0   # of the process, now and at its last point
         self._rest = b""
 
     @property
@@ -38,7 +39,7 @@ class _Worker:
         return self.process.stdout
 
     def give(self, job: Job) -> None:
-        self.job, self.points, self.heard = job, [], time.monotonic()
+        self.job, self.points, self.heard, self.mark = job, [], time.monotonic(), self.cpu
         assert self.process.stdin is not None
         try:
             self.process.stdin.write(json.dumps(job._asdict()).encode() + b"\n")
@@ -54,6 +55,10 @@ class _Worker:
         done = False
         for line in lines:
             content: dict[str, Any] = json.loads(line)
+            if "cpu" in content:
+                self.cpu = content["cpu"]
+                continue
+            self.mark = self.cpu
             if "fault" in content:
                 self.points.append(Point(float("nan"), status="failed", why=content["fault"]))
             elif "end" in content:
@@ -79,7 +84,7 @@ def _how_it_ended(code: int) -> str:
 
 
 def work(jobs: Sequence[Job], done: Done, *, processes: int = 2, command: Sequence[str] = COMMAND,
-         least_patience: float = LEAST_PATIENCE) -> None:
+         silence: float = SILENCE) -> None:
     """Do all jobs, in their order, and hand over the points of each as soon as it ends.
 
     Parameters
@@ -90,8 +95,9 @@ def work(jobs: Sequence[Job], done: Done, *, processes: int = 2, command: Sequen
     processes : int
     command : sequence of str
         What starts a worker.
-    least_patience : float
-        A process that says nothing for so long, or `PATIENCE` times the limit of a point, hangs [s].
+    silence : float
+        A process that gives no sign of life for so long hangs [s]; so does one that takes `PATIENCE` times the limit of a
+        run without an answer.
     """
     waiting = list(reversed(jobs))
     workers: list[_Worker] = []
@@ -132,8 +138,9 @@ def work(jobs: Sequence[Job], done: Done, *, processes: int = 2, command: Sequen
             now = time.monotonic()
             for worker in [w for w in workers if w.job]:
                 assert worker.job is not None
-                if now - worker.heard > max(least_patience, PATIENCE * worker.job.limit):
-                    finish(worker, f"hung: no answer for {now - worker.heard:.0f} s")
+                spent = worker.cpu - worker.mark
+                if now - worker.heard > silence or spent > PATIENCE * worker.job.limit:
+                    finish(worker, f"hung: no answer for {max(now - worker.heard, spent):.0f} s")
     finally:
         selector.close()
         for worker in list(workers):

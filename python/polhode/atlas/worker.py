@@ -1,24 +1,42 @@
 """A process that measures what it is told to, one job a line: `python -m polhode.atlas.worker`.
 
-In: {"family", "entrant", "quick", "limit"}. Out: one line a point, then {"end": true}. What happens to this process
-happens to one job.
+In: {"family", "entrant", "quick", "limit"}. Out: one line a point, then {"end": true}; every second {"cpu": seconds}, so
+that a busy machine is not taken for a hang. What happens to this process happens to one job.
 """
 
 from __future__ import annotations
 
 import json
 import sys
+import threading
+import time
 from typing import Any, TextIO
 
 from .family import to_json
 from .jobs import find_entrant, find_family
 
 
+BEAT = 1.0   # seconds
+
+
 def serve(jobs: TextIO, answers: TextIO) -> None:
     """Work until there is no more."""
+    one_at_a_time = threading.Lock()
+
     def say(content: dict[str, Any]) -> None:
-        answers.write(json.dumps(content) + "\n")
-        answers.flush()
+        with one_at_a_time:
+            answers.write(json.dumps(content) + "\n")
+            answers.flush()
+
+    def beat() -> None:
+        while True:
+            time.sleep(BEAT)
+            try:
+                say({"cpu": time.process_time()})
+            except (OSError, ValueError):   # nobody listens any more
+                return
+
+    threading.Thread(target=beat, daemon=True).start()
 
     for line in jobs:
         job = json.loads(line)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -11,7 +12,7 @@ from .. import scenes
 from ..case import stored
 from ..entrants import Entrant
 from ..errors import attitude_errors
-from ..family import LOST, Family, Point, Verdict, answered, nobody
+from ..family import LOST, Family, Point, Verdict, answered, nobody, to_short
 from ..run import Failed, Refused, run
 
 TOLERANCES = tuple(10.0**-k for k in range(4, 17))
@@ -29,11 +30,14 @@ def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
     for value in [v for v in values if v >= 1e-3 or not entrant.fixed][::2] if quick else values:
         point = Point(value, series)
         try:
-            motion = run(entrant, scene, entrant.setting(step=value, rtol=value, accuracy=value), limit)
-            off = np.flatnonzero(attitude_errors(motion, truth) > LOST)
-            point.values = {"horizon": float(motion.t[off[0]]) if off.size else scenes.CHAOS_SPAN,
-                            "steps": motion.stats["steps"], "seconds": motion.stats["seconds"],
-                            "claims": float(motion.success), "stated": float(motion.error)}
+            motion = run(entrant, scene, entrant.setting(step=value, rtol=value, accuracy=value), limit, True)
+            n = motion.t.size
+            known = Truth(truth.omega[:n], truth.attitude[:n], "stored", "", 0.0, None)
+            off = np.flatnonzero(attitude_errors(motion, known) > LOST)
+            point.values = {"horizon": float(motion.t[off[0]] if off.size else motion.t[-1]),
+                            "steps": motion.stats["steps"], "seconds": motion.stats["seconds"]}
+            if math.isfinite(motion.error):
+                point.values |= {"stated": motion.error, "claims": float(motion.success), "lost": float(off.size > 0)}
         except Refused as why:
             point.status, point.why = "refused", str(why)
             yield point
@@ -54,6 +58,10 @@ def judge(points: list[Point]) -> Verdict:
     if not horizons:
         return Verdict("fails", "burst", 0.0, answered(points)[0].why)
     best = max(horizons)
+    for p in points:
+        if p.values.get("lost") and p.values["claims"] and p.values["stated"] <= LOST:
+            said = f"says {to_short(p.values['stated'])} rad over {scenes.CHAOS_SPAN:.0f} s, lost at {p.get('horizon'):.0f} s"
+            return Verdict("fails", "overclaims", p.get("horizon"), said)
     level = "holds" if best >= 180 else "degrades" if best >= 60 else "fails"
     return Verdict(level, f"{best:.0f} s", best)
 
