@@ -20,6 +20,8 @@ from .build import cmake_prefix as cmake_prefix
 from .inertia import InertiaTensor as InertiaTensor
 from .inertia import MassProperties as MassProperties
 from .inertia import PrincipalAxes as PrincipalAxes
+from .many import Motions as Motions
+from .many import solve_many as solve_many
 from .motion import Motion as Motion
 from .scene import Scene as Scene
 from .solver import Event as Event

@@ -110,6 +110,11 @@ def smoke_cmake_prefix():
     assert (prefix / "lib/cmake/polhode/polhodeConfig.cmake").exists()
 
 
+def smoke_solve_many():
+    many = ph.solve_many(scene(torques=[ph.torques.Damping((0.1, 0.1, 0.1))]), omega=[(1, 2, 3), (3, 2, 1)], rtol=1e-9)
+    assert isinstance(many, ph.Motions) and many.omega.shape == (2, 5, 3) and many.success.all()
+
+
 SMOKE = {
     "Event": smoke_event,
     "FreeMotion": smoke_free_motion_object,
@@ -119,6 +124,7 @@ SMOKE = {
     "InvalidInput": smoke_errors,
     "MassProperties": smoke_mass_properties,
     "Motion": smoke_solve,
+    "Motions": smoke_solve_many,
     "PrincipalAxes": smoke_principal_axes,
     "Rotation": smoke_rotation,
     "Scene": smoke_scene,
@@ -132,6 +138,7 @@ SMOKE = {
     "heavy_top": smoke_heavy_tops,
     "methods": smoke_methods,
     "solve": smoke_solve,
+    "solve_many": smoke_solve_many,
 }
 
 

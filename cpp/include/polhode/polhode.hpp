@@ -8,6 +8,7 @@
 #include "polhode/attitude/rotation_vector.hpp"
 #include "polhode/batch/free_motion.hpp"
 #include "polhode/batch/heavy_top.hpp"
+#include "polhode/batch/solve_many.hpp"
 #include "polhode/core/build_info.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/core/version.hpp"

@@ -74,6 +74,15 @@ BodySeries::BodySeries(const Scene& scene, bool attitude) {
     const Vector3d seen = rotate(conjugate(q_WP), space_[0]);
     for (int i = 0; i < 3; ++i) start_[4 + i] = seen[i];
   }
+  if (terms_.variables == RateVariables::separatrix && scene.torques().empty()) {
+    const DD u(start_[0], start_carry_[0]), v(start_[1], start_carry_[1]), w(start_[2]);
+    // u' = b w2 u, v' = -b w2 v, w2' = c (v - u)(v + u): a = c / b
+    balance_ = terms_.product[2] / terms_.product[0];
+    kept_[0] = u * v, kept_[1] = DD(balance_) * (u * u + v * v) + w * w;
+    // Squares of 1e-160 and 1e160 rad/s have no room; such rates go without.
+    const double size = std::abs(kept_[1].hi);
+    free_ = size > 1e-240 && size < 1e240;
+  }
   kernel_ = find_series_kernel(terms_, attitude_);
 }
 
@@ -236,7 +245,31 @@ double BodySeries::compute_time_scale(DD, const double* y) const {
 
 void BodySeries::start_carry(double* carry) const { std::copy_n(start_carry_, 8, carry); }
 
+/// A free body keeps u v and a (u^2 + v^2) + w2^2, which are its energy and |L|^2 in other words. One Newton step back
+/// to them, in directions that leave to u and v their relative accuracy, from residuals without rounding.
+void BodySeries::correct_rates(double* y, double* carry) const {
+  const DD u(y[0], carry[0]), v(y[1], carry[1]), w(y[2], carry[2]);
+  const double uu = y[0] * y[0], vv = y[1] * y[1], ww = y[2] * y[2], uv = y[0] * y[1], sum = uu + vv;
+  const double split = sum > 0.0 ? (uu - vv) / sum : 0.0;
+  double turn = 0.0;   // u and v by this part of each
+  if (std::abs(uv) > 1e-250) {
+    turn = -0.5 * (u * v - kept_[0]).hi / uv;
+    if (!(std::abs(turn) < 0.1)) return;
+  }
+  const double lack = (DD(balance_) * (u * u + v * v) + w * w - kept_[1]).hi + 2.0 * balance_ * sum * turn;
+  const double slope = 2.0 * (balance_ * (uu - vv) * split + ww);
+  // Where the energy has its extreme for this u v it tells nothing of the rest.
+  const double step = slope > 1e-3 * (balance_ * sum + ww) ? -lack / slope : 0.0;
+  const double apart = step * split;
+  const double change[3] = {y[0] * (turn + apart), y[1] * (turn - apart), y[2] * step};
+  for (int i = 0; i < 3; ++i) {
+    const DD moved = math::two_sum(y[i], carry[i] + change[i]);
+    y[i] = moved.hi, carry[i] = moved.lo;
+  }
+}
+
 void BodySeries::correct(DD, double* y, double* carry) const {
+  if (free_) correct_rates(y, carry);
   if (!attitude_) return;
   // |q| = 1. The carry keeps no more than rounding: it is not turned along with q, and what is larger would grow.
   double norm = 0.0, cross = 0.0;

@@ -43,6 +43,7 @@ class BodySeries {
   void choose_variables(const Vector3d& omega_P);
   void add_torques(const Scene& scene);
   void set_column(double* column, const Vector3d& torque_P) const;   ///< torque over inertia, in the rate variables
+  void correct_rates(double* y, double* carry) const;
   void compute_rates(const double* r, double* omega_P) const;
 
   Matrix3d R_BP_ = Matrix3d::Identity();
@@ -50,6 +51,9 @@ class BodySeries {
   bool turned_ = false, attitude_ = true;
   Vector3d I_ = Vector3d::Zero();
   double k_ = 0.0;
+  bool free_ = false;                      ///< no torque, and separatrix variables: `kept_` holds
+  double balance_ = 0.0;
+  math::DD kept_[2];
   SeriesTerms terms_;
   double start_[8] = {}, start_carry_[8] = {};
   Vector3d space_[2] = {Vector3d::Zero(), Vector3d::Zero()};   ///< the fixed vectors, space axes

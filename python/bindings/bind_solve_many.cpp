@@ -1,0 +1,113 @@
+#include <pybind11/stl.h>
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include "bind_scene.hpp"
+#include "convert.hpp"
+#include "polhode/batch/solve_many.hpp"
+#include "polhode/core/error.hpp"
+
+namespace polhode::python {
+namespace {
+
+/// Runs `work(stopped)` on a thread of its own and lets Ctrl-C end it: signals reach only Python's first thread.
+template <class Work>
+void run_interruptibly(const Work& work) {
+  std::atomic<bool> stopped{false};
+  std::mutex mutex;
+  std::condition_variable ended;
+  bool over = false;
+  std::exception_ptr failure;
+  std::thread runner([&] {
+    try {
+      work(stopped);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    const std::lock_guard lock(mutex);
+    over = true;
+    ended.notify_all();
+  });
+  bool interrupted = false;
+  {
+    py::gil_scoped_release nogil;
+    std::unique_lock lock(mutex);
+    while (!ended.wait_for(lock, std::chrono::milliseconds(50), [&] { return over; })) {
+      lock.unlock();
+      if (!interrupted) {
+        py::gil_scoped_acquire gil;
+        interrupted = PyErr_CheckSignals() != 0;
+        stopped = interrupted;
+      }
+      lock.lock();
+    }
+    lock.unlock();
+    runner.join();
+  }
+  if (interrupted) throw py::error_already_set();
+  if (failure) std::rethrow_exception(failure);
+}
+
+py::tuple solve_batch(const py::list& scenes, const py::object& moments, const py::object& omega, const py::object& attitude,
+                      std::size_t bodies, std::size_t times, const py::object& omega_out, const py::object& attitude_out,
+                      const py::object& accuracy, const py::object& method, const py::object& rtol, const py::object& atol,
+                      const py::object& step, long max_steps, int threads) {
+  SolveOptions options;
+  const auto real = [](const py::object& value, const char* name) {
+    return value.is_none() ? std::nullopt : std::optional<double>(to_real(value, name));
+  };
+  options.accuracy = real(accuracy, "accuracy");
+  options.rtol = real(rtol, "rtol"), options.atol = real(atol, "atol"), options.step = real(step, "step");
+  if (!method.is_none()) options.method = std::string(py::str(method));
+  options.max_steps = max_steps;
+
+  // One scene for all with starts of its own for each body, or a scene for each.
+  std::vector<const Scene*> list;
+  for (const py::handle scene : scenes) list.push_back(&scene.cast<const Scene&>());
+  const bool starts = !omega.is_none();
+  const Array I = moments.is_none() ? Array() : moments.cast<Array>();
+  const Array w = starts ? omega.cast<Array>() : Array(), q = starts ? attitude.cast<Array>() : Array();
+  const double* moment = moments.is_none() ? nullptr : I.data();
+  const MakeScene make_scene = [&, rates = w.data(), turns = q.data()](std::size_t body) {
+    if (!starts) return *list[body];
+    const Scene& common = *list[0];
+    const double *a = rates + 3 * body, *b = turns + 4 * body;
+    InertiaTensor inertia = common.inertia_B();
+    if (moment != nullptr) inertia = InertiaTensor::from_moments({moment[3 * body], moment[3 * body + 1], moment[3 * body + 2]});
+    return Scene(SceneParts{inertia, {a[0], a[1], a[2]}, {b[0], b[1], b[2], b[3]}, common.torques(), common.times(),
+                            common.want(), common.t0(), ""});
+  };
+  const auto target = [](const py::object& array) {
+    return array.is_none() ? nullptr : array.cast<py::array_t<double, py::array::c_style>>().mutable_data();
+  };
+  double *out_w = target(omega_out), *out_q = target(attitude_out);
+  std::vector<ManyResult> results;
+  run_interruptibly([&](std::atomic<bool>& stopped) {
+    options.progress = [&stopped](double, double) { return !stopped; };
+    results = solve_many(bodies, times, make_scene, options, out_w, out_q, threads);
+  });
+  py::list status, message, methods;
+  const auto n = static_cast<py::ssize_t>(bodies);
+  Array reached(n), errors(n);
+  py::array_t<long> steps(n);
+  py::array_t<bool> success(n);
+  for (py::ssize_t i = 0; i < n; ++i) {
+    const ManyResult& one = results[static_cast<std::size_t>(i)];
+    status.append(std::string(to_text(one.status)));
+    message.append(one.message);
+    methods.append(one.method);
+    reached.mutable_data()[i] = one.t_reached, errors.mutable_data()[i] = one.error;
+    steps.mutable_data()[i] = one.steps, success.mutable_data()[i] = one.success;
+  }
+  return py::make_tuple(status, message, methods, reached, errors, steps, success);
+}
+
+}  // namespace
+
+void bind_solve_many(py::module_& m) { m.def("_solve_many", &solve_batch); }
+
+}  // namespace polhode::python

@@ -1,0 +1,140 @@
+"""Many driven bodies, or many starts of one, in one call."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from .attitude import Rotation
+from .motion import Floats
+from .scene import Scene
+
+
+@dataclass(frozen=True, eq=False)
+class Motions:
+    """The answers of `solve_many`, body by body.
+
+    Attributes
+    ----------
+    omega : ndarray, shape (bodies, times, 3), or None
+        Angular velocity in body axes [rad/s]; NaN where a body did not come so far.
+    attitude : ndarray, shape (bodies, times, 4), or None
+        Unit quaternions (x, y, z, w), body to space; NaN where a body did not come so far.
+    status, message, method : tuple of str
+        Of each body, as `Motion` has them.
+    t_reached : ndarray, shape (bodies,)
+        How far each came [s].
+    error : ndarray, shape (bodies,)
+        NaN: not estimated.
+    steps : ndarray of int, shape (bodies,)
+    success : ndarray of bool, shape (bodies,)
+        Arrived, and no invariant that should hold moved by more than was asked.
+    """
+
+    omega: Floats | None
+    attitude: Floats | None
+    status: tuple[str, ...]
+    message: tuple[str, ...]
+    method: tuple[str, ...]
+    t_reached: Floats
+    error: Floats
+    steps: npt.NDArray[np.int64]
+    success: npt.NDArray[np.bool_]
+
+    def __repr__(self) -> str:
+        return f"Motions({len(self.status)} bodies, {int(self.success.sum())} with success, {int(self.steps.sum())} steps)"
+
+
+def _rows(value: Any, width: int, name: str) -> Floats:
+    try:
+        array = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        raise _core.InvalidInput(f"{name}: must be an array of numbers, got {type(value).__name__}") from None
+    if array.ndim not in (1, 2) or array.shape[-1] != width:
+        raise _core.InvalidInput(f"{name}: must be of shape ({width},) or (bodies, {width}), got {array.shape}")
+    return array
+
+
+def solve_many(
+    scenes: Scene | Iterable[Scene],
+    *,
+    inertia: npt.ArrayLike | None = None,
+    omega: npt.ArrayLike | None = None,
+    attitude: Any = None,
+    accuracy: float | None = None,
+    method: str | None = None,
+    rtol: float | None = None,
+    atol: float | None = None,
+    step: float | None = None,
+    max_steps: int = 10_000_000,
+    threads: int | None = None,
+) -> Motions:
+    """Solve many scenes, or one scene from many starts; each as `solve` does by itself.
+
+    Parameters
+    ----------
+    scenes : Scene, or iterable of Scene
+        One for each body, with equally many times and the same `want`; or one for all, whose starts follow.
+    inertia : array_like, shape (bodies, 3), optional
+        With one scene: principal moments in the body axes in place of its own [kg m^2].
+    omega : array_like, shape (bodies, 3), optional
+        With one scene: the starts' angular velocities in body axes [rad/s].
+    attitude : array_like, shape (bodies, 4), or Rotation, optional
+        With one scene: the starts' attitudes (x, y, z, w). Shapes (3,) and (4,) hold for all bodies.
+    accuracy, method, rtol, atol, step, max_steps
+        As in `solve`, of each body.
+    threads : int, optional
+        How many; as many as the machine has unless given. The answers are the same, bit for bit.
+
+    Returns
+    -------
+    Motions
+        A body whose run fails does so alone: its status says why, and what it did not reach is NaN.
+
+    Raises
+    ------
+    InvalidInput
+        With the number of the body, for what `solve` refuses.
+    """
+    starts: tuple[Floats | None, Floats | None, Floats | None] = (None, None, None)
+    if isinstance(scenes, Scene):
+        given = {"inertia": (inertia, 3), "omega": (omega, 3),
+                 "attitude": (attitude.as_quat() if isinstance(attitude, Rotation) else attitude, 4)}
+        arrays = {name: _rows(value, width, name) for name, (value, width) in given.items() if value is not None}
+        sizes = {array.shape[0] for array in arrays.values() if array.ndim == 2}
+        if len(sizes) != 1:
+            raise _core.InvalidInput(f"solve_many: with one scene must get starts of one number of bodies, got {sorted(sizes) or 'none'}")
+        bodies = sizes.pop()
+        full = {name: np.ascontiguousarray(np.broadcast_to(arrays.get(name, own), (bodies, own.size)))
+                for name, own in (("omega", scenes.omega), ("attitude", scenes.attitude))}
+        moments = np.ascontiguousarray(np.broadcast_to(arrays["inertia"], (bodies, 3))) if "inertia" in arrays else None
+        listed, starts = [scenes], (moments, full["omega"], full["attitude"])
+    else:
+        if not isinstance(scenes, Iterable):
+            raise _core.InvalidInput(f"scenes: must be a Scene or several, got {type(scenes).__name__}")
+        listed = list(scenes)
+        for name, value in (("inertia", inertia), ("omega", omega), ("attitude", attitude)):
+            if value is not None:
+                raise _core.InvalidInput(f"{name}: must be left out with a scene for each body, which has its own")
+        bodies = len(listed)
+        for i, scene in enumerate(listed):
+            if not isinstance(scene, Scene):
+                raise _core.InvalidInput(f"scenes[{i}]: must be a polhode.Scene, got {type(scene).__name__}")
+            if scene.times.size != listed[0].times.size or scene.want != listed[0].want:
+                raise _core.InvalidInput(f"scenes[{i}]: must have as many times as scenes[0] and the same want")
+    if threads is not None and (not isinstance(threads, (int, np.integer)) or threads < 1):
+        raise _core.InvalidInput(f"threads: must be a whole number above 0, got {threads!r}")
+    if not isinstance(max_steps, (int, np.integer)):
+        raise _core.InvalidInput(f"max_steps: must be a whole number, got {max_steps!r}")
+    times = listed[0].times.size if listed else 0
+    want = listed[0].want if listed else ("omega", "attitude")
+    out = {name: np.empty((bodies, times, width)) if name in want else None for name, width in (("omega", 3), ("attitude", 4))}
+    status, message, methods, reached, error, steps, success = _core._solve_many(
+        listed, *starts, bodies, times, out["omega"], out["attitude"], accuracy, method, rtol, atol, step, int(max_steps),
+        int(threads or 0))
+    return Motions(out["omega"], out["attitude"], tuple(status), tuple(message), tuple(methods), reached, error, steps, success)
