@@ -1,6 +1,7 @@
 #pragma once
 
 #include "math/lanes/octet.hpp"
+#include "polhode/math/double_double.hpp"
 #include "polhode/ode/series.hpp"
 #include "solve/lanes/levels.hpp"
 
@@ -171,8 +172,19 @@ class Expansion {
     }
   }
 
-  /// product - c step without rounding, where the machine can.
-  static POLHODE_INLINE Quad remainder(Quad c, Quad step, Quad product) { return madd(negative(c), step, product); }
+  /// product - c step without rounding.
+  static POLHODE_INLINE Quad remainder(Quad c, Quad step, Quad product) {
+#ifdef __FMA__
+    return madd(negative(c), step, product);
+#else
+    Quad rest;
+    for (int i = 0; i < 4; ++i) {
+      const math::DD whole = math::two_prod(c.v[i], step.v[i]);
+      rest.v[i] = (product.v[i] - whole.hi) - whole.lo;
+    }
+    return rest;
+#endif
+  }
 
   template <bool early>
   POLHODE_INLINE void advance_attitude(int n, Quad older, Quad inverse) {
