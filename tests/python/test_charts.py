@@ -353,7 +353,7 @@ def test_failing_scenes_have_their_picture(tmp_path):
     held = made_up(curve("rk45", "method", VALUES, [1e-11] * 10, [0.2] * 10, [1_500_000] * 10))
     paths = pictures.limits([stuck, held], tmp_path)
     text = next(p for p in paths if p.suffix == ".svg").read_text()
-    assert "above 2e-5" in text and re.search(r"stability asks for 1,500,000 steps", text)
+    assert "above 2e-5" in text and re.search(r"stability asks rk45 for 1,500,000 steps", text)
     assert pictures.limits([made_up(curve("rk45", "method", VALUES, VALUES, times))], tmp_path) == []
 
 

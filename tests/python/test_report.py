@@ -1,9 +1,11 @@
 """The report: tables and curves say what was measured, and the page works in a browser without a network."""
 
+import importlib.util
 import json
 import re
 import sys
 from html.parser import HTMLParser
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -181,3 +183,13 @@ def test_without_its_script_the_page_shows_still_pictures(made, tmp_path):
         shown = tab.run("[...document.querySelectorAll('.still img')].filter((i) => i.offsetWidth > 100).length")
         assert shown == len(content["scenes"])
         assert all(re.search("ERR_FILE_NOT_FOUND", text) for text in tab.errors)
+
+
+def test_the_tables_in_the_documents_are_made_from_the_results_there():
+    root = Path(__file__).parents[2]
+    spec = importlib.util.spec_from_file_location("docs_results", root / "benchmarks/docs_results.py")
+    made_by = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(made_by)
+    content = json.loads((root / "docs/results/charts.json").read_text())
+    assert (root / "docs/results/charts.md").read_text() == made_by.page(content)
+    assert len(content["scenes"]) >= 10

@@ -52,9 +52,14 @@ def _solving(scene: Scene, option: str, **others: Any) -> Run:
 def _method(record: dict[str, Any]) -> Candidate:
     name, adaptive = record["name"], record["adaptive"]
     settings: Callable[[Scene], Settings] = tolerances(3, 14) if adaptive else steps
-    return Candidate(name, "cheap" if record.get("cheap") else "method", record["source"], settings,
-                     lambda scene: _solving(scene, "rtol" if adaptive else "step", method=name),
-                     lambda scene: str(_core.method_refusal(name, scene)), "rtol" if adaptive else "step")
+
+    def refuses(scene: Scene) -> str:
+        refusal = str(_core.method_refusal(name, scene))
+        return f"needs {record['needs']}" if refusal and record["needs"] else refusal
+
+    return Candidate(name, "cheap" if record["cheap"] else "method", record["source"], settings,
+                     lambda scene: _solving(scene, "rtol" if adaptive else "step", method=name), refuses,
+                     "rtol" if adaptive else "step")
 
 
 def _plan() -> list[Candidate]:

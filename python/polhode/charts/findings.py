@@ -206,6 +206,7 @@ def under_headline(result: SceneResult) -> str:
 
 
 def without_answer(result: SceneResult) -> dict[str, str]:
-    """Who took part and never answered, and why."""
+    """Who took part and never answered, and why; the engines' steps fail too often to be told here."""
     answered = {p.candidate for p in result.points if p.answered}
-    return {p.candidate: p.why for p in reversed(result.points) if p.candidate not in answered and not p.left_out}
+    silent = [p for p in result.points if p.candidate not in answered and not p.left_out and p.family != "cheap"]
+    return {p.candidate: p.why for p in reversed(silent)}

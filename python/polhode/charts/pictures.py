@@ -121,7 +121,9 @@ def _spread(axes: Any, ends: Ends) -> None:
         near = taken[(taken[:, 0] > left) & (taken[:, 0] < right)][:, 1]
         shifts = sorted(range(-60, 61, 2), key=abs)
         shift = next((dy for dy in shifts if not (np.abs(near - py - dy) < (7 if quiet else 9)).any()), 0)
-        changes = {"fontsize": 7, "fontweight": "normal", "bbox": None} if quiet else {}
+        changes: dict[str, Any] = {"fontsize": 7, "fontweight": "normal", "bbox": None} if quiet else {}
+        if abs(shift) > 12:   # far from its end, so led back to it
+            changes["arrowprops"] = {"arrowstyle": "-", "color": ink, "linewidth": 0.6, "alpha": 0.7, "shrinkA": 0, "shrinkB": 3}
         style.label(axes, x, y, name, ink, xytext=(8, shift * 72 / axes.figure.dpi), **changes)
         own = np.column_stack([np.linspace(left, right, 12), np.full(12, py + shift)])
         taken = np.vstack([taken, own + (0, 5), own, own - (0, 5)])
@@ -196,10 +198,9 @@ def overview(results: list[SceneResult], folder: pathlib.Path) -> list[pathlib.P
 
 
 def _silent(result: SceneResult) -> str:
-    """Who failed outright here, rather than for want of time; the engines' steps do so too often to be told."""
-    cheap = {p.candidate for p in result.points if p.family == "cheap"}
-    return "\n".join(f"{name} {why.split(':')[0]}" for name, why in without_answer(result).items()
-                     if name not in cheap and not why.startswith(("not done", "hung")))
+    """Who failed outright here, rather than for want of time."""
+    names = [name for name, why in without_answer(result).items() if not why.startswith(("not done", "hung"))]
+    return "\n".join(textwrap.wrap(f"no answer: {', '.join(names)}", 34)) if names else ""
 
 
 def _overview_title(results: list[SceneResult]) -> str:
@@ -218,8 +219,8 @@ def _overview_title(results: list[SceneResult]) -> str:
 
 def limits(results: list[SceneResult], folder: pathlib.Path) -> list[pathlib.Path]:
     """Where steppers fail: errors that no tolerance brings down, and steps that stability dictates."""
-    stuck = [r for r in results if adaptive(r) and all(stalls(r, n) for n in adaptive(r))]
-    stiff = [r for r in results if any(held_by_stability(r, n) for n in r.names("method"))]
+    stuck = [r for r in results if any(stalls(r, n) for n in adaptive(r))]
+    stiff = [r for r in results if any(held_by_stability(r, n) for n in adaptive(r))]
     panels: list[tuple[Any, SceneResult]] = [(_stalling, r) for r in stuck[:2]] + [(_stiff, r) for r in stiff[:2]]
     if not panels:
         return []
@@ -229,7 +230,7 @@ def limits(results: list[SceneResult], folder: pathlib.Path) -> list[pathlib.Pat
         figure.subplots_adjust(left=0.85 / width, right=1 - 0.95 / width, bottom=0.13, top=0.72, wspace=0.5)
         for axes, (draw, result) in zip(grid.flat, panels):
             draw(axes, result, results)
-        style.heading(figure, "Where steppers fail, and no tolerance helps",
+        style.heading(figure, "Where no tolerance helps",
                       "from loose tolerances on the left to tight ones on the right", 0.3 / width)
         paths = style.save(figure, folder, "limits")
         plt.close(figure)
@@ -261,11 +262,12 @@ def _stalling(axes: Any, result: SceneResult, results: list[SceneResult]) -> Non
         axes.axhline(exact.error, color=style.colour(name), linewidth=2)
         text = f"closed form: {to_error(exact.error)} in {to_time(exact.seconds)}"
         style.label(axes, tolerances[-1], exact.error, text, style.colour(name), xytext=(0, 6), va="bottom")
-    axes.set_ylim(min(1e-16, tolerances[0]), 1e4)   # room for the legend
+    axes.set_ylim(min(1e-16, tolerances[0]), 1e7)   # room for the legend
     _error_ticks(axes, "y")
     axes.set_ylabel("largest error")
-    best = min(p.error for n in names for p in result.of(n))
-    axes.set_title(f"{result.scene.name} {result.title}: rounding keeps the error\n"
+    stalled = [n for n in adaptive(result) if stalls(result, n)]
+    best = min(p.error for n in stalled for p in result.of(n))
+    axes.set_title(f"{result.scene.name} {result.title}: rounding keeps {', '.join(stalled)}\n"
                    f"above {to_error(best)}, whatever the tolerance")
     axes.legend(loc="upper right", frameon=False, fontsize=8, ncols=3, borderaxespad=0.2)
 
@@ -290,7 +292,7 @@ def _stiff(axes: Any, result: SceneResult, results: list[SceneResult]) -> None:
     steps = [p.stats["steps"] for p in points]
     axes.set_ylabel("steps")
     axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.0f}")
-    axes.set_title(f"{result.scene.name} {result.title}: stability asks for {min(steps):,} steps\n"
+    axes.set_title(f"{result.scene.name} {result.title}: stability asks {name} for {min(steps):,} steps\n"
                    f"({to_time(min(p.seconds for p in points))}), whatever the tolerance")
     axes.set_ylim(None, max(e[1] for e in ends) * 2.5)
     _spread(axes, ends)

@@ -18,7 +18,7 @@ from . import atlas_part, page
 
 SCENES = ("S1", "S2", "S3", "S4", "S5", "S5c", "S6", "S7", "S7b", "S9", "N2", "Z1")
 MOTIONS = ("S1", "S2", "S4", "S5")   # pictures of these, of those that are charted
-QUICK, FULL = 110.0, 900.0           # seconds for the charts
+QUICK, FULL = 95.0, 900.0            # seconds for the charts
 PAGE, SCRIPT = "index.html", "plotly.min.js"
 
 

@@ -108,14 +108,21 @@ def markdown(table: tuple[Row, list[Row]]) -> str:
     return "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines) + "\n"
 
 
+LARGE = ("error_omega", "error_attitude", "drift", "counts", "value", "fastest", "slowest", "swept")   # of a point
+
+
 def compact(content: dict[str, Any]) -> dict[str, Any]:
-    """Return results with numbers to three digits, small enough to be kept with the sources."""
+    """Return results with numbers to three digits and without what no table needs, small enough for the sources."""
     def short(value: Any) -> Any:
         if isinstance(value, float):
             return float(f"{value:.3g}") if math.isfinite(value) else None
         if isinstance(value, dict):
-            return {key: short(item) for key, item in value.items() if key not in ("error_omega", "error_attitude", "drift")}
+            return {key: short(item) for key, item in value.items()}
         return [short(item) for item in value] if isinstance(value, list) else value
 
-    found: dict[str, Any] = short(content)
+    def point(full: dict[str, Any]) -> dict[str, Any]:
+        return {key: value for key, value in full.items() if key not in LARGE and value not in (None, "", 0)}
+
+    scenes_ = [{**scene, "points": [point(p) for p in scene["points"]]} for scene in content["scenes"]]
+    found: dict[str, Any] = short({**content, "scenes": scenes_})
     return found
