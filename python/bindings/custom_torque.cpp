@@ -184,8 +184,8 @@ data : int, optional
 Raises
 ------
 InvalidInput
-    For what cannot be called, or an answer that has another shape than (3,) or is not finite. What the function raises
-    comes through as it is.
+    For what cannot be called, or an answer that has another shape than (3,), or is not finite at the start; one that is
+    not finite later ends the run there, with everything up to there. What the function raises comes through as it is.
 )doc";
 
 }  // namespace

@@ -25,6 +25,14 @@ class Heartbeat {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
+Ending to_ending(StepResult step) {
+  switch (step) {
+    case StepResult::underflow: return Ending::underflow;
+    case StepResult::no_solution: return Ending::no_solution;
+    default: return Ending::not_finite;
+  }
+}
+
 }  // namespace
 
 DriveResult drive(Stepper& stepper, std::span<const double> times, const Sink& sink, const DriveOptions& options) {
@@ -56,7 +64,7 @@ DriveResult drive(Stepper& stepper, std::span<const double> times, const Sink& s
     }
     const StepResult step = stepper.advance(last);
     if (step != StepResult::accepted) {
-      result.ending = step == StepResult::underflow ? Ending::underflow : Ending::not_finite;
+      result.ending = to_ending(step);
       break;
     }
     double reached = stepper.t();

@@ -110,7 +110,11 @@ Motion run(const Scene& scene, const SolveOptions& options, const double* y0, co
         return false;
       case Ending::not_finite:
         motion.status = Status::failed;
-        motion.message = "the derivative is not finite" + when;
+        motion.message = "the derivative is not finite just beyond t = " + polhode::to_text(result.t) + " s";
+        return false;
+      case Ending::no_solution:
+        motion.status = Status::failed;
+        motion.message = "the implicit equations of a step have no solution near" + when + ": take shorter steps";
         return false;
     }
     return false;

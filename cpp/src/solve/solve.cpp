@@ -32,6 +32,21 @@ void require_fitting(const ode::MethodRecord& record, const SolveOptions& option
   }
 }
 
+/// A torque that is no number at the start is a mistake; one that becomes none on the way ends the run there.
+void require_finite_start(const Scene& scene) {
+  const double attitude[4] = {scene.attitude().x, scene.attitude().y, scene.attitude().z, scene.attitude().w};
+  const TorqueInput in{scene.t0(), scene.omega().data(), attitude, scene.inertia_B().matrix()};
+  for (const AnyTorque& torque : scene.torques()) {
+    double tau[3] = {0.0, 0.0, 0.0};
+    std::visit([&](const auto& one) { one.add(in, tau); }, torque);
+    for (int i = 0; i < 3; ++i) {
+      if (std::isfinite(tau[i])) continue;
+      throw InvalidInput("the torque's function", "finite in all three components",
+                         to_text(tau[i]) + " in component " + std::to_string(i) + " at t = " + to_text(in.t) + " s");
+    }
+  }
+}
+
 }  // namespace
 
 Motion solve(const Scene& scene, const SolveOptions& options) {
@@ -72,6 +87,7 @@ Motion solve(const Scene& scene, const SolveOptions& options) {
   if (raised) rtol = method.record.least_rtol;
   const RunOptions run_options{options, {rtol, options.atol.value_or(0.0), options.step.value_or(0.0)}};
 
+  require_finite_start(scene);
   const auto begin = std::chrono::steady_clock::now();
   Motion motion = method.solve(scene, run_options);
   motion.stats.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -18,15 +18,6 @@ const TorqueRecord& Custom::record() {
   return record;
 }
 
-void Custom::require_finite(double t, const double* torque) {
-  for (int i = 0; i < 3; ++i) {
-    if (!std::isfinite(torque[i])) {
-      throw InvalidInput("the torque's function", "finite in all three components",
-                         to_text(torque[i]) + " in component " + std::to_string(i) + " at t = " + to_text(t) + " s");
-    }
-  }
-}
-
 double Custom::compute_potential(const TorqueInput& in) const {
   double unit[4];
   normalise(in.attitude, unit);

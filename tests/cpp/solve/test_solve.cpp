@@ -1,9 +1,13 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "polhode/core/error.hpp"
 #include "polhode/exact/free_motion.hpp"
+#include "polhode/ode/drive.hpp"
+#include "polhode/ode/methods.hpp"
+#include "polhode/solve/euler_problem.hpp"
 #include "polhode/solve/methods.hpp"
 #include "polhode/solve/invariants.hpp"
 #include "polhode/solve/solve.hpp"
@@ -66,4 +70,26 @@ TEST_CASE("events end a run, and progress is told") {
   REQUIRE(motion.events.size() == 1);
   CHECK(std::abs(motion.events[0].state.omega[0]) < 1e-9);
   CHECK(motion.t.size() == 1);
+}
+
+namespace {
+
+/// A torque of a user's own in C++: inlined into whatever steps it.
+struct Thruster {
+  void add(const TorqueInput&, double* tau_B) const { tau_B[0] += 0.01, tau_B[1] += -0.02, tau_B[2] += 0.03; }
+};
+
+}  // namespace
+
+TEST_CASE("a functor is stepped by any general method, with no call between") {
+  const Scene scene = make_block({5.0}, {torques::Constant({0.01, -0.02, 0.03})});
+  const Thruster thruster;
+  const EulerProblem<Thruster, true, true> problem(scene.inertia_B(), thruster);
+  double y0[7], end[7];
+  problem.pack(scene.start(), y0);
+  ode::Dop853::Stepper<EulerProblem<Thruster, true, true>> stepper(problem, 0.0, y0, 5.0, {.rtol = 1e-10});
+  const double times[] = {5.0};
+  ode::drive(stepper, times, [&](std::size_t, double, const double* y) { std::copy_n(y, 7, end); }, {});
+  const Motion built_in = solve(scene, {.method = "dop853", .rtol = 1e-10});
+  for (std::size_t k = 0; k < 3; ++k) CHECK(end[k] == built_in.omega[k]);
 }

@@ -11,7 +11,7 @@
 
 namespace polhode::ode {
 
-enum class Ending { finished, event, max_steps, stopped, underflow, not_finite };
+enum class Ending { finished, event, max_steps, stopped, underflow, not_finite, no_solution };
 
 struct DriveOptions {
   long max_steps = 10'000'000;

@@ -21,7 +21,7 @@ class FixedStepper : public Stepper {
     h_taken_ = last && std::abs(rest) < step_ - rounding ? rest : h;
     const double t_new = last ? t_end : t0_ + static_cast<double>(counts_.steps + 1) * h;
     if (t_new == t_) return StepResult::underflow;
-    if (!step(t_, h_taken_)) return StepResult::not_finite;
+    if (const StepResult result = step(t_, h_taken_); result != StepResult::accepted) return result;
     t_old_ = t_;
     t_ = t_new;
     ++counts_.steps;
@@ -32,8 +32,8 @@ class FixedStepper : public Stepper {
   FixedStepper(int size, int numbers_per_segment, Evaluate evaluate_segment, double t0, double length)
       : Stepper(size, numbers_per_segment, evaluate_segment, t0), t0_(t0), step_(length) {}
 
-  /// One step of length h, which is negative backwards. False, and nothing changed, when the result is not finite.
-  virtual bool step(double t, double h) = 0;
+  /// One step of length h, which is negative backwards. Nothing has changed unless it is accepted.
+  virtual StepResult step(double t, double h) = 0;
 
   double fraction(double t) const { return (t - t_old_) / (t_ - t_old_); }
   double h_taken() const { return h_taken_; }

@@ -73,7 +73,7 @@ class Rk4::Stepper final : public FixedStepper {
     derivative_ready_ = true;
   }
 
-  bool step(double t, double h) override {
+  StepResult step(double t, double h) override {
     prepare_derivative();
     if (counts_.steps != 0) problem_.restore(y_, f_);
     double y[N], k2[N], k3[N], k4[N];
@@ -88,12 +88,12 @@ class Rk4::Stepper final : public FixedStepper {
       y[i] = y_[i] + h / 6 * (f_[i] + 2 * (k2[i] + k3[i]) + k4[i]);
       sum += std::abs(y[i]);
     }
-    if (!std::isfinite(sum)) return false;
+    if (!std::isfinite(sum)) return StepResult::not_finite;
     std::copy_n(f_, N, f_old_);
     std::copy_n(y_, N, y_old_);
     std::copy_n(y, N, y_);
     derivative_ready_ = segment_ready_ = false;
-    return true;
+    return StepResult::accepted;
   }
 
   const P& problem_;

@@ -6,7 +6,7 @@
 
 namespace polhode::ode {
 
-enum class StepResult { accepted, underflow, not_finite };
+enum class StepResult { accepted, underflow, not_finite, no_solution };
 
 /// One integration under way: what drive() needs to know of a method. A step is one virtual call; all that is inside a
 /// step is compiled for its problem.

