@@ -72,7 +72,7 @@ def solve(
         Tolerances of a step. Rates are measured against their own size, the quaternion against 1; atol is added, in
         rad/s and in quaternion components.
     step : float, optional
-        Of fixed-step methods [s].
+        Of fixed-step methods [s], which ask for it and refuse accuracy, rtol and atol.
     max_steps : int
         Give up after so many steps; the result says so.
     dense : bool
@@ -107,7 +107,11 @@ def solve(
 
 
 def methods() -> list[dict[str, Any]]:
-    """Return every method: name, order, order of the continuous extension, what it keeps, doc and source."""
+    """Return every method, a dict each.
+
+    name; order, and driven_order where a torque acts; dense_order, between the steps; adaptive (by rtol and atol, else by
+    `step=`); implicit; cheap (a game engine's step); keeps, of a free body; needs, of a scene; doc and source.
+    """
     return list(_core.method_records())
 
 
