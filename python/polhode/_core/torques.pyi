@@ -204,8 +204,8 @@ class Custom:
     Raises
     ------
     InvalidInput
-        For what cannot be called, or an answer that has another shape than (3,) or is not finite. What the function raises
-        comes through as it is.
+        For what cannot be called, or an answer that has another shape than (3,), or is not finite at the start; one that is
+        not finite later ends the run there, with everything up to there. What the function raises comes through as it is.
     """
     def __eq__(self, arg0: typing.Any) -> bool:
         ...
