@@ -131,7 +131,7 @@ def level(family, found):
 
 
 def test_thresholds_are_where_they_are_said_to_be():
-    for right, said in ((0.1, "holds"), (0.09, "degrades"), (0.01, "degrades"), (0.009, "fails"), (0.0, "fails")):
+    for right, said in ((0.0982, "holds"), (0.0981, "degrades"), (0.0123, "degrades"), (0.0122, "fails"), (0.0, "fails")):
         found = points(right={1.0: 0.5, 0.1: right})
         for p in found:
             p.values["kept"] = 1.0

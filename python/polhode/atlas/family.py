@@ -82,6 +82,7 @@ class Family:
     y_label: str
     y: str               # the value that the picture and the table show
     takes: Callable[[Entrant], str] = lambda entrant: "" if entrant.kind != "witness" else "only for the norm"
+    also: tuple[tuple[str, str, tuple[float, float]], ...] = ()   # further panels: value, label, limits
     series: tuple[tuple[str, str], ...] = (("", ""),)   # (name, title of its panel)
     lines: tuple[tuple[float, str], ...] = ()            # thresholds to be drawn
     x_inverted: bool = False

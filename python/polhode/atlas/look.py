@@ -18,7 +18,7 @@ LEVELS = {
 WORDS = {"holds": "holds", "degrades": "degrades", "fails": "fails", "unknown": "not known: too slow here",
          "none": "does not apply"}
 
-_BLUES = ["#0072b2", "#009e73", "#cc79a7", "#56b4e9", "#004e6e", "#8c6bb1"]
+_BLUES = ["#0072b2", "#009e73", "#cc79a7", "#56b4e9", "#004e6e", "#8c6bb1", "#5b7f1d", "#332288"]
 _EARTHS = ["#a6761d", "#e69f00", "#7a8794", "#b3a08c", "#8a5a44", "#c2a83e"]
 _MARKS = ["o", "s", "^", "v", "P", "X", "D", "<", ">", "h", "p", "d"]
 

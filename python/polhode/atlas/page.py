@@ -7,6 +7,10 @@ from typing import Any
 SYMBOLS = {"holds": "●", "degrades": "◐", "fails": "✕", "unknown": "?", "none": ""}
 
 
+def _escaped(text: str) -> str:
+    return text.replace("|", "\\|")
+
+
 def _matrix(content: dict[str, Any]) -> list[str]:
     families = list(content["families"])
     lines = ["| | " + " | ".join(f"[{name}](#{name})" for name in families) + " |",
@@ -46,7 +50,7 @@ def page(content: dict[str, Any], pictures: str = "", introduction: str = "") ->
                   f"Swept: {family['sweeps']}. Truth: {family['truth']}. "
                   f"`polhode atlas {name}{whole}` makes it again.", "",
                   "| | threshold | who |", "|---|---|---|",
-                  f"| ● holds | {family['holds']} | {_listed(content, name, 'holds')} |",
-                  f"| ◐ degrades | {family['degrades']} | {_listed(content, name, 'degrades')} |",
+                  f"| ● holds | {_escaped(family['holds'])} | {_listed(content, name, 'holds')} |",
+                  f"| ◐ degrades | {_escaped(family['degrades'])} | {_listed(content, name, 'degrades')} |",
                   f"| ✕ fails | | {_listed(content, name, 'fails')} |", ""]
-    return "\n".join(lines).replace("||", "\\|\\|").rstrip() + "\n"
+    return "\n".join(lines).rstrip() + "\n"

@@ -23,41 +23,44 @@ def draw_family(result: FamilyResult, folder: pathlib.Path) -> list[pathlib.Path
     shown = [(name, title) for name, title in family.series
              if any(_points(points, name) for points in result.rows.values())]
     with style.used() as plt:
-        columns = min(2, len(shown)) or 1
-        rows = max(1, math.ceil(len(shown) / columns))
-        caption = _caption(family)
+        panels = [(name, title, family.y, family.y_label, family.y_limits) for name, title in shown]
+        panels += [("", "", value, label, limits) for value, label, limits in family.also]
+        columns = min(2, len(panels)) or 1
+        rows = max(1, math.ceil(len(panels) / columns))
+        caption = _caption(family, columns)
         head = 0.95 + 0.19 * (caption.count("\n") + 1)
         width, height = columns * (PANEL + MARGIN + LABELS), head + 0.55 + 3.4 * rows + 0.75 * (rows - 1)
         figure, grid = plt.subplots(rows, columns, figsize=(width, height), squeeze=False)
         figure.subplots_adjust(left=MARGIN / width, right=1 - LABELS / width, top=1 - head / height,
                                bottom=0.55 / height, wspace=(MARGIN + LABELS) / PANEL, hspace=0.75 / 3.4)
-        for axes in grid.flat[len(shown):]:
+        for axes in grid.flat[len(panels):]:
             axes.set_visible(False)
-        for axes, (name, title) in zip(grid.flat, shown):
-            _panel(axes, result, name, title)
+        for axes, panel in zip(grid.flat, panels):
+            _panel(axes, result, *panel)
         style.heading(figure, family.title, caption, MARGIN / width)
         paths = style.save(figure, folder, family.name)
         plt.close(figure)
     return paths
 
 
-def _caption(family: Family) -> str:
+def _caption(family: Family, columns: int) -> str:
     text = [f"swept: {family.sweeps}", f"holds: {family.holds}; degrades: {family.degrades}"]
-    return "\n".join(line for part in text for line in textwrap.wrap(part, 165 if len(family.series) > 1 else 88))
+    return "\n".join(line for part in text for line in textwrap.wrap(part, 165 if columns > 1 else 88))
 
 
 def _points(points: list[Point], series: str) -> list[Point]:
     return [p for p in points if p.series == series and p.status in ("answered", "failed") and not math.isnan(p.x)]
 
 
-def _panel(axes: Any, result: FamilyResult, series: str, title: str) -> None:
-    """The curves of one series."""
+def _panel(axes: Any, result: FamilyResult, series: str, title: str, y: str, label: str,
+           limits: tuple[float, float] | None) -> None:
+    """The curves of one series, or of one more value."""
     family, everyone = result.family, looks([*entrants(), WITNESS])
     curves = {name: _points(points, series) for name, points in result.rows.items()}
     curves = {name: sorted(points, key=lambda p: p.x) for name, points in curves.items() if points}
     values = sorted({p.x for points in curves.values() for p in points}, reverse=family.x_inverted)
     places = {x: float(i) for i, x in enumerate(values)} if family.x_scale == "list" else {x: x for x in values}
-    low, high = family.y_limits or _range(family, curves)
+    low, high = limits or _range(family, y, curves)
 
     def clip(value: float) -> float:
         if not math.isfinite(value):
@@ -71,7 +74,7 @@ def _panel(axes: Any, result: FamilyResult, series: str, title: str) -> None:
         axes.set_yscale("log")
     for name, points in curves.items():
         look = everyone[name]
-        xs, ys = [places[p.x] for p in points], [clip(p.get(family.y)) for p in points]
+        xs, ys = [places[p.x] for p in points], [clip(abs(p.get(y))) for p in points]
         axes.plot(xs, ys, clip_on=False, **look)
         broken = [(x, y) for x, y, p in zip(xs, ys, points) if p.status == "failed"]
         if broken:
@@ -86,7 +89,7 @@ def _panel(axes: Any, result: FamilyResult, series: str, title: str) -> None:
         axes.tick_params(axis="x", labelsize=8)
     elif family.x_inverted:
         axes.invert_xaxis()
-    for value, word in family.lines:
+    for value, word in family.lines if y == family.y else ():
         if low <= value <= high:
             axes.axhline(value, color=style.QUIET, linewidth=1, linestyle=(0, (1, 1.5)), zorder=2)
             axes.annotate(word, (0, value), xycoords=("axes fraction", "data"), xytext=(3, 2),
@@ -96,8 +99,9 @@ def _panel(axes: Any, result: FamilyResult, series: str, title: str) -> None:
             axis.set_major_formatter(lambda value, _: _tick(value))
             axis.set_minor_formatter(lambda value, _: "")
     axes.set_xlabel(family.x_label)
-    axes.set_ylabel(family.y_label)
-    axes.set_title(title)
+    axes.set_ylabel(label)
+    if title:
+        axes.set_title(title)
     _names(axes, ends, low, high, family.y_log, everyone)
 
 
@@ -105,8 +109,8 @@ def _tick(x: float) -> str:
     return f"{x:g}" if x == 0 or 0.01 <= abs(x) < 1000 else f"{x:.0e}".replace("e-0", "e-").replace("e+0", "e")
 
 
-def _range(family: Family, curves: dict[str, list[Point]]) -> tuple[float, float]:
-    found = [p.get(family.y) for points in curves.values() for p in points]
+def _range(family: Family, y: str, curves: dict[str, list[Point]]) -> tuple[float, float]:
+    found = [p.get(y) for points in curves.values() for p in points]
     finite = [v for v in found if math.isfinite(v) and (v > 0 or not family.y_log)] or [1.0]
     ends = [*finite, *(value for value, _ in family.lines)]
     return (min(ends) / 2, max(ends) * 2) if family.y_log else (min(0.0, *ends), max(ends) * 1.05)

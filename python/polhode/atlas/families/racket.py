@@ -88,6 +88,7 @@ FAMILY = Family(
           "throw was. Every stepper gets the first flip; the later ones hang on digits that rounding took away, "
           "unless they are evaluated rather than stepped.",
     measure=measure, judge=judge, x_label="distance from the axis e [rad/s]", x_inverted=True,
-    y="error", y_label="largest error over 200 s [rad]", lines=((1e-9, "holds"), (LOST, "lost")),
+    y="error", y_label="largest error over 200 s [rad]",
+    also=(("flip", "first flip off by [s]", (1e-16, 10.0)),), lines=((1e-9, "holds"), (LOST, "lost")),
     y_limits=(1e-16, 10.0),
 )
