@@ -10,10 +10,14 @@ from scipy.integrate import solve_ivp
 import polhode as ph
 from polhode.atlas import FAMILIES, claims, scenes
 from polhode.atlas.case import Case, key, stored, truth_of
-from polhode.atlas.families import damping, racket, sleeping
+from polhode.atlas.entrants import entrants
+from polhode.atlas.errors import attitude_errors
+from polhode.atlas.families import damping, racket, scales, sleeping, step
 from polhode.atlas.family import Point, to_short
 from polhode.atlas.results import FamilyResult
+from polhode.charts.truth import compute_errors
 
+WHO = {entrant.name: entrant for entrant in entrants()}
 BY_NAME = {family.name: family for family in FAMILIES}
 
 
@@ -224,3 +228,33 @@ def test_a_chaotic_answer_that_claims_too_much_fails():
 
     assert judged(claims=1.0, stated=1e-9).text == "overclaims"
     assert judged(claims=0.0, stated=1e-9).level == "holds" and judged(claims=1.0, stated=3.0).level == "holds"
+
+
+def test_errors_sample_by_sample_are_those_of_the_charts():
+    case = scenes.racket(1e-2)
+    truth, motion = truth_of("racket", case), ph.solve(case.scene, method="rk4", step=0.03)
+    errors = attitude_errors(motion, truth)
+    assert errors.shape == (101,) and errors.max() == compute_errors(motion.omega, motion.attitude, truth).attitude > 1e-4
+    turned = type("M", (), {"attitude": np.array([[math.sin(0.15), 0, 0, math.cos(0.15)]])})
+    assert attitude_errors(turned, truth._replace(attitude=np.array([[0.0, 0, 0, -1]])))[0] == pytest.approx(0.3, rel=1e-14)
+
+
+def test_the_three_of_the_longest_step_tell_conserving_from_being_right():
+    omega, times = np.array([1.0, 1.0, 1.0]) / math.sqrt(3), 2 * math.pi * np.arange(1, 101)
+    scene = ph.Scene(inertia=(0.2, 0.4, 0.52), omega=omega, times=times)
+    truth = truth_of("racket", scenes.racket(1e-1))._replace(**dict(zip(("omega", "attitude"), ph.FreeMotion((0.2, 0.4, 0.52), omega).at(times), strict=True)))
+    step_ = 2 * math.pi / 64
+    found = {n: step.passes(WHO[n], scene, truth, step_, 5.0) for n in ("ignore", "dmv8", "euler", "rk4")}
+    assert found == {"ignore": {"bounded", "kept"}, "dmv8": {"bounded", "kept", "right"}, "euler": set(),
+                     "rk4": {"bounded", "kept", "right"}}
+
+
+@pytest.mark.parametrize("what", ["inertia", "rates"])
+def test_scaled_scenes_are_the_same_motion(what):
+    plain, far = scales.scaled("S4", what, 0), scales.scaled("S4", what, 12)
+    heavier = far.inertia.matrix[0, 0] / plain.inertia.matrix[0, 0]
+    faster = far.omega[2] / plain.omega[2]
+    assert (heavier > 0.9e12, faster > 0.9e12) == ((True, False) if what == "inertia" else (False, True))
+    arms = [scene.torques[0].weight * scene.torques[0].arm[2] for scene in (plain, far)]
+    assert arms[1] == arms[0] * heavier * faster**2 and far.times[-1] * faster == plain.times[-1]
+    assert math.log2(heavier * faster) % 1 == 0   # a power of two
