@@ -1,5 +1,7 @@
 """What polhode says of its own methods in the atlas, held against the truth: the quick sweep of each claim."""
 
+import itertools
+
 import pytest
 
 from polhode.atlas import FAMILIES, claims
@@ -11,7 +13,9 @@ WHO = {entrant.name: entrant for entrant in entrants()}
 BY_NAME = {family.name: family for family in FAMILIES}
 LIMIT = 60.0   # seconds of CPU a point: generous, a busy machine is no failure
 # More than a second each.
-SLOW = {("solve", "damping"), ("taylor", "damping"), ("taylor", "chaos"), ("rk45", "near")}
+SLOW = {("solve", "damping"), ("taylor", "damping"), ("taylor", "chaos"), ("rk45", "near"),
+        ("radau", "sleeping"), ("radau", "spin-up"), ("symplectic", "step"), ("symplectic", "spin-up"),
+        ("symplectic", "long")}
 
 
 CLAIMED = [
@@ -35,9 +39,9 @@ PROMISES = [name for name, entrant in WHO.items() if {"energy", "L"} & set(entra
 
 
 @pytest.mark.parametrize("name", PROMISES)
-def test_what_a_record_keeps_is_kept_through_ten_thousand_turns(name):
+def test_what_a_record_keeps_is_kept_through_a_thousand_turns(name):
     family = BY_NAME["long"]
-    points = list(family.measure(WHO[name], True, LIMIT))
+    points = list(itertools.islice(family.measure(WHO[name], True, LIMIT), 2))
     if all(p.status == "refused" for p in points):
         pytest.skip("the free block is not for it")
     assert not [s for s in claims.find_broken([FamilyResult(family, True, LIMIT, {name: points}, 0.0)]) if s.startswith(name + ",")]

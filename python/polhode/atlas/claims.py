@@ -21,7 +21,13 @@ CLAIMS: dict[str, dict[str, str]] = {
                "sleeping": "holds"},
     "rk45": {"racket": "degrades", "gimbal": "holds", "scales": "holds", "norm": "holds", "near": "degrades",
              "sleeping": "holds"},
-    "radau": {"damping": "holds", "gimbal": "holds", "scales": "holds", "norm": "holds"},
+    "radau": {"damping": "holds", "gimbal": "holds", "scales": "holds", "norm": "holds", "spin-up": "holds",
+              "sleeping": "holds"},
+    "symplectic": {"step": "holds", "gimbal": "holds", "long": "degrades", "near": "holds", "scales": "holds",
+                   "norm": "holds", "spin-up": "holds", "sleeping": "holds"},
+    # The best cheap step of a free body.
+    "dmv8": {"step": "holds", "gimbal": "holds", "long": "degrades", "near": "degrades", "scales": "holds",
+             "norm": "holds"},
 }
 KEPT = ("energy", "L")   # what a record may promise, and the invariant of `Motion.drift` that shows it
 DRIFT = {"energy": "energy", "L": "angular_momentum"}
