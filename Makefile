@@ -43,6 +43,7 @@ build/.installed: $(VENV)/.ready $(inputs)
 install: build/.installed
 
 demo: install
+	@$(PYTHON) -m polhode plan scenes/S*.toml
 	@$(PYTHON) -m polhode chart scenes/S*.toml -o demo
 
 test: install

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "bind_plan.hpp"
 #include "bind_scene.hpp"
 #include "convert.hpp"
 #include "polhode/core/error.hpp"
@@ -55,27 +56,17 @@ struct Answer {
   Wanted want;
 };
 
-template <class T>
-std::optional<double> to_optional(const T& value, const char* name) {
-  if (value.is_none()) return std::nullopt;
-  return to_real(value, name);
-}
-
-std::unique_ptr<Answer> solve_scene(const Scene& scene, const py::object& accuracy, const py::object& method, const py::object& rtol,
-                     const py::object& atol, const py::object& step, long max_steps, bool dense,
-                     const std::string& formulation, const py::list& events, const py::object& progress) {
-  SolveOptions options;
-  options.accuracy = to_optional(accuracy, "accuracy");
-  if (!method.is_none()) options.method = std::string(py::str(method));
+std::unique_ptr<Answer> solve_scene(const Scene& scene, const py::object& accuracy, const py::object& method,
+                                    const py::object& rtol, const py::object& atol, const py::object& step,
+                                    bool certify, long max_steps, bool dense, const std::string& formulation,
+                                    const py::list& events, const py::object& progress, const Factors* factors) {
+  SolveOptions options = to_wishes(accuracy, method, certify, formulation);
+  options.cost_factors = factors == nullptr ? nullptr : &factors->by_name;
   options.rtol = to_optional(rtol, "rtol");
   options.atol = to_optional(atol, "atol");
   options.step = to_optional(step, "step");
   options.max_steps = max_steps;
   options.dense = dense;
-  if (formulation != "euler" && formulation != "lagrangian") {
-    throw InvalidInput("formulation", "'euler' or 'lagrangian'", "'" + formulation + "'");
-  }
-  options.formulation = formulation == "euler" ? Formulation::euler : Formulation::lagrangian;
   for (const py::handle item : events) {
     const py::tuple event = item.cast<py::tuple>();
     options.events.push_back(to_event(event[0], event[1].cast<int>(), event[2].cast<bool>()));
@@ -93,6 +84,7 @@ py::dict describe_stats(const Motion& motion) {
   stats["rejected"] = counts.rejected;
   stats["derivatives"] = counts.derivatives;
   stats["events"] = counts.events;
+  stats["runs"] = motion.runs;
   stats["seconds"] = counts.seconds;
   return stats;
 }
@@ -110,6 +102,7 @@ std::size_t rows(const Array& array) { return static_cast<std::size_t>(array.siz
 }  // namespace
 
 void bind_solve(py::module_& m) {
+  bind_plan(m);
   py::class_<Answer>(m, "Answer")
       .def_property_readonly("t", [](const py::object& self) { return view(self, self.cast<const Answer&>().motion.t, 1); })
       .def_property_readonly("omega", [](const py::object& self) {
@@ -126,7 +119,8 @@ void bind_solve(py::module_& m) {
       .def_property_readonly("events", [](const Answer& answer) { return describe_events(answer.motion); })
       .def_property_readonly("plan", [](const Answer& answer) {
         const Plan& plan = answer.motion.plan;
-        return py::make_tuple(plan.model, plan.method, plan.state);
+        return py::make_tuple(plan.model, plan.method, plan.state, plan.accuracy, plan.certify, plan.rtol,
+                              plan.predicted_error, plan.predicted_seconds);
       })
       .def_property_readonly("error", [](const Answer& answer) { return answer.motion.error; })
       .def_property_readonly("error_kind", [](const Answer& answer) { return answer.motion.error_kind; })
@@ -153,8 +147,8 @@ void bind_solve(py::module_& m) {
       });
 
   m.def("solve", &solve_scene, py::arg("scene"), py::arg("accuracy"), py::arg("method"), py::arg("rtol"),
-        py::arg("atol"), py::arg("step"), py::arg("max_steps"), py::arg("dense"), py::arg("formulation"),
-        py::arg("events"), py::arg("progress"));
+        py::arg("atol"), py::arg("step"), py::arg("certify"), py::arg("max_steps"), py::arg("dense"),
+        py::arg("formulation"), py::arg("events"), py::arg("progress"), py::arg("factors").none(true));
 
   m.def("method_refusal", [](const std::string& method, const Scene& scene) { return compute_refusal(method, scene); },
         "Why a method does not take a scene, or an empty string.");

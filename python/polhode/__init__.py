@@ -23,6 +23,8 @@ from .inertia import PrincipalAxes as PrincipalAxes
 from .many import Motions as Motions
 from .many import solve_many as solve_many
 from .motion import Motion as Motion
+from .planning import Plan as Plan
+from .planning import plan as plan
 from .scene import Scene as Scene
 from .solver import Event as Event
 from .solver import generalised_forces as generalised_forces

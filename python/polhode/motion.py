@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from .planning import Plan
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -18,14 +19,6 @@ if TYPE_CHECKING:
     from .scene import Scene
 
 Floats = npt.NDArray[np.float64]
-
-
-class Plan(NamedTuple):
-    """Which model and method were taken, and what was carried along."""
-
-    model: str
-    method: str
-    state: str
 
 
 class EventHit(NamedTuple):
@@ -40,7 +33,7 @@ class EventHit(NamedTuple):
 # How each part of the core's answer is shown.
 _PARTS: dict[str, Callable[[Any], Any]] = {
     **dict.fromkeys(("t", "omega", "attitude", "status", "stats", "error", "error_kind", "asked"), lambda part: part),
-    "plan": lambda part: Plan(*part), "events": lambda part: tuple(EventHit(*hit) for hit in part),
+    "plan": lambda part: part, "events": lambda part: tuple(EventHit(*hit) for hit in part),
 }
 
 
@@ -83,16 +76,17 @@ class Motion:
     asked: float
     events: tuple[EventHit, ...]
 
-    def __init__(self, scene: Scene, answer: _core.Answer) -> None:
+    def __init__(self, scene: Scene, answer: _core.Answer, wishes: dict[str, Any] | None = None) -> None:
         self.scene = scene
         self._answer: _core.Answer | None = answer
+        self._wishes = wishes or {}
 
     def __getattr__(self, name: str) -> Any:
         # Each part crosses from the compiled core when it is first asked for.
         if name not in _PARTS or self.__dict__.get("_answer") is None:
             raise AttributeError(f"'Motion' object has no attribute {name!r}")
-        value = _PARTS[name](getattr(self._answer, name))
-        self.__dict__[name] = value
+        part = getattr(self._answer, name)
+        value = self.__dict__[name] = Plan(self.scene, part, self._wishes) if name == "plan" else _PARTS[name](part)
         return value
 
     def _need(self, *names: str) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from typing import Any
 
@@ -9,7 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from .calibration import factors
 from .motion import Floats, Motion
+from .planning import Plan
 from .scene import Scene
 
 
@@ -42,11 +45,29 @@ def _event(item: Any) -> tuple[Any, int, bool]:
     return event.function, event.direction, event.terminal
 
 
+def _take(plan: Plan, accuracy: float | None, method: str | None, rtol: float | None, atol: float | None,
+          step: float | None, certify: bool, formulation: str) -> tuple[float, str | None, bool, str]:
+    """What a plan asks for, where nothing contradicts it."""
+    if not isinstance(plan, Plan):
+        raise _core.InvalidInput(f"plan: must be what polhode.plan() made, got {type(plan).__name__}")
+    for name, value in (("accuracy", accuracy), ("rtol", rtol), ("atol", atol), ("step", step)):
+        if value is not None:
+            raise _core.InvalidInput(f"{name}: must be left out beside plan=, which has its own, got {value!r}")
+    if math.isnan(plan.accuracy):
+        raise _core.InvalidInput("plan: must be made for an accuracy; this one is of a run by tolerances")
+    asked = plan.wishes.get("formulation", "euler")
+    if formulation not in ("euler", asked):
+        raise _core.InvalidInput(f"formulation: must be left out beside plan=, which has {asked!r}, got {formulation!r}")
+    return plan.accuracy, method if method is not None else plan.method, certify and plan.certify, asked
+
+
 def solve(
     scene: Scene,
     accuracy: float | None = None,
     *,
+    plan: Plan | None = None,
     method: str | None = None,
+    certify: bool = True,
     rtol: float | None = None,
     atol: float | None = None,
     step: float | None = None,
@@ -63,13 +84,17 @@ def solve(
     scene : Scene
     accuracy : float, optional
         Of every sample: the larger of the error in omega, relative to the largest omega, and the angle of the attitude's
-        error [rad]. 0 < accuracy <= 1; 1e-9 when no tolerance is given either. A closed form is taken where one holds,
-        and `motion.error` bounds its rounding; else it is aimed at by steps ten times finer and not yet estimated:
-        `motion.error` is NaN. Excludes rtol and atol.
+        error [rad]. 0 < accuracy <= 1; 1e-9 when no tolerance is given either. `motion.error` bounds the error that was
+        got, and `motion.success` says whether that is within the accuracy. Excludes rtol and atol.
+    plan : Plan, optional
+        What `plan()` made: its accuracy, method and certificate are taken. A method given beside it overrides its own.
     method : str, optional
-        A name of `methods()`, or "exact" for the closed form alone; without it the best there is for the scene.
+        A name of `methods()`, or "exact" for the closed form alone; without it the plan's choice.
+    certify : bool
+        Bound the error of a stepped motion by a second, coarser run. False saves that run: `motion.error` is then what is
+        expected, and `motion.error_kind` says so.
     rtol, atol : float, optional
-        Tolerances of a step. Rates are measured against their own size, the quaternion against 1; atol is added, in
+        Tolerances of a step, for those who want to choose: the error is then not estimated. Rates are measured against their own size, the quaternion against 1; atol is added, in
         rad/s and in quaternion components.
     step : float, optional
         Of fixed-step methods [s], which ask for it and refuse accuracy, rtol and atol.
@@ -101,9 +126,12 @@ def solve(
         raise _core.InvalidInput(f"events: must be events or callables, got {events!r}")
     if not isinstance(max_steps, (int, np.integer)):
         raise _core.InvalidInput(f"max_steps: must be a whole number, got {max_steps!r}")
-    answer = _core.solve(scene, accuracy, method, rtol, atol, step, int(max_steps), bool(dense), str(formulation),
-                         [_event(item) for item in events], progress)
-    return Motion(scene, answer)
+    if plan is not None:
+        accuracy, method, certify, formulation = _take(plan, accuracy, method, rtol, atol, step, certify, formulation)
+    wishes = None if method is None and formulation == "euler" else {"method": method, "formulation": formulation}
+    answer = _core.solve(scene, accuracy, method, rtol, atol, step, bool(certify), int(max_steps), bool(dense), str(formulation),
+                         [_event(item) for item in events], progress, factors())
+    return Motion(scene, answer, wishes)
 
 
 def methods() -> list[dict[str, Any]]:

@@ -90,6 +90,26 @@ def test_run_as_json(small):
     assert content["error"] < 1e-14 and content["error_kind"] == "bounded" and set(content["drift"]) == {"energy", "angular_momentum"}
 
 
+def test_plan(small):
+    result = call("plan", small, "S5", "--accuracy", "1e-8")
+    assert result.exit_code == 0, result.output
+    assert "small: omega and attitude within 1e-08" in result.stdout and "> triaxial" in result.stdout and "S5:" in result.stdout
+    plans = json.loads(call("plan", small, "S5", "--json").stdout)
+    assert [one["model"] for one in plans] == ["triaxial", "euler"] and plans[1]["candidates"] and plans[1]["facts"]["turns"] > 5
+    assert call("plan", small, "--method", "rk5").exit_code == 2 and call("plan", small, "--accuracy", "2").exit_code == 2
+
+
+def test_calibrate(tmp_path, monkeypatch):
+    from polhode import calibration
+
+    monkeypatch.setenv("POLHODE_CACHE", str(tmp_path))
+    monkeypatch.setattr(calibration, "MOST_SECONDS", 0.05)
+    calibration._load.cache_clear()
+    result = call("calibrate")
+    calibration._load.cache_clear()
+    assert result.exit_code == 0 and str(tmp_path) in result.stdout and "heavy_top" in result.stdout
+
+
 def test_methods():
     records = json.loads(call("methods", "--json").stdout)
     assert [r["name"] for r in records] == [r["name"] for r in ph.methods()]

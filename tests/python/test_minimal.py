@@ -79,6 +79,11 @@ def smoke_solve():
     assert np.allclose(motion.omega, ph.FreeMotion(BLOCK, OMEGA).at(TIMES)[0], atol=1e-8)
 
 
+def smoke_plan():
+    made = ph.plan(scene(), 1e-9)
+    assert isinstance(made, ph.Plan) and made.method == "exact" and made.model in str(made)
+
+
 def smoke_event():
     spin = ph.Event(lambda t, omega, attitude: omega[0], terminal=True)
     assert ph.solve(scene(times=[0.0, 5.0]), events=[spin]).status == "event"
@@ -125,6 +130,7 @@ SMOKE = {
     "MassProperties": smoke_mass_properties,
     "Motion": smoke_solve,
     "Motions": smoke_solve_many,
+    "Plan": smoke_plan,
     "PrincipalAxes": smoke_principal_axes,
     "Rotation": smoke_rotation,
     "Scene": smoke_scene,
@@ -137,6 +143,7 @@ SMOKE = {
     "generalised_forces": smoke_generalised_forces,
     "heavy_top": smoke_heavy_tops,
     "methods": smoke_methods,
+    "plan": smoke_plan,
     "solve": smoke_solve,
     "solve_many": smoke_solve_many,
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <numbers>
 
@@ -100,7 +101,9 @@ std::string refuse_separatrix(const Scene& scene, const Facts& facts) {
   if (!torques.empty()) return torques;
   if (facts.symmetry != Symmetry::triaxial) return "it has no intermediate axis";
   if (facts.separatrix == 0.0 && facts.off_axis > 0.0) return "";
-  return "k'^2 = " + to_text(facts.separatrix) + ", and it is 0 on the separatrix alone";
+  char text[64];
+  std::snprintf(text, sizeof text, "k'^2 = %.2g, and it is 0 on the separatrix alone", facts.separatrix);
+  return text;
 }
 
 std::string refuse_triaxial(const Scene& scene, const Facts& facts) { return refuse_free(scene, facts); }

@@ -1,13 +1,12 @@
-#include "exact_run.hpp"
+#include "solve/exact_run.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "polhode/core/error.hpp"
 #include "polhode/ode/stepper.hpp"
 #include "polhode/solve/closed_form.hpp"
-#include "run.hpp"
+#include "solve/run.hpp"
 
 namespace polhode {
 namespace {
@@ -95,51 +94,25 @@ Motion evaluate(const Scene& scene, const SolveOptions& options, const ClosedFor
   return motion;
 }
 
-std::string name_reasons(const Scene& scene, const Facts& facts) {
-  if (facts.is_free()) return "";
-  return exact_models().back().refuse(scene, facts);
-}
-
 }  // namespace
 
-std::optional<Motion> solve_exactly(const Scene& scene, const SolveOptions& options) {
-  const bool asked_for = options.method == "exact";
-  const char* cause = "a closed form has no steps";
-  if (asked_for) {
-    if (options.rtol) throw InvalidInput("rtol", "left out with method 'exact'", to_text(*options.rtol), cause);
-    if (options.atol) throw InvalidInput("atol", "left out with method 'exact'", to_text(*options.atol), cause);
-    if (options.step) throw InvalidInput("step", "left out with method 'exact'", to_text(*options.step), cause);
-    if (options.formulation != Formulation::euler) {
-      throw InvalidInput("formulation", "left out with method 'exact'", "'lagrangian'", "a closed form integrates nothing");
-    }
-  } else if (options.method || options.rtol || options.atol || options.step ||
-             options.formulation != Formulation::euler) {
-    return std::nullopt;
-  }
-  const auto begin = std::chrono::steady_clock::now();
-  const Facts facts = compute_facts(scene);
-  std::optional<ClosedForm> form = find_closed_form(scene, facts);
-  if (!form) {
-    if (!asked_for) return std::nullopt;
-    throw InvalidInput("method 'exact'", "used where a closed form holds", name_reasons(scene, facts),
-                       "no closed form is known for it; leave method out");
-  }
-  const double error = compute_closed_form_error(scene, facts, *form);
-  Motion motion = options.events.empty() ? evaluate(scene, options, *form) : run_with_events(scene, options, *form);
-  motion.plan = {std::string(form->model()), "exact", scene.want().attitude ? "omega, attitude" : "omega"};
-  motion.asked = options.accuracy.value_or(1e-9);
+Motion solve_exactly(const Scene& scene, const Facts& facts, const SolveOptions& options, ClosedForm form,
+                     const Plan& plan) {
+  const double error = plan.predicted_error;
+  Motion motion = options.events.empty() ? evaluate(scene, options, form) : run_with_events(scene, options, form);
+  motion.plan = plan;
+  motion.asked = plan.accuracy;
   motion.error = error;
   motion.error_kind = error <= motion.asked ? "bounded" : "limit";
   if (options.events.empty()) motion.t_reached = scene.t0() + facts.after;
   motion.t_begin = scene.t0() - facts.before;
   motion.has_dense = options.dense;
-  if (options.dense) motion.closed_form = std::make_shared<const ClosedForm>(*std::move(form));
+  if (options.dense) motion.closed_form = std::make_shared<const ClosedForm>(std::move(form));
   if (motion.message.empty()) motion.message = "evaluated at every time by the closed form, whose rounding bounds the error";
   if (error > motion.asked && motion.status == Status::finished) {
     motion.message.append("; float64 allows ").append(to_text(error)).append(", not the ").append(to_text(motion.asked));
     motion.message += " asked";
   }
-  motion.stats.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return motion;
 }
 

@@ -1,13 +1,12 @@
 #pragma once
 
-#include <optional>
-
+#include "polhode/solve/closed_form.hpp"
 #include "polhode/solve/solve.hpp"
 
 namespace polhode {
 
-/// The answer of a closed form, where one holds and the options leave the choice: an accuracy or nothing at all, Euler's
-/// equations, and no method but "exact". @throws InvalidInput when "exact" is asked for where it cannot be had.
-std::optional<Motion> solve_exactly(const Scene& scene, const SolveOptions& options);
+/// The answer of a closed form, with the events found on it; its plan has bounded the error.
+Motion solve_exactly(const Scene& scene, const Facts& facts, const SolveOptions& options, ClosedForm form,
+                     const Plan& plan);
 
 }  // namespace polhode

@@ -27,6 +27,26 @@ Vector3d compute_torque(const Scene& scene, const Vector3d& omega) {
   return {tau[0], tau[1], tau[2]};
 }
 
+/// The rates at which the torques drive omega at the start, ascending, the damped ones negative: eigenvalues of the
+/// symmetric part of I^-1/2 (d tau / d omega) I^-1/2.
+Vector3d compute_drive_rates(const Scene& scene) {
+  const Vector3d& I = scene.inertia_B().moments();
+  const Matrix3d& R = scene.inertia_B().axes();
+  // The step in omega is as large as omega itself: damping is linear, and nothing is lost to rounding.
+  double step = scene.omega().norm();
+  if (step == 0.0) step = 1.0;
+  Matrix3d D;
+  for (int j = 0; j < 3; ++j) {
+    const Vector3d up = scene.omega() + step * R.col(j), down = scene.omega() - step * R.col(j);
+    const Vector3d slope = (compute_torque(scene, up) - compute_torque(scene, down)) / (2 * step);
+    D.col(j) = R.transpose() * slope;
+  }
+  Matrix3d S;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) S(i, j) = 0.5 * (D(i, j) + D(j, i)) / std::sqrt(I[i] * I[j]);
+  return S.allFinite() ? compute_principal_axes(S).moments : Vector3d::Zero();
+}
+
 }  // namespace
 
 TorqueSum find_acting_torques(const Scene& scene) {
@@ -91,32 +111,24 @@ bool may_spin_up(const Scene& scene, const TorqueSum& torques) {
 double estimate_turns(const Scene& scene, const TorqueSum& torques, double span) {
   const double start = scene.omega().norm();
   double turned = start * span;
-  if (torques.acting > 0) {
+  if (torques.acting == 0) return turned / (2 * std::numbers::pi);
+  if (may_spin_up(scene, torques)) {
+    // Between a torque that never adds up and one that always does, in the middle by their ratio.
     const double acceleration = compute_torque_scale(scene) / scene.inertia_B().moments()[0];
     turned = std::hypot(start, std::sqrt(acceleration)) * span;
-    if (may_spin_up(scene, torques)) turned = std::max(turned, start * span + 0.5 * acceleration * span * span);
+    turned = std::sqrt(turned * std::max(turned, start * span + 0.5 * acceleration * span * span));
+  } else if (torques.has_potential) {
+    const double acceleration = compute_torque_scale(scene) / scene.inertia_B().moments()[0];
+    turned = std::hypot(start, std::sqrt(acceleration)) * span;
+  } else if (torques.uses_rates) {
+    const double slowest = -compute_drive_rates(scene)[2];
+    if (slowest > 0) turned = start * -std::expm1(-slowest * span) / slowest;
   }
   return turned / (2 * std::numbers::pi);
 }
 
 double compute_decay_rate(const Scene& scene, const TorqueSum& torques) {
-  if (!torques.uses_rates) return 0.0;
-  const Vector3d& I = scene.inertia_B().moments();
-  const Matrix3d& R = scene.inertia_B().axes();
-  // The step in omega is as large as omega itself: damping is linear, and nothing is lost to rounding.
-  double step = scene.omega().norm();
-  if (step == 0.0) step = 1.0;
-  Matrix3d D;
-  for (int j = 0; j < 3; ++j) {
-    const Vector3d up = scene.omega() + step * R.col(j), down = scene.omega() - step * R.col(j);
-    const Vector3d slope = (compute_torque(scene, up) - compute_torque(scene, down)) / (2 * step);
-    D.col(j) = R.transpose() * slope;
-  }
-  Matrix3d S;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) S(i, j) = 0.5 * (D(i, j) + D(j, i)) / std::sqrt(I[i] * I[j]);
-  if (!S.allFinite()) return 0.0;
-  return std::max(0.0, -compute_principal_axes(S).moments[0]);
+  return torques.uses_rates ? std::max(0.0, -compute_drive_rates(scene)[0]) : 0.0;
 }
 
 Facts compute_facts(const Scene& scene) {

@@ -34,4 +34,20 @@ inline double compute_distance(std::size_t n, const double* omega_a, const doubl
   return rates > angle || rates != rates ? rates : angle;
 }
 
+/// How far from the start the first sample lies at which two motions are farther apart than `most`; infinity for none.
+inline double find_parting(std::size_t n, const double* t, double t0, const double* omega_a, const double* attitude_a,
+                           const double* omega_b, const double* attitude_b, double most) {
+  double size = 0.0, parting = HUGE_VAL;
+  for (std::size_t i = 0; omega_a != nullptr && i < n; ++i) {
+    size = std::max(size, std::hypot(omega_a[3 * i], omega_a[3 * i + 1], omega_a[3 * i + 2]));
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    double moved = 0.0;
+    for (std::size_t k = 3 * i; omega_a != nullptr && k < 3 * i + 3; ++k) moved = std::hypot(moved, omega_a[k] - omega_b[k]);
+    const double turned = attitude_a == nullptr ? 0.0 : compute_distance(1, nullptr, attitude_a + 4 * i, nullptr, attitude_b + 4 * i);
+    if (!(moved <= most * size && turned <= most)) parting = std::min(parting, std::abs(t[i] - t0));
+  }
+  return parting;
+}
+
 }  // namespace polhode

@@ -31,9 +31,11 @@ const std::vector<BodyMethod>& all() {
 }  // namespace
 
 const BodyMethod& find_body_method(std::string_view name) {
-  std::string names;
   for (const BodyMethod& method : all()) {
     if (method.record.name == name) return method;
+  }
+  std::string names;
+  for (const BodyMethod& method : all()) {
     names.append(names.empty() ? "" : ", ").append(method.record.name);
   }
   throw InvalidInput("method", "one of " + names, "'" + std::string(name) + "'");

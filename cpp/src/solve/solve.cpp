@@ -5,8 +5,11 @@
 
 #include "polhode/core/error.hpp"
 #include "polhode/solve/invariants.hpp"
+#include "solve/certify.hpp"
 #include "solve/exact_run.hpp"
 #include "solve/methods/body_method.hpp"
+#include "solve/planning.hpp"
+#include "solve/spot_check.hpp"
 
 namespace polhode {
 namespace {
@@ -47,9 +50,21 @@ void require_finite_start(const Scene& scene) {
   }
 }
 
+void require_no_steps(const SolveOptions& options) {
+  constexpr const char* cause = "a closed form has no steps";
+  const std::pair<const char*, const std::optional<double>&> without_effect[] = {
+      {"rtol", options.rtol}, {"atol", options.atol}, {"step", options.step}};
+  for (const auto& [where, value] : without_effect) {
+    if (value) throw InvalidInput(where, "left out with method 'exact'", to_text(*value), cause);
+  }
+  if (options.formulation != Formulation::euler) {
+    throw InvalidInput("formulation", "left out with method 'exact'", "'lagrangian'", "a closed form integrates nothing");
+  }
+}
+
 }  // namespace
 
-Motion solve(const Scene& scene, const SolveOptions& options) {
+void check_options(const Scene& scene, const SolveOptions& options) {
   if (options.accuracy && !(*options.accuracy > 0.0 && *options.accuracy <= 1.0)) {
     throw InvalidInput("accuracy", "above 0 and at most 1", to_text(*options.accuracy));
   }
@@ -68,8 +83,9 @@ Motion solve(const Scene& scene, const SolveOptions& options) {
       throw InvalidInput("event.direction", "-1, 0 or 1", std::to_string(event.direction));
     }
   }
-  if (std::optional<Motion> exact = solve_exactly(scene, options)) return *std::move(exact);
-  const std::string name = options.method.value_or("rk45");
+  if (options.method == "exact") return require_no_steps(options);
+  if (!options.method) return;
+  const std::string& name = *options.method;
   const BodyMethod& method = find_body_method(name);
   require_fitting(method.record, options);
   if (options.formulation != Formulation::euler && method.of_bodies) {
@@ -78,23 +94,55 @@ Motion solve(const Scene& scene, const SolveOptions& options) {
   if (const std::string why = method.refuse ? method.refuse(scene) : ""; !why.empty()) {
     throw InvalidInput("method '" + name + "'", "used with " + std::string(method.record.needs), why);
   }
+}
 
+namespace {
+
+/// By tolerances of a step, or steps of one length: the error is not estimated.
+Motion solve_by_tolerance(const Scene& scene, const SolveOptions& options) {
+  const std::string name = options.method.value_or("rk45");
+  const BodyMethod& method = find_body_method(name);
+  require_fitting(method.record, options);
   const bool adaptive = method.record.adaptive;
-  const double asked = !adaptive ? std::numeric_limits<double>::infinity()
-                                 : (options.accuracy ? *options.accuracy : options.rtol.value_or(1e-9));
-  double rtol = options.rtol ? *options.rtol : asked / 10;
+  const double asked = adaptive ? options.rtol.value_or(1e-9) : std::numeric_limits<double>::infinity();
+  double rtol = asked;
   const bool raised = rtol < method.record.least_rtol;
   if (raised) rtol = method.record.least_rtol;
   const RunOptions run_options{options, {rtol, options.atol.value_or(0.0), options.step.value_or(0.0)}};
 
-  require_finite_start(scene);
-  const auto begin = std::chrono::steady_clock::now();
   Motion motion = method.solve(scene, run_options);
-  motion.stats.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   motion.plan.method = name;
   motion.asked = asked;
   if (motion.message.empty()) motion.message = "reached the last time; the error was not estimated";
   if (raised) motion.message += "; the tolerance was raised to " + to_text(rtol) + ", the least that float64 can serve";
+  return motion;
+}
+
+/// By the plan: a closed form where one holds, else steps whose error is certified.
+Motion solve_planned(const Scene& scene, const SolveOptions& options) {
+  const Facts facts = compute_facts(scene);
+  if (leaves_choice(options) || options.method == "exact") {
+    if (std::optional<ClosedForm> form = find_closed_form(scene, facts)) {
+      const Plan plan = make_exact_plan(scene, *form, facts, options);
+      return solve_exactly(scene, facts, options, *std::move(form), plan);
+    }
+    if (options.method) throw_no_closed_form(scene, facts);
+  }
+  return solve_certified(scene, facts, options, make_method_plan(scene, facts, options));
+}
+
+}  // namespace
+
+Motion solve(const Scene& scene, const SolveOptions& options) {
+  check_options(scene, options);
+  if (scene.torque_sum().acting > 0) {
+    require_finite_start(scene);
+    require_true_claims(scene);
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  const bool by_tolerance = options.rtol || options.atol || options.step;
+  Motion motion = by_tolerance ? solve_by_tolerance(scene, options) : solve_planned(scene, options);
+  motion.stats.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return motion;
 }
 

@@ -51,7 +51,7 @@ void require_true_claims(const Scene& scene) {
       const auto check = [&](bool seen, const char* claim, const char* changed, const Look& other) {
         if (seen) return;
         const Vector3d then = call(*custom, other, scene.inertia_B().matrix());
-        if (then == tau) return;
+        if (then == tau || !then.allFinite() || !tau.allFinite()) return;
         throw InvalidInput(where, std::string(claim) + "=True, for its torque changes when only the " + changed + " does",
                            text(tau) + " and " + text(then) + " N m at t = " + to_text(here.t) + " s",
                            "the claim makes the answer wrong; leave it out when in doubt");

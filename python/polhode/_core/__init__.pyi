@@ -623,6 +623,12 @@ class Scene:
     @property
     def want(self) -> tuple[typing.Any, ...]:
         ...
+class CostFactors:
+    """
+    How much slower than forecast each method is on this machine, by name.
+    """
+    def __init__(self, factors: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex]) -> None:
+        ...
 class Answer:
     def __call__(self, arg0: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         ...
@@ -651,7 +657,7 @@ class Answer:
     def omega(self) -> typing.Any:
         ...
     @property
-    def plan(self) -> tuple[str, str, str]:
+    def plan(self) -> tuple[str, str, str, float, bool, float, float, float]:
         ...
     @property
     def stats(self) -> dict[str, typing.Any]:
@@ -688,6 +694,10 @@ def drift(arg0: Scene, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.floa
     ...
 def energy(arg0: Scene, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg3: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
     ...
+def exact_models() -> list[typing.Any]:
+    """
+    The closed forms: name, doc, source.
+    """
 def generalised_forces(arg0: typing.Any, arg1: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
     ...
 def make_shape(name: str, values: collections.abc.Sequence[typing.Any]) -> MassProperties:
@@ -710,6 +720,8 @@ def method_refusal(arg0: str, arg1: Scene) -> str:
     """
     Why a method does not take a scene, or an empty string.
     """
+def plan(scene: Scene, accuracy: typing.Any, method: typing.Any, certify: bool, formulation: str, factors: CostFactors) -> dict[str, typing.Any]:
+    ...
 def principal_axes(matrices: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], int]:
     """
     (moments, axes, number of matrices that are not finite); see polhode.inertia.principal_axes.
@@ -726,7 +738,7 @@ def shape_volume(name: str, values: collections.abc.Sequence[typing.Any]) -> flo
     """
     The volume of a body, from all its parameters, in the record's order.
     """
-def solve(scene: Scene, accuracy: typing.Any, method: typing.Any, rtol: typing.Any, atol: typing.Any, step: typing.Any, max_steps: typing.SupportsInt | typing.SupportsIndex, dense: bool, formulation: str, events: list[typing.Any], progress: typing.Any) -> Answer:
+def solve(scene: Scene, accuracy: typing.Any, method: typing.Any, rtol: typing.Any, atol: typing.Any, step: typing.Any, certify: bool, max_steps: typing.SupportsInt | typing.SupportsIndex, dense: bool, formulation: str, events: list[typing.Any], progress: typing.Any, factors: CostFactors) -> Answer:
     ...
 def to_numbers(value: typing.Any, name: str, shape: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], finite: bool = True) -> numpy.typing.NDArray[numpy.float64]:
     """

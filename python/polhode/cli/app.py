@@ -12,8 +12,9 @@ from typing import Annotated, Any
 
 import typer
 
-from .. import __version__
+from .. import __version__, calibration
 from .._core import IntegrationFailure, InvalidInput
+from ..planning import plan as make_plan
 from ..scene import Scene
 from ..solver import methods as method_records
 from ..solver import solve
@@ -109,6 +110,41 @@ def run(
         motion.plot().savefig(picture, dpi=160)
         print(f"wrote {picture}", file=sys.stderr if as_json else sys.stdout)
     return 0 if motion.success else 1
+
+
+@_command
+def plan(
+    scenes: Annotated[list[str], typer.Argument(help="Scene files, or names such as S1.")],
+    accuracy: Annotated[float | None, typer.Option(help="Of every sample; 1e-9 when nothing is given.")] = None,
+    method: Annotated[str | None, typer.Option(help="exact, or one of `polhode methods`.")] = None,
+    certify: Annotated[bool, typer.Option(help="Bound the error by a second run.")] = True,
+    as_json: Json = False,
+) -> int:
+    """Say how scenes would be solved, and why.
+
+    Shows what is seen in each scene, every closed form and method with its expected error and time, and the choice.
+    """
+    made = [make_plan(Scene.load(scene), accuracy, method=method, certify=certify) for scene in scenes]
+    if as_json:
+        _print_json([one.as_dict() for one in made])
+    else:
+        print("\n\n\n".join(str(one) for one in made))
+    return 0
+
+
+@_command
+def calibrate(as_json: Json = False) -> int:
+    """Measure this machine for the plans to come.
+
+    Takes less than 20 s; the result is kept in the user's cache folder.
+    """
+    with show.Bar("measuring") as bar:
+        found = calibration.calibrate(lambda done, total: bar.fraction(done, total))
+    if as_json:
+        _print_json({"file": str(calibration.cache_file()), "factors": found})
+    else:
+        show.calibration(found, str(calibration.cache_file()))
+    return 0
 
 
 @_command

@@ -33,7 +33,7 @@ def _arrays(motion: Motion) -> dict[str, Any]:
 def to_json(motion: Motion) -> dict[str, Any]:
     """Return everything a motion says; what is not a finite number is null."""
     return {
-        "scene": motion.scene.name, "plan": motion.plan._asdict(), "asked": motion.asked,
+        "scene": motion.scene.name, "plan": {key: getattr(motion.plan, key) for key in ("model", "method", "state", "rtol")}, "asked": motion.asked,
         "success": motion.success, "status": motion.status, "message": motion.message,
         "error": motion.error if math.isfinite(motion.error) else None, "error_kind": motion.error_kind,
         "drift": motion.drift, "stats": motion.stats,

@@ -118,6 +118,16 @@ def motion(result: Motion) -> None:
     out.print(Text(f"result  {'' if result.success else 'FINDING: '}{result.message}"))
 
 
+def calibration(factors: dict[str, float], file: str) -> None:
+    """Each model's and method's time, by the forecast's."""
+    out = console()
+    table = _table("model or method", "time / forecast", left=1)
+    for name, factor in factors.items():
+        table.add_row(name, f"{factor:.2f}")
+    out.print(table)
+    out.print(Text(f"kept in {file}"))
+
+
 def methods(records: list[dict[str, Any]]) -> None:
     """One line a method."""
     table = _table("method", "order", "dense", "steps", "keeps", "what it is", "source", left=7)

@@ -10,6 +10,7 @@ namespace polhode::ode {
 struct Forecast {
   double error_per_turn = 0.0;     ///< global error = rtol error_per_turn n (1 + n / secular) after n turns; 0: no forecast
   double secular = 30.0;           ///< turns after which the energy's drift shows in the phase
+  double margin = 1.0;             ///< by which a plan's tolerance is finer: where that is cheaper than another try
   double floor_per_turn = 0.0;     ///< error per turn of rounding, whatever the tolerance
   double steps_per_radian = 0.0;   ///< at rtol = 1, with the power law ...
   double power = 0.0;              ///< ... steps = steps_per_radian rtol^-power
@@ -24,10 +25,10 @@ struct Forecast {
     return rtol * error_per_turn * turns * (1 + turns / secular) + floor_per_turn * turns;
   }
 
-  /// The tolerance whose error is expected to be this.
+  /// The tolerance to take for this error.
   double find_rtol(double error, double turns) const {
     const double n = std::max(turns, 0.5);
-    return error / (error_per_turn * n * (1 + n / secular));
+    return error / (margin * error_per_turn * n * (1 + n / secular));
   }
 
   double compute_steps(double rtol, double turns, double stiffness) const {

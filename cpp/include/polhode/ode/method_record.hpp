@@ -3,6 +3,8 @@
 #include <limits>
 #include <string_view>
 
+#include "polhode/ode/forecast.hpp"
+
 namespace polhode::ode {
 
 /// What the list of methods tells about each of them; ph.methods(), the command line, the docs and the suite of tests
@@ -21,6 +23,7 @@ struct MethodRecord {
   std::string_view needs = "";      ///< what it asks of a scene; "" when it takes any
   std::string_view doc;
   std::string_view source;
+  Forecast forecast = {};           ///< what a plan may expect of it; without it no plan takes it
 
   int order_with_torque() const { return driven_order == 0 ? order : driven_order; }
 };

@@ -25,6 +25,11 @@ struct Plan {
   std::string model;      ///< a name of exact_models(), "euler" or "lagrangian"
   std::string method;     ///< "exact", or a name of ph.methods()
   std::string state;      ///< what is carried along: "omega", "omega, attitude", ...
+  double accuracy = std::numeric_limits<double>::quiet_NaN();   ///< that was planned for; NaN: tolerances were given
+  bool certify = true;    ///< the error is to be bounded, not only expected
+  double rtol = 0.0;      ///< of the run that is returned; 0 where there are no steps
+  double predicted_error = std::numeric_limits<double>::quiet_NaN();
+  double predicted_seconds = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct MotionEvent {
@@ -38,7 +43,8 @@ struct Motion {
   std::vector<double> t, omega, attitude;
   Status status = Status::finished;
   std::string message;
-  ode::Counts stats;
+  ode::Counts stats;                     ///< of all runs together
+  int runs = 1;                          ///< two or more where the error was certified
   Plan plan;
   double error = std::numeric_limits<double>::quiet_NaN();   ///< of all samples; NaN: not estimated
   std::string error_kind = "not estimated";   ///< "bounded" | "expected" | "limit" (more than was asked) | "not estimated"

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,9 +20,13 @@ struct SceneEvent {
 /// Euler's equations, or Lagrange's in the textbook's z-x-z angles (which fail where theta is 0 or pi).
 enum class Formulation { euler, lagrangian };
 
+/// How much slower than forecast each method or exact model is on this machine, by name; what is not there counts as 1.
+using CostFactors = std::map<std::string, double, std::less<>>;
+
 struct SolveOptions {
   std::optional<double> accuracy = {};    ///< of every sample, 0 < accuracy <= 1; excludes rtol and atol
-  std::optional<std::string> method = {}; ///< a name of methods(); without it the best there is
+  std::optional<std::string> method = {}; ///< "exact" or a name of methods(); without it the plan's
+  bool certify = true;                    ///< bound the error by a second run; else it is only expected
   std::optional<double> rtol = {};        ///< relative tolerance of a step
   std::optional<double> atol = {};        ///< absolute tolerance of a step, in rad/s and in quaternion components
   std::optional<double> step = {};        ///< [s], for fixed-step methods alone
@@ -29,6 +34,7 @@ struct SolveOptions {
   bool dense = false;                     ///< keep the continuous extension, for motion.at(t)
   Formulation formulation = Formulation::euler;
   std::vector<SceneEvent> events = {};
+  const CostFactors* cost_factors = nullptr;   ///< for the choice between methods
   /// Called about twenty times a second with the time reached and the last time; false ends the run.
   std::function<bool(double reached, double last)> progress = {};
 };

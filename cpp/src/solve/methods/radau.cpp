@@ -284,6 +284,8 @@ const BodyMethod radau_method{
         .doc = "Radau IIA of order 5 for the rates, the attitude by Magnus' expansion: for stiff damping, where explicit "
                "steps are bound by stability.",
         .source = "Hairer & Wanner 1996, Solving ODEs II, sec. IV.8; Blanes, Casas & Ros 2000, BIT 40, 434",
+        .forecast = {.error_per_turn = 0.5, .floor_per_turn = 1e-15, .steps_per_radian = 0.21, .power = 0.165,
+                     .step_seconds = 4.5e-7},
     },
     &solve_radau,
 };

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string_view>
+
+#include "polhode/solve/closed_form.hpp"
+#include "polhode/solve/methods.hpp"
+#include "polhode/solve/plan.hpp"
+
+// The parts of a plan, for those who make it, explain it and carry it out.
+namespace polhode {
+
+inline constexpr double default_accuracy = 1e-9;
+inline constexpr double pair_ratio = 5.0;             ///< of the tolerances of the two runs of a certificate
+inline constexpr double custom_call_seconds = 3e-7;    ///< of a user's own torque, somewhere between C and Python
+
+void check_options(const Scene& scene, const SolveOptions& options);   ///< @throws InvalidInput
+bool leaves_choice(const SolveOptions& options);   ///< neither method nor formulation is asked for
+double get_accuracy(const SolveOptions& options);
+bool carries_attitude(const Scene& scene, const Facts& facts, const SolveOptions& options);
+double find_seconds_per_call(const Scene& scene);
+double find_factor(const CostFactors* factors, std::string_view name);
+
+Candidate judge_method(const Scene& scene, const Facts& facts, const SolveOptions& options, const ode::MethodRecord& record);
+Candidate judge_closed_form(const Scene& scene, const ClosedForm& form, const Facts& facts, const SolveOptions& options);
+Plan make_method_plan(const Scene& scene, const Facts& facts, const SolveOptions& options);
+Plan make_exact_plan(const Scene& scene, const ClosedForm& form, const Facts& facts, const SolveOptions& options);
+[[noreturn]] void throw_no_closed_form(const Scene& scene, const Facts& facts);
+
+}  // namespace polhode

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+
+#include "bind.hpp"
+#include "polhode/solve/plan.hpp"
+
+namespace polhode::python {
+
+void bind_plan(py::module_& m);
+
+/// None, or one finite number.
+std::optional<double> to_optional(const py::object& value, const char* name);
+
+/// A class of its own, or it would be taken for a dict.
+struct Factors {
+  CostFactors by_name;
+};
+
+/// What a plan is made of, from Python.
+SolveOptions to_wishes(const py::object& accuracy, const py::object& method, bool certify, const std::string& formulation);
+
+}  // namespace polhode::python

@@ -1,0 +1,250 @@
+"""Plans: the least model and the cheapest method that reach an accuracy, and why."""
+
+from __future__ import annotations
+
+import functools
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from . import _core, calibration
+
+if TYPE_CHECKING:
+    from .scene import Scene
+
+
+class Candidate(NamedTuple):
+    """An exact model or a method, and what is expected of it."""
+
+    name: str
+    exact: bool
+    why_not: str                # empty where it could do it
+    predicted_error: float      # what it would claim
+    predicted_seconds: float    # with every run of the certificate
+    rtol: float                 # of the run that would be returned; 0 for exact models
+
+
+class Plan:
+    """How a scene is solved to an accuracy; prints as a table.
+
+    Attributes
+    ----------
+    scene : Scene
+    model : str
+        The closed form's name, such as "triaxial" or "heavy_top", or "euler" or "lagrangian" where equations are stepped.
+    method : str
+        "exact", or a name of `methods()`.
+    state : str
+        What is carried along.
+    accuracy : float
+        What is planned for; NaN where tolerances were given and nothing was planned.
+    certify : bool
+        Whether the error is to be bounded, not only expected.
+    rtol : float
+        Tolerance of the run that is returned; 0 for closed forms.
+    predicted_error, predicted_seconds : float
+        What the result is expected to claim, and to cost.
+    facts : dict
+        What the plan looked at: numbers without units but for "span" [s] and "decay" [1/s].
+    candidates : tuple of Candidate
+        Everything that was considered.
+    reasons, left_out : tuple of str
+        Why this model and this method; what is not modelled and why that is safe.
+    """
+
+    def __init__(self, scene: Scene, parts: tuple[Any, ...], wishes: dict[str, Any]) -> None:
+        self.scene = scene
+        self.model: str
+        self.method: str
+        self.state: str
+        self.accuracy: float
+        self.certify: bool
+        self.rtol: float
+        self.predicted_error: float
+        self.predicted_seconds: float
+        (self.model, self.method, self.state, self.accuracy, self.certify, self.rtol, self.predicted_error,
+         self.predicted_seconds) = parts
+        self.wishes = wishes
+
+    @functools.cached_property
+    def _report(self) -> dict[str, Any]:
+        if math.isnan(self.accuracy):   # tolerances were given
+            facts = _core.plan(self.scene, None, None, True, "euler", calibration.factors())["facts"]
+            return {"facts": facts, "candidates": [], "left_out": [],
+                    "reasons": [f"{self.method} was asked for, with tolerances or steps of its own: nothing was planned."]}
+        return dict(_core.plan(self.scene, self.accuracy, self.wishes.get("method"), self.certify,
+                               self.wishes.get("formulation", "euler"), calibration.factors()))
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """What the plan looked at."""
+        return dict(self._report["facts"])
+
+    @property
+    def candidates(self) -> tuple[Candidate, ...]:
+        """Everything that was considered, exact models first."""
+        return tuple(Candidate(*one) for one in self._report["candidates"])
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """Why this model and this method."""
+        return tuple(self._report["reasons"])
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """What is not modelled, and why that is safe."""
+        return tuple(self._report["left_out"])
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return everything, as JSON can hold it."""
+        def number(value: float) -> float | None:
+            return value if math.isfinite(value) else None
+
+        return {
+            "scene": self.scene.name, "accuracy": number(self.accuracy), "model": self.model, "method": self.method,
+            "state": self.state, "certify": self.certify, "rtol": self.rtol,
+            "predicted_error": number(self.predicted_error), "predicted_seconds": number(self.predicted_seconds),
+            "facts": self.facts, "candidates": [one._asdict() for one in self.candidates],
+            "reasons": list(self.reasons), "left_out": list(self.left_out), "costs": calibration.describe(),
+        }
+
+    def __str__(self) -> str:
+        return "\n".join(_lines(self))
+
+    def __repr__(self) -> str:
+        asked = "" if math.isnan(self.accuracy) else f", accuracy={self.accuracy:g}"
+        return f"Plan({self.scene.name or 'unnamed'}: model={self.model!r}, method={self.method!r}, state={self.state!r}{asked})"
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Plan):
+            return NotImplemented
+        return self.scene == other.scene and self._key() == other._key()
+
+    def __hash__(self) -> int:
+        return hash((self.scene, self._key()))
+
+    def _key(self) -> tuple[Any, ...]:
+        nan_free = -1.0 if math.isnan(self.accuracy) else self.accuracy
+        return self.model, self.method, self.state, nan_free, self.certify
+
+
+def _duration(seconds: float) -> str:
+    for unit, scale in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)):
+        if seconds >= 0.95 * scale:
+            break
+    value = seconds / scale
+    return f"{value:.2g} {unit}" if value < 10 else f"{value:.0f} {unit}"
+
+
+def _percent(part: float) -> str:
+    return "0" if part == 0 else f"{100 * part:.2g} %" if part >= 1e-3 else f"{part:.0e}"
+
+
+_KEPT = {"energy": "energy", "angular_momentum": "angular momentum", "vertical_momentum": "L_z", "jacobi": "energy less n L_z"}
+
+
+def _describe_body(plan: Plan) -> str:
+    facts, moments = plan.facts, plan.scene.inertia.moments
+    text = ", ".join(f"{m:.4g}" for m in moments) + f" kg m^2: {facts['symmetry']}"
+    if facts["symmetry"] == "triaxial":
+        text += f" (gaps of {_percent(facts['gaps'][0])} and {_percent(facts['gaps'][1])})"
+    return text
+
+
+def _describe_start(plan: Plan) -> str:
+    facts = plan.facts
+    speed = math.hypot(*plan.scene.omega)
+    if speed == 0:
+        return "at rest"
+    text = f"{speed:.3g} rad/s, "
+    angle = math.degrees(facts["off_axis"])
+    text += "about a principal axis" if angle == 0 else f"{angle:.2g} degrees off the nearest principal axis"
+    return text + (f", k'^2 = {facts['separatrix']:.1e} from the separatrix" if 0 < facts["separatrix"] < 1e-3 else "")
+
+
+def _describe_torques(plan: Plan) -> str:
+    facts = plan.facts
+    names = ", ".join(type(torque).__name__ for torque in plan.scene.torques) or "none"
+    if not facts["free"]:
+        seen = [name for name in ("time", "attitude", "rates") if facts[f"sees_{name}"]]
+        names += f"; {'they look' if len(plan.scene.torques) > 1 else 'it looks'} at {' and '.join(seen) or 'nothing'}"
+    kept = [_KEPT[name] for name in facts["keeps"]]
+    return f"{names}; {' and '.join(kept) + (' stay' if len(kept) > 1 else ' stays') if kept else 'nothing is conserved'}"
+
+
+def _table(plan: Plan) -> list[str]:
+    """Every candidate; neighbours that are out for the same reason share a line."""
+    chosen = plan.model if plan.method == "exact" else plan.method
+    rows: list[tuple[str, str, str, str]] = []
+    for one in plan.candidates:
+        if not one.why_not:
+            note = "closed form" if one.exact else f"rtol {one.rtol:.0e}"
+            rows.append((one.name, f"{one.predicted_error:.0e}", _duration(one.predicted_seconds), note))
+        elif rows and rows[-1][3] == one.why_not:
+            rows[-1] = (f"{rows[-1][0]}, {one.name}", *rows[-1][1:])
+        else:
+            rows.append((one.name, "-", "-", one.why_not))
+    widths = [max(len(row[i]) for row in [("candidate", "error", "time", ""), *rows]) for i in range(3)]
+    return [f"{'>' if row[0] == chosen else ' '} {row[0]:<{widths[0]}}  {row[1]:>{widths[1]}}  {row[2]:>{widths[2]}}   {row[3]}".rstrip()
+            for row in [("candidate", "error", "time", ""), *rows]]
+
+
+def _lines(plan: Plan) -> list[str]:
+    facts, scene = plan.facts, plan.scene
+    count = scene.times.size
+    what = " and ".join(scene.want)
+    head = scene.name or "scene"
+    lines = [f"{head}: " + ("tolerances given" if math.isnan(plan.accuracy) else f"{what} within {plan.accuracy:g}"), ""]
+    about = "about " if not facts["free"] else ""
+    rows = [
+        ("body", _describe_body(plan)), ("start", _describe_start(plan)), ("torques", _describe_torques(plan)),
+        ("span", f"{facts['span']:.6g} s, {about}{facts['turns']:.3g} turns; " +
+                 ("its end alone" if facts["only_at_end"] else f"{count} samples") +
+                 (f"; decay x span = {facts['stiffness']:.1e}" if facts["stiffness"] > 1 else "")),
+    ]
+    lines += [f"  {name:<9}{text}" for name, text in rows]
+    if plan.candidates:
+        lines += ["", *_table(plan)]
+    lines.append("")
+    how = plan.model if plan.method == "exact" else f"{plan.method} on {'Euler' if plan.model == 'euler' else 'Lagrange'}'s equations"
+    lines.append(f"  choice   {how}, state: {plan.state}")
+    for name, texts in (("because", plan.reasons), ("left out", plan.left_out)):
+        lines += [f"  {name if i == 0 else '':<9}{text}" for i, text in enumerate(texts)]
+    if not math.isnan(plan.accuracy):
+        lines.append(f"  costs    {calibration.describe()}")
+    return lines
+
+
+def plan(scene: Scene, accuracy: float | None = None, *, method: str | None = None, certify: bool = True,
+         formulation: str = "euler") -> Plan:
+    """Choose the least model and the cheapest method for a scene, without running them.
+
+    Parameters
+    ----------
+    scene : Scene
+    accuracy : float, optional
+        Of every sample, as in `solve`; 1e-9 when left out.
+    method : str, optional
+        One that is to be taken, whatever it costs: "exact" or a name of `methods()`.
+    certify : bool
+        Bound the error by a second run; else it is only expected.
+    formulation : {"euler", "lagrangian"}
+        As in `solve`.
+
+    Returns
+    -------
+    Plan
+        ``print(plan)`` shows it as a table; ``solve(scene, plan=plan)`` carries it out.
+
+    Raises
+    ------
+    InvalidInput
+        For an accuracy that is not in (0, 1], and for wishes that contradict each other or the scene.
+    """
+    from .scene import Scene
+
+    if not isinstance(scene, Scene):
+        raise _core.InvalidInput(f"scene: must be a polhode.Scene, got {type(scene).__name__}")
+    report = _core.plan(scene, accuracy, method, bool(certify), str(formulation), calibration.factors())
+    made = Plan(scene, report["plan"], {"method": method, "formulation": formulation})
+    made.__dict__["_report"] = dict(report)
+    return made
