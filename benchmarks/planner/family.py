@@ -100,6 +100,8 @@ class Truth:
 def error(motion, truth):
     """The larger of the error of omega, relative to the largest, and of the attitude's angle, of what was wanted."""
     _, omega, attitude = truth
+    if len(motion) < len(omega):
+        return np.inf   # it did not arrive
     found = [0.0]
     if motion.omega is not None:
         found.append(np.linalg.norm(motion.omega - omega, axis=1).max() / np.linalg.norm(omega, axis=1).max())

@@ -161,6 +161,19 @@ def test_plans_read_like_advice(name, model, says):
     assert json.loads(json.dumps(plan.as_dict(), allow_nan=False))["method"] == plan.method
 
 
+def test_stiff_damping_is_left_to_the_implicit_method():
+    n = np.array([1, 2, 2]) / 3
+    stiff = scene("S7", torques=[ph.torques.Damping(0.01 * np.eye(3) + 1e5 * np.outer(n, n))])
+    for accuracy in (1e-4, 1e-6, 1e-9):
+        plan = ph.plan(stiff, accuracy)
+        assert plan.method == "radau" and plan.predicted_seconds < 0.1
+        assert any("stiff" in reason for reason in plan.reasons)
+    motion = ph.solve(stiff, 1e-6)
+    # The end as SciPy's Radau at 1e-9, 1e-11 and 1e-13 agrees on it to 8 digits.
+    np.testing.assert_allclose(motion.omega[-1], (0.47002718, -0.71327629, 0.47827028), atol=1e-6)
+    assert motion.success and motion.plan.method == "radau"
+
+
 def test_the_attitude_is_left_out_where_nobody_needs_it():
     assert any("attitude" in text for text in ph.plan(scene("S9", want="omega")).left_out)
     assert ph.plan(scene("S9", want="omega")).state == "omega"

@@ -120,7 +120,7 @@ void explain_steps(const Scene& scene, const Facts& facts, const SolveOptions& o
   }
   reasons.push_back(plan.certify ? "Its error is certified by a second, coarser run with every input moved by two units in the last place."
                                  : "Its error is only expected: no certificate was wanted.");
-  if (plan.predicted_error > plan.accuracy) {
+  if (plan.predicted_error > forecast_slack * plan.accuracy) {
     reasons.push_back(format("Rounding over so many turns is expected to leave %.0e: the result may say \"limit\".", plan.predicted_error));
   }
 }

@@ -79,7 +79,8 @@ double find_factor(const CostFactors* factors, std::string_view name) {
 
 /// Those that reach the accuracy by their time, then the others by their error.
 bool is_better(const Candidate& a, const Candidate& b, double accuracy) {
-  const bool a_reaches = a.predicted_error <= accuracy, b_reaches = b.predicted_error <= accuracy;
+  const double enough = forecast_slack * accuracy;
+  const bool a_reaches = a.predicted_error <= enough, b_reaches = b.predicted_error <= enough;
   if (a_reaches != b_reaches) return a_reaches;
   return a_reaches ? a.predicted_seconds < b.predicted_seconds : a.predicted_error < b.predicted_error;
 }

@@ -10,6 +10,7 @@
 namespace polhode {
 
 inline constexpr double default_accuracy = 1e-9;
+inline constexpr double forecast_slack = 1.1;          ///< a forecast this near the accuracy reaches it
 inline constexpr double pair_ratio = 5.0;             ///< of the tolerances of the two runs of a certificate
 inline constexpr double custom_call_seconds = 3e-7;    ///< of a user's own torque, somewhere between C and Python
 

@@ -49,7 +49,7 @@ struct Taylor {
       .source = "Jorba & Zou 2005, Exp. Math. 14, 99",
       // A decade of tolerance costs a few per cent here, another try two runs.
       .forecast = {.error_per_turn = 0.4, .margin = 10.0, .floor_per_turn = 2e-17, .steps_per_radian = 0.62, .power = 0.013,
-                   .step_seconds = 2.8e-7, .order_seconds = 9e-10, .stability = 5.0},
+                   .step_seconds = 2.8e-7, .order_seconds = 9e-10, .stability = 8.5},
   };
   static constexpr int least_order = 4;
 
