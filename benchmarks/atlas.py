@@ -29,7 +29,7 @@ engines take some of these steps by default; they are here to be compared with, 
 a tolerance of 1e-14, and `solve` an accuracy of 1e-9, unless the tolerance is swept. Lower settings cost less and reach less:
 [charts.md](charts.md) has both axes.
 
-**Failures are points.** Each row is measured in a process of its own. A run that bursts, returns NaN, raises, crashes or
+**Failures are points.** The work is done in processes that may die without harm. A run that bursts, returns NaN, raises, crashes or
 hangs stands in the table with the reason, and the others go on. A run that does not end in its time (`--limit` seconds of CPU
 for each) is left out: that says nothing about the method but what it costs.
 

@@ -54,7 +54,7 @@ def test_conserving_is_not_being_right():
 
 
 @pytest.mark.parametrize(("name", "family", "text"), [("euler", "long", "burst"), ("leapfrog", "gimbal", "burst"),
-                                                       ("ignore", "sleeping", "stays up"), ("catto", "near", "lost")])
+                                                       ("ignore", "sleeping", "stays up"), ("ignore", "long", "lost"), ("catto", "near", "lost")])
 def test_what_fails_is_shown_failing(name, family, text):
     verdict = BY_NAME[family].judge(list(BY_NAME[family].measure(WHO[name], True, LIMIT)))
     assert (verdict.level, verdict.text) == ("fails", text)

@@ -75,6 +75,7 @@ class Family:
     truth: str
     holds: str           # the threshold, in words
     degrades: str
+    number: str          # what the cells of the matrix say
     about: str           # two sentences for a reader
     measure: Callable[[Entrant, bool, float], Iterator[Point]]
     judge: Callable[[list[Point]], Verdict]
@@ -91,7 +92,7 @@ class Family:
     y_limits: tuple[float, float] | None = None
     tick_names: tuple[tuple[float, str], ...] = ()   # values that are called something else
     failed_below: bool = False   # a run that broke off is drawn at the bottom: where more is better
-    summary: str = ""            # what the column of the matrix is headed by
+    summary: str = ""            # what the column of the matrix is headed by, in two lines at most
 
 
 def fixed_only(entrant: Entrant) -> str:

@@ -41,9 +41,11 @@ def page(content: dict[str, Any], pictures: str = "", introduction: str = "") ->
     machine = content["machine"]
     whole = "" if not content["quick"] else " --quick"
     lines = ["# Where methods fail", "", introduction.strip(), ""] if introduction else ["# Where methods fail", ""]
+    said = "; ".join(f"{name}: {family['number']}" for name, family in content["families"].items())
     lines += [f"![Methods against families: what holds, what degrades, what fails]({pictures}matrix.svg)", "",
               f"`polhode atlas{whole}`, polhode {content['polhode']['version']}, {machine['processor']}, "
-              f"{content['made']}. ● holds, ◐ degrades, ✕ fails, ? too slow to be known, empty: does not apply.", "", *_matrix(content), ""]
+              f"{content['made']}. ● holds, ◐ degrades, ✕ fails, ? too slow to be known, empty: does not apply.",
+              "", *_matrix(content), "", f"What the cells say: {said}.", ""]
     for name, family in content["families"].items():
         lines += [f"## {name}", "", f"**{family['title']}.** {family['about']}", "",
                   f"![{family['title']}]({pictures}{name}.svg)", "",

@@ -144,8 +144,9 @@ def _names(axes: Any, ends: list[tuple[float, str]], low: float, high: float, lo
         ceiling = tops[i] - half
     for (at, lines, names), centre in zip(blocks, tops):
         colours = {everyone[name]["color"] for name in names}
+        colour = colours.pop() if len(colours) == 1 else style.INK
         axes.annotate("\n".join(lines), (1, at), xycoords="axes fraction", xytext=(1.05, centre),
-                      textcoords="axes fraction", fontsize=7.8, va="center", ha="left", color=colours.pop() if len(colours) == 1 else style.INK,
+                      textcoords="axes fraction", fontsize=7.8, va="center", ha="left", color=colour,
                       fontweight="bold" if {"solve", "exact"} >= set(names) else "normal", linespacing=1.0, zorder=9,
                       arrowprops={"arrowstyle": "-", "color": style.FLOOR, "linewidth": 0.6, "shrinkA": 0,
                                   "shrinkB": 3})
@@ -160,7 +161,9 @@ def draw_matrix(results: list[FamilyResult], folder: pathlib.Path, name: str = "
     gap = 0.3
     width = 1.5 + cell * len(results) + 0.2
     body = row * len(table) + gap * len(groups)
-    height = head + body + 1.35
+    numbers = "; ".join(f"{' '.join(r.family.summary.split())}: {r.family.number}" for r in results)
+    below = textwrap.wrap(f"What the cells say. {numbers}.", int(width * 15.5))
+    height = head + body + 1.1 + 0.15 * len(below)
     with style.used() as plt:
         figure = plt.figure(figsize=(width, height))
         axes = figure.add_axes((0, 0, 1, 1))
@@ -174,7 +177,7 @@ def draw_matrix(results: list[FamilyResult], folder: pathlib.Path, name: str = "
                   f"{holds} of {tried} hold", fontsize=9.5, color=style.QUIET, va="top")
         y = head + 0.35
         for index, result in enumerate(results):
-            axes.text(1.5 + cell * (index + 0.5), y, result.family.summary or result.family.name, fontsize=9,
+            axes.text(1.5 + cell * (index + 0.5), y, result.family.summary, fontsize=9,
                       fontweight="bold", ha="center", va="bottom", linespacing=1.05)
         y += 0.02
         for group in groups:
@@ -192,6 +195,7 @@ def draw_matrix(results: list[FamilyResult], folder: pathlib.Path, name: str = "
             axes.text(x + 0.15, y + 0.31, symbol, color=text, ha="center", va="center", fontsize=9)
             axes.text(x + 0.37, y + 0.31, word, va="center", fontsize=8.5, color=style.QUIET)
             x += 0.6 + 0.072 * len(word)
+        axes.text(0.15, y + 0.58, "\n".join(below), fontsize=7.5, color=style.QUIET, va="top", linespacing=1.3)
         paths = style.save(figure, folder, name)
         plt.close(figure)
     return paths

@@ -46,14 +46,16 @@ class FamilyResult:
 def signature(family: Family, quick: bool, limit: float) -> dict[str, Any]:
     """What an earlier result must agree with to be kept."""
     return {"format": FORMAT, "quick": quick, "limit": limit, "polhode": build_info()["version"],
-            "rows": [e.name for e in rows_of(family)], "sweeps": family.sweeps, "holds": family.holds, "degrades": family.degrades}
+            "rows": [e.name for e in rows_of(family)], "sweeps": family.sweeps, "holds": family.holds,
+            "degrades": family.degrades}
 
 
 def family_document(result: FamilyResult) -> dict[str, Any]:
     """Return the content of <family>.json."""
     family = result.family
     return {
-        **signature(family, result.quick, result.limit), "family": family.name, "title": family.title, "truth": family.truth,
+        **signature(family, result.quick, result.limit), "family": family.name, "title": family.title,
+        "truth": family.truth,
         "value": family.y, "value_means": family.y_label, "made": result.made, "seconds": result.seconds,
         "machine": machine(), "versions": versions(), "build": build_info(),
         "verdicts": {name: _verdict(result.verdict(name)) for name in result.rows},
@@ -102,9 +104,9 @@ def document(results: list[FamilyResult], seconds: float, broken: list[str], fil
     return {
         "format": FORMAT, "made": time.strftime("%Y-%m-%d %H:%M"), "quick": all(r.quick for r in results),
         "seconds": seconds, "polhode": build_info(), "machine": machine(), "versions": versions(),
-        "families": {r.family.name: {"title": r.family.title, "about": r.family.about, "sweeps": r.family.sweeps,
-                                     "truth": r.family.truth, "holds": r.family.holds, "degrades": r.family.degrades, "seconds": r.seconds,
-                                     "kept": r.kept} for r in results},
+        "families": {r.family.name: {"title": r.family.title, "about": r.family.about, "number": r.family.number,
+                                     "sweeps": r.family.sweeps, "truth": r.family.truth, "holds": r.family.holds,
+                                     "degrades": r.family.degrades, "seconds": r.seconds, "kept": r.kept} for r in results},
         "matrix": {name: {"group": KINDS[kinds[name]], **{f: _verdict(v) for f, v in row.items()}}
                    for name, row in matrix(results).items()},
         "broken_claims": broken, "files": files,

@@ -96,8 +96,8 @@ def work(jobs: Sequence[Job], done: Done, *, processes: int = 2, command: Sequen
     command : sequence of str
         What starts a worker.
     silence : float
-        A process that gives no sign of life for so long hangs [s]; so does one that takes `PATIENCE` times the limit of a
-        run without an answer.
+        A process that gives no sign of life for so long hangs [s]; so does one that takes `PATIENCE` times the limit of
+        a run without an answer.
     """
     waiting = list(reversed(jobs))
     workers: list[_Worker] = []

@@ -1,7 +1,7 @@
 """A process that measures what it is told to, one job a line: `python -m polhode.atlas.worker`.
 
-In: {"family", "entrant", "quick", "limit"}. Out: one line a point, then {"end": true}; every second {"cpu": seconds}, so
-that a busy machine is not taken for a hang. What happens to this process happens to one job.
+In: {"family", "entrant", "quick", "limit"}. Out: one line a point, then {"end": true}; every second {"cpu": seconds},
+so that a busy machine is not taken for a hang. What happens to this process happens to one job.
 """
 
 from __future__ import annotations

@@ -60,7 +60,7 @@ def judge(points: list[Point]) -> Verdict:
     best = max(horizons)
     for p in points:
         if p.values.get("lost") and p.values["claims"] and p.values["stated"] <= LOST:
-            said = f"says {to_short(p.values['stated'])} rad over {scenes.CHAOS_SPAN:.0f} s, lost at {p.get('horizon'):.0f} s"
+            said = f"says {to_short(p.values['stated'])} rad to the end, lost at {p.get('horizon'):.0f} s"
             return Verdict("fails", "overclaims", p.get("horizon"), said)
     level = "holds" if best >= 180 else "degrades" if best >= 60 else "fails"
     return Verdict(level, f"{best:.0f} s", best)
@@ -72,6 +72,7 @@ FAMILY = Family(
     truth="113-bit Taylor series",
     holds="attitude within 0.1 rad for 180 s or longer at the best setting (the best double known to us: 246 s)",
     degrades="for 60 s",
+    number="until the attitude is lost, at the best setting",
     about="Neighbouring motions part in bursts, so each digit of the tolerance buys some more seconds and no "
           "more. Past the horizon of float64 every answer is a guess, whatever it costs.",
     measure=measure, judge=judge, x_label="tolerance, or step [s]", x_inverted=True, y="horizon",

@@ -98,9 +98,10 @@ FAMILY = Family(
     sweeps="strength c of the damping about one axis, 1e1 to 1e6 N m s, 10 s; and scene S7b, damped askew",
     truth="113-bit Gauss collocation of order 24; S7b: the scene's stored truth",
     holds="1e-6 within 10,000 steps for every c and on S7b", degrades="1e-6 reached, at any cost within the time limit",
+    number="most steps that 1e-6 takes, or how far it gets",
     about="One rate dies at once and follows the others from then on, so an explicit method takes steps for a "
-          "motion that is no longer there. Its cost grows with the damping, that of an implicit one does not; "
-          "scene S7b has the same with axes that are not the body's.",
+          "motion that is no longer there. Its cost grows with the damping, that of a stiffly stable one does "
+          "not; scene S7b has the same with axes that are not the body's.",
     measure=measure, judge=judge, x_label="damping c [N m s]", y="steps", y_label="steps for an error of 1e-6",
     x_scale="list", tick_names=((ASKEW, "S7b"),), lines=((CHEAP, "holds"),),
     takes=lambda entrant: "no closed form" if entrant.kind in ("exact", "witness") else "",

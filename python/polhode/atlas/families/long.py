@@ -41,6 +41,7 @@ FAMILY = Family(
     truth="closed form with 110 digits",
     holds="attitude within 1e-7 rad after the longest time reached",
     degrades="attitude not lost (0.1 rad), or energy and angular momentum within 1e-3",
+    number="error of the attitude after the longest time reached",
     about="Energy and angular momentum can be kept to rounding for ever while the phase runs away: conserving "
           "is not being right. What grows as the square of the time, as the time, or not at all, is the slope "
           "in this picture.",

@@ -78,6 +78,7 @@ FAMILY = Family(
     sweeps="the length of a step (of methods that choose theirs: the mean), S1's block, 100 s",
     truth="1",
     holds="every quaternion returned is unit within 1e-15", degrades="within 1e-6",
+    number="largest difference of the norm from 1",
     about="A Runge-Kutta step leaves the unit sphere by its own error, so the norm of a quaternion nobody tends "
           "shows how wrong the attitude is. Bringing it back hides the symptom and changes the attitude's error "
           "not at all.",

@@ -97,6 +97,7 @@ FAMILY = Family(
     sweeps="inertia, or rates and 1/time, times 1e-150 to 1e150, on ten turns of scenes S1 and S4",
     truth="the same method's answer without the factor (a power of two)",
     holds="the same answer to 1e-12 at every scale", degrades="or an error that says so",
+    number="largest difference",
     about="Grams or tonnes, seconds or years: the same motion in other units must be the same motion. Factors "
           "are powers of two, so that a method which scales its work returns the very same bits.",
     measure=measure, judge=judge, x_label="power of ten of the factor", x_scale="linear",

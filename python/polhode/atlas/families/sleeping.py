@@ -63,6 +63,7 @@ FAMILY = Family(
     truth="113-bit Taylor series",
     holds="the greatest tilt within a relative 1e-3 for every s",
     degrades="it stands and falls as it should for |s| >= 1e-3",
+    number="largest relative error of the tilt, or what goes wrong",
     about="Spun a little faster than the critical rate a top stands upright, a little slower it falls, however "
           "small the difference. A method's own error acts like a torque and moves the critical rate, so it may "
           "let a sleeping top fall or keep a falling one up.",

@@ -38,6 +38,7 @@ FAMILY = Family(
            "fixed steps 40 to the last turn",
     truth="113-bit Taylor series, the longest time in 64 bits",
     holds="error within 1e-6 over every time", degrades="within 0.1",
+    number="largest error",
     about="A torque that stays in the body spins it up, so turns grow as the square of the time and nearly all "
           "the work is at the end. A step that was fine at the start is wrong by then; fixed steps here are "
           "chosen for the last turn.",

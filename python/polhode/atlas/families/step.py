@@ -112,6 +112,7 @@ FAMILY = Family(
            "steps from 4096 a turn (quick: 1024) to one",
     truth="closed form (FreeMotion)",
     holds="attitude within 0.1 rad over 10 turns for every body at 64 steps a turn", degrades="at 512 steps a turn",
+    number="longest step, as an angle, for the worst body",
     about="No body makes the free equations stiff, since no moment differs from another by more than the third: "
           "what a step may be is an angle, h times the rate. Bounded energy says little about being right, so "
           "the attitude decides.",
