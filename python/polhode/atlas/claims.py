@@ -12,7 +12,7 @@ from .results import FamilyResult
 CLAIMS: dict[str, dict[str, str]] = {
     # What `solve` chooses by itself.
     "solve": {"racket": "holds", "gimbal": "holds", "long": "holds", "near": "holds", "scales": "holds",
-              "norm": "holds", "sleeping": "holds", "spin-up": "holds", "damping": "degrades", "chaos": "degrades"},
+              "norm": "holds", "sleeping": "holds", "spin-up": "degrades", "damping": "degrades", "chaos": "degrades"},
     "exact": {"racket": "holds", "gimbal": "holds", "long": "holds", "near": "holds", "scales": "holds",
               "norm": "holds", "sleeping": "holds"},
     "taylor": {"racket": "degrades", "gimbal": "holds", "long": "degrades", "near": "holds", "scales": "holds",
@@ -21,7 +21,7 @@ CLAIMS: dict[str, dict[str, str]] = {
                "sleeping": "holds"},
     "rk45": {"racket": "degrades", "gimbal": "holds", "scales": "holds", "norm": "holds", "near": "degrades",
              "sleeping": "holds"},
-    "radau": {"damping": "holds", "gimbal": "holds", "scales": "holds", "norm": "holds", "spin-up": "holds",
+    "radau": {"damping": "holds", "gimbal": "holds", "scales": "holds", "norm": "holds", "spin-up": "degrades",
               "sleeping": "holds"},
     "symplectic": {"step": "holds", "gimbal": "holds", "long": "degrades", "near": "holds", "scales": "holds",
                    "norm": "holds", "spin-up": "holds", "sleeping": "holds"},

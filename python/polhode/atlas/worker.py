@@ -44,6 +44,8 @@ def serve(jobs: TextIO, answers: TextIO) -> None:
             family, entrant = find_family(job["family"]), find_entrant(job["entrant"])
             for point in family.measure(entrant, job["quick"], job["limit"]):
                 say(to_json(point))
+        except BrokenPipeError:
+            raise
         except Exception as error:   # a fault of a method, or of the atlas, is told and costs one row
             say({"fault": f"{type(error).__name__}: {error}".splitlines()[0]})
         say({"end": True})
@@ -51,4 +53,7 @@ def serve(jobs: TextIO, answers: TextIO) -> None:
 
 if __name__ == "__main__":
     answers, sys.stdout = sys.stdout, sys.stderr   # what a library prints must not look like an answer
-    serve(sys.stdin, answers)
+    try:
+        serve(sys.stdin, answers)
+    except BrokenPipeError:   # nobody listens any more
+        pass
