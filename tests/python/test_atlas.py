@@ -222,3 +222,13 @@ def test_the_command(made, capsys, monkeypatch):
     assert "FINDING: exact, norm" in capsys.readouterr().out
     assert command(["atlas", "nonsense"]) == 2
     assert "family: must be one of" in capsys.readouterr().err
+
+
+def test_the_docs_are_made_of_their_results():
+    spec = importlib.util.spec_from_file_location("docs_of_the_atlas", ROOT / "benchmarks/atlas.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    content = json.loads(module.RESULTS.read_text())
+    assert module.PAGE.read_text() == module.render(content)
+    assert list(content["families"]) == [f.name for f in FAMILIES] and not content["quick"]
+    assert content["broken_claims"] == []

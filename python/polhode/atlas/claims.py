@@ -12,12 +12,12 @@ from .results import FamilyResult
 CLAIMS: dict[str, dict[str, str]] = {
     # What `solve` chooses by itself.
     "solve": {"racket": "holds", "gimbal": "holds", "long": "holds", "near": "holds", "scales": "holds",
-              "norm": "holds", "sleeping": "holds", "spin-up": "degrades", "damping": "degrades", "chaos": "degrades"},
+              "norm": "holds", "sleeping": "holds", "spin-up": "holds", "damping": "holds", "chaos": "holds"},
     "exact": {"racket": "holds", "gimbal": "holds", "long": "holds", "near": "holds", "scales": "holds",
               "norm": "holds", "sleeping": "holds"},
-    "taylor": {"racket": "degrades", "gimbal": "holds", "long": "degrades", "near": "holds", "scales": "holds",
+    "taylor": {"racket": "holds", "gimbal": "holds", "long": "holds", "near": "holds", "scales": "holds",
                "norm": "holds", "sleeping": "holds", "spin-up": "holds", "chaos": "holds", "damping": "degrades"},
-    "dop853": {"racket": "degrades", "gimbal": "holds", "scales": "holds", "norm": "holds", "near": "holds",
+    "dop853": {"racket": "degrades", "gimbal": "holds", "scales": "holds", "norm": "holds", "near": "degrades",
                "sleeping": "holds"},
     "rk45": {"racket": "degrades", "gimbal": "holds", "scales": "holds", "norm": "holds", "near": "degrades",
              "sleeping": "holds"},
