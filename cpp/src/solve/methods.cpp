@@ -4,22 +4,14 @@
 #include <vector>
 
 #include "polhode/core/error.hpp"
-#include "polhode/ode/methods.hpp"
 #include "solve/methods/body_method.hpp"
-#include "solve/run_general.hpp"
 
 namespace polhode {
 namespace {
 
-template <class... M>
-void append_general(std::vector<BodyMethod>& list, std::tuple<M...>*) {
-  (list.push_back({M::record, &run_general<M>, nullptr, false}), ...);
-}
-
 const std::vector<BodyMethod>& all() {
   static const std::vector<BodyMethod> list = [] {
     std::vector<BodyMethod> made;
-    append_general(made, static_cast<ode::Methods*>(nullptr));
 #define POLHODE_METHOD(name) made.push_back(name##_method);
 #include "polhode/solve/methods.def"
 #undef POLHODE_METHOD

@@ -8,8 +8,7 @@
 
 namespace polhode::ode {
 
-/// The methods for any y' = f(t, y). A new one is a file of its own and a name here; ph.methods(), the command line, the
-/// charts, the docs and the conformance tests follow. Methods that know what a body is: solve/methods.hpp.
+/// The methods for any y' = f(t, y): the conformance tests of `ode` follow. solve/methods.def lists all that turn a body.
 using Methods = std::tuple<Rk45, Dop853, Rk4>;
 
 }  // namespace polhode::ode

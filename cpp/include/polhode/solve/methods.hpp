@@ -9,7 +9,7 @@
 
 namespace polhode {
 
-/// The records of all methods: those of ode::Methods first, then those that know what a body is (methods.def).
+/// The records of all methods, in the order of methods.def.
 std::span<const ode::MethodRecord> methods();
 
 /// The record of one method. @throws InvalidInput for an unknown name, with the names there are.
