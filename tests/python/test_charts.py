@@ -15,7 +15,7 @@ from polhode.charts import stage as staging
 from polhode.charts.candidate import Answer, Candidate, Failure, tolerances
 from polhode.charts.candidates import candidates
 from polhode.charts.findings import (
-    all_ratios, dominated, front, headline, held_by_stability, stalls, time_to_reach, to_count, to_error, to_time,
+    dominated, front, headline, held_by_stability, stalls, time_ratios, time_to_reach, to_count, to_error, to_time,
     without_answer,
 )  # fmt: skip
 from polhode.charts.measure import Point, SceneResult, measure
@@ -244,7 +244,7 @@ def test_time_to_reach_is_a_power_law_along_the_front():
     assert [p.seconds for p in front(points)] == [1.0, 100.0]
     assert time_to_reach(points, 1e-4) == pytest.approx(10.0)
     assert time_to_reach(points, 1e-2) == 1
-    assert np.isnan(time_to_reach(points, 1e-7)) and np.isnan(time_to_reach(points, 1.0))
+    assert np.isnan(time_to_reach(points, 1e-7)) and time_to_reach(points, 1.0) == 1
 
 
 def test_stalling_and_stability_are_told_from_plain_convergence():
@@ -277,9 +277,20 @@ def test_speed_is_compared_at_equal_error():
     times = [1e-3 * 10 ** (0.2 * k) for k in range(10)]
     own = curve("rk45", "method", VALUES, VALUES, times)
     peer = curve("SciPy RK45", "peer", VALUES[:4], [10 * v for v in VALUES[:4]], [200 * t for t in times[:4]])
-    ratios = all_ratios([made_up(own + peer)], "SciPy RK45")
-    np.testing.assert_allclose(ratios, 200 * 10**0.2, rtol=1e-12)   # the peer's errors are ten times as large
-    assert "SciPy takes 320 times as long at equal error" in headline(made_up(own + peer))
+    ratios = time_ratios(made_up(own + peer), ["SciPy RK45"])
+    # The peer's errors are ten times as large; the first is looser than any of ours, whose quickest point is then enough.
+    np.testing.assert_allclose(ratios, [200, *[200 * 10**0.2] * 3], rtol=1e-12)
+    assert "SciPy takes 200 to 320 times as long at equal error" in headline(made_up(own + peer))
+
+
+def test_a_program_is_judged_by_whichever_of_its_candidates_is_fastest_at_each_error():
+    times = [1e-3 * 10 ** (0.2 * k) for k in range(10)]
+    own = curve("taylor", "method", VALUES, VALUES, times)
+    loose = curve("Odeint low", "peer", VALUES[:3], VALUES[:3], [0.5 * t for t in times[:3]])
+    tight = curve("Odeint high", "peer", VALUES, VALUES, [2 * t for t in times])
+    ratios = time_ratios(made_up(own + loose + tight), ["Odeint low", "Odeint high"])
+    np.testing.assert_allclose(ratios, [0.5] * 3 + [2] * 7, rtol=1e-12)
+    assert "Odeint takes 0.5 to 2 times as long" in headline(made_up(own + loose + tight))
 
 
 @pytest.mark.parametrize(("found", "text"), [

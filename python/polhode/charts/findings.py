@@ -44,9 +44,10 @@ def front(points: list[Point]) -> list[Point]:
 
 
 def time_to_reach(points: list[Point], error: float) -> float:
-    """Seconds to an error, along the front (log-log between its points); NaN beyond its ends."""
+    """Seconds to an error, along the front (log-log between its points); its quickest point where that errs less; NaN where
+    none is so good."""
     best = front(points)
-    if not best or error < best[-1].error or error > best[0].error:
+    if not best or error < best[-1].error:
         return math.nan
     for loose, tight in zip(best, best[1:]):
         if tight.error <= error <= loose.error:
@@ -102,19 +103,15 @@ def held_by_stability(result: SceneResult, name: str) -> bool:
             and 0 < max(steps) < 2 * min(steps) and points[0].error < 0.01 * points[0].value)
 
 
-def _time_ratios(result: SceneResult, peer: str) -> list[float]:
-    """Times of a peer over those of polhode's fastest stepper at equal error, at each error of the peer below 0.1 that one
-    reaches; none on a scene where no tolerance helps."""
+def time_ratios(result: SceneResult, names: list[str]) -> list[float]:
+    """Times of a program's best candidates over those of polhode's fastest stepper at equal error, at each error of theirs
+    below 0.1 that one reaches; none on a scene where no tolerance helps."""
     points = own(result)
     if any(stalls(result, name) for name in adaptive(result)):
         return []
-    ratios = [p.seconds / time_to_reach(points, p.error) for p in result.of(peer) if p.error < 0.1 and p.swept]
+    best = front([p for name in names for p in result.of(name) if p.error < 0.1 and p.swept])
+    ratios = [p.seconds / time_to_reach(points, p.error) for p in best]
     return [ratio for ratio in ratios if ratio == ratio]
-
-
-def all_ratios(results: list[SceneResult], peer: str) -> list[float]:
-    """The same on all scenes."""
-    return [ratio for result in results for ratio in _time_ratios(result, peer)]
 
 
 def programs(results: list[SceneResult]) -> dict[str, list[str]]:
@@ -126,13 +123,11 @@ def programs(results: list[SceneResult]) -> dict[str, list[str]]:
 
 
 def program_ratios(results: list[SceneResult]) -> dict[str, list[float]]:
-    """Return each program's ratios, of the candidate of it that is fastest in the median."""
-    found = {}
-    for program, names in programs(results).items():
-        ratios = [r for r in (all_ratios(results, name) for name in names) if r]
-        if ratios:
-            found[program] = min(ratios, key=statistics.median)
-    return dict(sorted(found.items(), key=lambda item: statistics.median(item[1])))
+    """Return each program's ratios over all scenes, by whichever of its candidates is fastest at each error."""
+    found = {program: [ratio for result in results for ratio in time_ratios(result, names)]
+             for program, names in programs(results).items()}
+    answered = [item for item in found.items() if item[1]]
+    return dict(sorted(answered, key=lambda item: statistics.median(item[1])))
 
 
 def fastest(result: SceneResult) -> tuple[str, float, float] | None:
