@@ -94,16 +94,16 @@ py::tuple solve_batch(const py::list& scenes, const py::object& moments, const p
   const auto n = static_cast<py::ssize_t>(bodies);
   Array reached(n), errors(n);
   py::array_t<long> steps(n);
-  py::array_t<bool> success(n);
+  py::array_t<bool> success(n), lanes(n);
   for (py::ssize_t i = 0; i < n; ++i) {
     const ManyResult& one = results[static_cast<std::size_t>(i)];
     status.append(std::string(to_text(one.status)));
     message.append(one.message);
     methods.append(one.method);
     reached.mutable_data()[i] = one.t_reached, errors.mutable_data()[i] = one.error;
-    steps.mutable_data()[i] = one.steps, success.mutable_data()[i] = one.success;
+    steps.mutable_data()[i] = one.steps, success.mutable_data()[i] = one.success, lanes.mutable_data()[i] = one.lanes;
   }
-  return py::make_tuple(status, message, methods, reached, errors, steps, success);
+  return py::make_tuple(status, message, methods, reached, errors, steps, success, lanes);
 }
 
 }  // namespace

@@ -4,10 +4,16 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <mutex>
+#include <utility>
 
+#include "batch/ride.hpp"
 #include "polhode/batch/parallel.hpp"
 #include "polhode/core/error.hpp"
+#include "solve/checked_options.hpp"
+#include "solve/methods/body_method.hpp"
+#include "solve/planning.hpp"
 
 namespace polhode {
 namespace {
@@ -24,6 +30,11 @@ void place(const Scene& scene, const Motion& motion, double* omega, double* atti
     for (std::size_t k = 0; attitude != nullptr && k < 4; ++k) attitude[4 * i + k] = there ? motion.attitude[4 * row + k] : nothing;
     row += there;
   }
+}
+
+/// What the lanes cover: taylor by a step's tolerance, for every body that it takes.
+bool ride_in_lanes(const SolveOptions& options) {
+  return options.method == "taylor" && (options.rtol || options.atol) && !options.step;
 }
 
 }  // namespace
@@ -47,27 +58,63 @@ std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeS
   SolveOptions one = options;
   if (options.progress) one.progress = tell;
 
-  const auto work = [&](std::size_t, std::size_t) {
-    // Bodies are taken one by one as threads come free: a long run holds up nobody, and no answer depends on it.
-    for (std::size_t body = next++; body < n && !stopped; body = next++) {
-      try {
-        const Scene scene = make_scene(body);
-        const Motion motion = solve(scene, one);
-        place(scene, motion, omega ? omega + 3 * times * body : nullptr, attitude ? attitude + 4 * times * body : nullptr);
-        results[body] = {motion.status, motion.message, motion.plan.method, motion.t_reached, motion.error,
-                         motion.stats.steps, succeeded(scene, motion)};
-      } catch (const InvalidInput& error) {
-        stopped = true;
-        throw InvalidInput("body " + std::to_string(body), "one that solve() takes", error.what());
-      } catch (...) {
-        stopped = true;
-        throw;
-      }
-      ++done;
+  const auto keep = [&](std::size_t body, const Scene& scene, const Motion& motion, bool lanes) {
+    place(scene, motion, omega ? omega + 3 * times * body : nullptr, attitude ? attitude + 4 * times * body : nullptr);
+    results[body] = {motion.status, motion.message, motion.plan.method, motion.t_reached, motion.error,
+                     motion.stats.steps, succeeded(scene, motion), lanes};
+    ++done;
+  };
+  const auto guarded = [&](std::size_t body, const auto& piece) {
+    try {
+      piece();
+    } catch (const InvalidInput& error) {
+      stopped = true;
+      throw InvalidInput("body " + std::to_string(body), "one that solve() takes", error.what());
+    } catch (...) {
+      stopped = true;
+      throw;
     }
   };
-  const std::size_t team = thread_count(threads, n, 2);
-  parallel_for(team, team, 1, work);
+  const auto one_by_one = [&](std::size_t, std::size_t) {
+    // Bodies are taken one by one as threads come free: a long run holds up nobody, and no answer depends on it.
+    for (std::size_t body = next++; body < n && !stopped; body = next++) {
+      guarded(body, [&] {
+        const Scene scene = make_scene(body);
+        keep(body, scene, solve(scene, one), false);
+      });
+    }
+  };
+  const bool lanes = ride_in_lanes(options);
+  const std::size_t threads_there = thread_count(threads, n, 2);
+  const std::size_t chunk = std::clamp<std::size_t>(n / (2 * threads_there), 64, 512);
+  const CheckedOptions checked = choose_tolerances(taylor_method.record, options);
+  const auto side_by_side = [&](std::size_t, std::size_t) {
+    for (std::size_t begin = next.fetch_add(chunk); begin < n && !stopped; begin = next.fetch_add(chunk)) {
+      std::vector<std::unique_ptr<Rider>> riders;
+      const std::size_t end = std::min(n, begin + chunk);
+      for (std::size_t body = begin; body < end; ++body) {
+        guarded(body, [&] {
+          Scene scene = make_scene(body);
+          check_options(scene, options);
+          if (scene.torque_sum().acting > 0) require_finite_start(scene);
+          riders.push_back(std::make_unique<Rider>(std::move(scene)));
+        });
+      }
+      const auto wants_to_stop = [&] { return one.progress ? !one.progress(0.0, 0.0) : stopped.load(); };
+      guarded(begin, [&] { ride(riders, checked.tolerances, options.max_steps, wants_to_stop); });
+      for (std::size_t body = begin; body < end; ++body) {
+        Rider& rider = *riders[body - begin];
+        describe_end(checked, rider.motion());
+        keep(body, rider.scene(), rider.motion(), true);
+      }
+    }
+  };
+  if (lanes) {
+    const std::size_t team = std::min(threads_there, (n + chunk - 1) / chunk);
+    parallel_for(team, team, 1, side_by_side);
+  } else {
+    parallel_for(threads_there, threads_there, 1, one_by_one);
+  }
   for (std::size_t i = 0; stopped && i < n; ++i) {
     if (results[i].message.empty()) results[i].status = Status::stopped, results[i].message = "not begun: stopped by the progress callback";
   }

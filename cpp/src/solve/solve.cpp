@@ -6,6 +6,7 @@
 #include "polhode/core/error.hpp"
 #include "polhode/solve/invariants.hpp"
 #include "solve/certify.hpp"
+#include "solve/checked_options.hpp"
 #include "solve/exact_run.hpp"
 #include "solve/methods/body_method.hpp"
 #include "solve/planning.hpp"
@@ -35,7 +36,8 @@ void require_fitting(const ode::MethodRecord& record, const SolveOptions& option
   }
 }
 
-/// A torque that is no number at the start is a mistake; one that becomes none on the way ends the run there.
+}  // namespace
+
 void require_finite_start(const Scene& scene) {
   const double attitude[4] = {scene.attitude().x, scene.attitude().y, scene.attitude().z, scene.attitude().w};
   const TorqueInput in{scene.t0(), scene.omega().data(), attitude, scene.inertia_B().matrix()};
@@ -49,6 +51,22 @@ void require_finite_start(const Scene& scene) {
     }
   }
 }
+
+CheckedOptions choose_tolerances(const ode::MethodRecord& record, const SolveOptions& options) {
+  const double asked = record.adaptive ? options.rtol.value_or(1e-9) : std::numeric_limits<double>::infinity();
+  const bool raised = asked < record.least_rtol;
+  return {{raised ? record.least_rtol : asked, options.atol.value_or(0.0), options.step.value_or(0.0)}, asked, raised};
+}
+
+void describe_end(const CheckedOptions& checked, Motion& motion) {
+  motion.asked = checked.asked;
+  if (motion.message.empty()) motion.message = "reached the last time; the error was not estimated";
+  if (checked.raised) {
+    motion.message += "; the tolerance was raised to " + to_text(checked.tolerances.rtol) + ", the least that float64 can serve";
+  }
+}
+
+namespace {
 
 void require_no_steps(const SolveOptions& options) {
   constexpr const char* cause = "a closed form has no steps";
@@ -103,18 +121,10 @@ Motion solve_by_tolerance(const Scene& scene, const SolveOptions& options) {
   const std::string name = options.method.value_or("rk45");
   const BodyMethod& method = find_body_method(name);
   require_fitting(method.record, options);
-  const bool adaptive = method.record.adaptive;
-  const double asked = adaptive ? options.rtol.value_or(1e-9) : std::numeric_limits<double>::infinity();
-  double rtol = asked;
-  const bool raised = rtol < method.record.least_rtol;
-  if (raised) rtol = method.record.least_rtol;
-  const RunOptions run_options{options, {rtol, options.atol.value_or(0.0), options.step.value_or(0.0)}};
-
-  Motion motion = method.solve(scene, run_options);
+  const CheckedOptions checked = choose_tolerances(method.record, options);
+  Motion motion = method.solve(scene, {options, checked.tolerances});
   motion.plan.method = name;
-  motion.asked = asked;
-  if (motion.message.empty()) motion.message = "reached the last time; the error was not estimated";
-  if (raised) motion.message += "; the tolerance was raised to " + to_text(rtol) + ", the least that float64 can serve";
+  describe_end(checked, motion);
   return motion;
 }
 

@@ -28,6 +28,13 @@ class BodySeries {
   bool has_attitude() const { return attitude_; }
   const SeriesTerms& terms() const { return terms_; }
   const double* start() const { return start_; }
+  /// A fixed vector in space axes, as terms() numbers them.
+  const Vector3d& fixed_vector(int i) const { return space_[i]; }
+  double orbit_phase() const { return orbit_phase_; }
+  /// A free body in separatrix variables keeps u v and balance (u^2 + v^2) + w2^2.
+  bool keeps_balance() const { return free_; }
+  double balance() const { return balance_; }
+  const math::DD& kept(int i) const { return kept_[i]; }
   std::string describe_state() const;   ///< what is carried, for the plan
 
   /// w_B and, where it is carried, q_WB.
