@@ -9,8 +9,6 @@ VENV   := .venv
 BUILD  := build/dev
 PYTHON := $(CURDIR)/$(VENV)/bin/python
 JOBS   ?= $(shell nproc)
-# ccache and precompiled headers do not go together.
-PRECOMPILED := $(if $(findstring ccache,$(CMAKE_CXX_COMPILER_LAUNCHER)),OFF,ON)
 
 # An editable install reads Python files where they stand: only their names matter, what is compiled or copied matters whole.
 $(shell mkdir -p build; find python/polhode -type f -not -name '*.py[ci]' | sort > build/.names.new; \
@@ -36,7 +34,7 @@ build/.installed: $(VENV)/.ready $(inputs)
 	@$(PYTHON) -m pip uninstall -qq -y --disable-pip-version-check polhode
 	@CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) $(PYTHON) -m pip install -qq --disable-pip-version-check \
 	  --no-build-isolation --no-deps -Cbuild-dir=$(BUILD) -Ccmake.define.POLHODE_BUILD_TESTS=ON \
-	  -Ccmake.define.POLHODE_WERROR=ON -Ccmake.define.POLHODE_PRECOMPILED=$(PRECOMPILED) \
+	  -Ccmake.define.POLHODE_WERROR=ON \
 	  $$($(VENV)/bin/python .ci/eigen_dir.py) -e .
 	@touch $@
 
