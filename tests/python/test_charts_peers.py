@@ -124,11 +124,14 @@ def test_a_process_apart_gives_the_same_bits():
     assert replies[0].answer.stats == replies[1].answer.stats
 
 
-def test_a_crash_and_a_hang_are_points_and_the_others_go_on(monkeypatch):
+@pytest.mark.parametrize("gone", [False, True])
+def test_a_crash_and_a_hang_are_points_and_the_others_go_on(monkeypatch, gone):
     stage = Apart()
     stage.enter(TINY)
     stage.start("rk45")
     os.kill(stage._process.pid, signal.SIGSEGV)   # as a program with a bug would end it
+    if gone:
+        stage._process.wait()   # before anything is sent to it
     with pytest.raises(Failure, match="by signal 11"):
         stage.run("rk45", 1e-6, 1.0)
     assert stage.run("rk45", 1e-6, 1.0).seconds > 0   # in a new one

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import pickle
 import select
@@ -162,7 +163,8 @@ class Apart:
         code = process.wait()
         for stream in (process.stdin, process.stdout):
             assert stream is not None
-            stream.close()
+            with contextlib.suppress(BrokenPipeError):   # what was not sent to a process that is gone
+                stream.close()
         if waited is not None:
             return f"hung: not back after {waited:.0f} s"
         return f"ended its process by signal {-code}" if code < 0 else f"ended its process with status {code}"
