@@ -56,7 +56,9 @@ def test_run_shows_ends_drift_cost_and_message(small):
     for i in (0, -1):
         assert all(f"{x:.9g}" in text for x in [motion.t[i], *motion.omega[i], *motion.attitude[i]])
     assert "t [s]" in text and "z [rad/s]" in text
-    assert f"energy {motion.drift['energy']:.1e}" in text and f"{motion.stats['steps']:,} steps" in text
+    assert f"energy {motion.drift['energy']:.1e}" in text and "cost    1 run; " in text
+    stepped = ph.solve(ph.Scene.load(small), method="rk45", rtol=1e-8).stats
+    assert f"{stepped['steps']:,} steps, " in call("run", small, "--method", "rk45", "--rtol", "1e-8").stdout
     assert motion.message in text
 
 

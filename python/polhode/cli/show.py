@@ -112,7 +112,8 @@ def motion(result: Motion) -> None:
         table.add_row(*cells)
     out.print(table)
     drift = ", ".join(f"{name.replace('_', ' ')} {value:.1e}" for name, value in result.drift.items())
-    counts = ", ".join(f"{value:,} {name}" for name, value in result.stats.items() if isinstance(value, int))
+    counts = ", ".join(f"{value:,} {name.removesuffix('s') if value == 1 else name}"
+                       for name, value in result.stats.items() if isinstance(value, int) and value)
     out.print(Text(f"drift   {drift or 'nothing here is kept by the motion'}"))
     out.print(Text(f"cost    {counts}; {1e3 * result.stats['seconds']:.3g} ms"))
     out.print(Text(f"result  {'' if result.success else 'FINDING: '}{result.message}"))
