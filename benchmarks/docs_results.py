@@ -1,9 +1,9 @@
-"""Brings the results of a report into the documents, so that no number in them is written by hand.
+"""Brings the results of a chart into the documents, so that no number in them is written by hand.
 
-    polhode report -o report --full && python benchmarks/docs_results.py report
+    polhode chart scenes/*.toml -o results --budget 240s && python benchmarks/docs_results.py results
 
 Writes docs/results/charts.json (every point, to three digits), docs/results/charts.md (tables made from that file) and the
-pictures docs/pictures/overview.svg, limits.svg and those of some scenes. With an atlas in the report, its small results too.
+pictures docs/pictures/overview.svg, limits.svg and those of some scenes. The charts of a report (its folder `charts`) serve too.
 `--tables` makes the tables anew from the file that is there.
 """
 
@@ -26,7 +26,7 @@ def page(content):
     versions = ", ".join(f"{name} {version}" for name, version in content["versions"].items())
     parts = [
         "# Results of the charts",
-        "Made by `polhode report` and `python benchmarks/docs_results.py`; every number is from [charts.json](charts.json).",
+        "Made by `polhode chart` and `python benchmarks/docs_results.py`; every number is from [charts.json](charts.json).",
         f"{machine['processor']}, {machine['cores']} cores, compiler {content['polhode']['compiler']}, simd {content['polhode']['simd']}, "
         f"Python {machine['python']}. {versions}.",
         f"What is measured: {content['measure']}.",
@@ -44,7 +44,7 @@ def page(content):
 
 def main(arguments):
     if arguments != ["--tables"]:
-        folder = pathlib.Path(arguments[0]) / "charts"
+        folder = pathlib.Path(arguments[0])
         RESULTS.mkdir(exist_ok=True)
         content = tables.compact(json.loads((folder / "results.json").read_text()))
         text = json.dumps(content, separators=(",", ":"))
