@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
@@ -31,6 +32,16 @@ class Point:
             return math.inf
         value = self.values.get(name)
         return math.nan if value is None else float(value)
+
+    @contextlib.contextmanager
+    def trying(self, failed: str = "failed") -> Iterator[None]:
+        """Write down why a run was refused or broke off, `failed` where it was not for want of time, and go on."""
+        try:
+            yield
+        except Refused as why:
+            self.status, self.why = "refused", str(why)
+        except Failed as why:
+            self.status, self.why = ("left out" if why.late else failed), str(why)
 
 
 def to_json(point: Point) -> dict[str, Any]:
@@ -117,16 +128,12 @@ def measure_cases(
             yield point
             continue
         options = setting(case) if setting else entrant.setting(step=turn_of(case.scene) / PER_TURN)
-        try:
+        with point.trying():
             truth = truth_of(family, case)
             motion = run(entrant, case.scene, options, limit)
             point.values = values_of(motion, truth) | (more(motion, truth) if more else {})
-        except Refused as why:
-            point.status, point.why = "refused", str(why)
-        except Failed as why:
-            point.status, point.why = ("left out" if why.late else "failed"), str(why)
-            if why.late:
-                late.add(case.series)
+        if point.status == "left out":
+            late.add(case.series)
         yield point
 
 

@@ -16,6 +16,7 @@ import numpy as np
 
 from .. import torques
 from ..scene import Scene
+from .candidate import refuses_times
 
 Numbers = Sequence[Any]
 Function = Callable[[Any], Any]
@@ -92,6 +93,13 @@ def unwritten(scene: Scene) -> str:
 def damps(scene: Scene) -> bool:
     """Whether something may make a scene stiff."""
     return any(isinstance(torque, torques.Damping) for torque in scene.torques)
+
+
+def refuses(scene: Scene, implicit: bool = False) -> str:
+    """Why a program that is fed these equations does not take a scene, or ""."""
+    if implicit and not damps(scene):
+        return "implicit: for scenes that damp"
+    return unwritten(scene) or refuses_times(scene)
 
 
 def derivatives(scene: Scene, t: Any, y: Numbers, cos: Function = math.cos, sin: Function = math.sin) -> list[Any]:

@@ -13,7 +13,7 @@ from ..case import stored
 from ..entrants import Entrant
 from ..errors import attitude_errors
 from ..family import LOST, Family, Point, Verdict, answered, nobody, to_short
-from ..run import Failed, Refused, run
+from ..run import run
 
 TOLERANCES = tuple(10.0**-k for k in range(4, 17))
 STEPS = tuple(10.0**-k for k in (1, 1.5, 2, 2.5, 3, 3.5, 4))
@@ -29,7 +29,7 @@ def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
         values = (1e-3, 1e-6, 1e-9)
     for value in [v for v in values if v >= 1e-3 or not entrant.fixed][::2] if quick else values:
         point = Point(value, series)
-        try:
+        with point.trying():
             motion = run(entrant, scene, entrant.setting(step=value, rtol=value, accuracy=value), limit, True)
             n = motion.t.size
             known = Truth(truth.omega[:n], truth.attitude[:n], "stored", "", 0.0, None)
@@ -38,16 +38,9 @@ def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
                             "steps": motion.stats["steps"], "seconds": motion.stats["seconds"]}
             if math.isfinite(motion.error):
                 point.values |= {"stated": motion.error, "claims": float(motion.success), "lost": float(off.size > 0)}
-        except Refused as why:
-            point.status, point.why = "refused", str(why)
-            yield point
-            return
-        except Failed as why:
-            point.status, point.why = ("left out" if why.late else "failed"), str(why)
-            if why.late:   # a finer one would take longer
-                yield point
-                return
         yield point
+        if point.status in ("refused", "left out"):   # a finer one would take longer
+            return
 
 
 def judge(points: list[Point]) -> Verdict:

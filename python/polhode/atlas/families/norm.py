@@ -11,7 +11,7 @@ from ...scene import Scene
 from ..case import S1_MOMENTS
 from ..entrants import Entrant
 from ..family import Family, Point, Verdict, answered, nobody, to_short
-from ..run import Failed, Refused, run
+from ..run import run
 
 SPAN = 100.0
 STEPS = (0.1, 0.03, 0.01, 0.003)
@@ -50,16 +50,12 @@ def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
     scene = Scene(inertia=S1_MOMENTS, omega=(1.0, 2.0, 3.0), times=np.linspace(0, SPAN, 501))
     for step, rtol in zip(STEPS, TOLERANCES):
         point = Point(step, "")
-        try:
+        with point.trying("left out"):   # no quaternion, no norm
             motion = run(entrant, scene, entrant.setting(step=step, rtol=rtol, accuracy=rtol), limit)
             assert motion.attitude is not None
             point.values["norm"] = float(np.abs(np.linalg.norm(motion.attitude, axis=1) - 1).max())
             if not entrant.fixed and motion.stats["steps"]:
                 point.x = SPAN / motion.stats["steps"]
-        except Refused as why:
-            point.status, point.why = "refused", str(why)
-        except Failed as why:
-            point.status, point.why = "left out", str(why)   # no quaternion, no norm
         yield point
 
 

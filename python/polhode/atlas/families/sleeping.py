@@ -8,7 +8,7 @@ from .. import scenes
 from ..case import stored, turn_of
 from ..entrants import PER_TURN, Entrant
 from ..family import Family, Point, Verdict, answered, nobody, to_short
-from ..run import Failed, Refused, run
+from ..run import run
 
 
 SURE = 1e-3      # beyond this excess, either way, there is no doubt
@@ -23,22 +23,15 @@ def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
             continue
         case = scenes.sleeping(excess)
         point = Point(excess)
-        try:
+        with point.trying():
             motion = run(entrant, case.scene, entrant.setting(step=turn_of(case.scene) / PER_TURN), limit)
             assert motion.attitude is not None
             point.values["tilt"] = float(scenes.tilt(motion.attitude).max())
             point.values["true"] = float(true[index])
             point.values["off"] = abs(point.values["tilt"] / true[index] - 1)
-        except Refused as why:
-            point.status, point.why = "refused", str(why)
-            yield point
-            return
-        except Failed as why:
-            point.status, point.why = ("left out" if why.late else "failed"), str(why)
-            if why.late:
-                yield point
-                return
         yield point
+        if point.status in ("refused", "left out"):
+            return
 
 
 def judge(points: list[Point]) -> Verdict:

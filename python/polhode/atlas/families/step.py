@@ -16,7 +16,7 @@ from ..case import S1_MOMENTS
 from ..entrants import Entrant
 from ..errors import attitude_errors
 from ..family import LOST, Family, Point, Verdict, answered, fixed_only, nobody, to_short
-from ..run import Failed, Refused, run
+from ..run import Failed, run
 
 STARTS = ((1.0, 1.0, 1.0), (1.0, 0.1, 0.1), (0.1, 1.0, 0.1), (0.1, 0.1, 1.0))
 NEEDLES = (1e-1, 1e-2, 1e-3, 1e-4)
@@ -86,13 +86,9 @@ def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
     for ratio, moments in bodies(quick):
         point = Point(ratio)
         begin = time.thread_time()
-        try:
+        with point.trying("left out"):
             point.values = dict(limits(entrant, moments, quick, limit))
             point.values["seconds"] = time.thread_time() - begin
-        except Refused as why:
-            point.status, point.why = "refused", str(why)
-        except Failed as why:
-            point.status, point.why = "left out", str(why)
         yield point
 
 

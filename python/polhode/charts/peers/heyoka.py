@@ -7,8 +7,8 @@ import time
 import numpy as np
 
 from ...scene import Scene
-from ..candidate import Answer, Candidate, Failure, Run, Settings, refuses_times
-from ..equations import derivatives, unwritten
+from ..candidate import Answer, Candidate, Failure, Run, Settings
+from ..equations import derivatives, refuses
 from .found import version
 
 NAME, INSTALL = "heyoka", "pip install heyoka"
@@ -57,4 +57,4 @@ def _start(scene: Scene) -> Run:
 def candidates() -> list[Candidate]:
     """Its adaptive Taylor integrator; the compilation of each order is the first run's, and not timed after."""
     return [Candidate("heyoka", "peer", "heyoka.taylor_adaptive, propagate_grid", _settings, _start,
-                      lambda scene: unwritten(scene) or refuses_times(scene))]
+                      refuses)]

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from ...scene import Scene
-from ..candidate import Answer, Candidate, Failure, Run, refuses_times, tolerances
-from ..equations import STATE, source, unwritten
+from ..candidate import Answer, Candidate, Failure, Run, tolerances
+from ..equations import STATE, refuses, source
 from .found import version
 
 NAME, INSTALL = "numbalsoda", "pip install numbalsoda (and a Fortran compiler)"
@@ -50,6 +50,6 @@ def candidates() -> list[Candidate]:
     """Both of its solvers; lsoda refuses tolerances below 1e-13."""
     def one(method: str) -> Candidate:
         return Candidate(f"numbalsoda {method}", "peer", f"numbalsoda.{method}", tolerances(3, 13, 2),
-                         lambda scene: _start(scene, method), lambda scene: unwritten(scene) or refuses_times(scene))
+                         lambda scene: _start(scene, method), refuses)
 
     return [one("lsoda"), one("dop853")]

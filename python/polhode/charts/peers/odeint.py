@@ -15,8 +15,8 @@ import numpy as np
 
 from ...motion import Floats
 from ...scene import Scene
-from ..candidate import Answer, Candidate, Failure, Run, refuses_times, tolerances
-from ..equations import STATE, source, unwritten
+from ..candidate import Answer, Candidate, Failure, Run, tolerances
+from ..equations import STATE, refuses, source
 
 NAME, INSTALL = "Boost.Odeint", "apt install g++ libboost-dev"
 FLAGS = ("-O3", "-march=native", "-std=c++20", "-shared", "-fPIC", "-w")
@@ -99,6 +99,6 @@ def candidates() -> list[Candidate]:
     def one(method: str) -> Candidate:
         return Candidate(f"Odeint {method}", "peer", f"boost::numeric::odeint::runge_kutta_{method}, g++ {' '.join(FLAGS[:2])}",
                          tolerances(3, 14), lambda scene: _start(scene, method),
-                         lambda scene: unwritten(scene) or refuses_times(scene))
+                         refuses)
 
     return [one(method) for method in METHODS]

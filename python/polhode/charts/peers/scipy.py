@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from ...scene import Scene
-from ..candidate import Answer, Candidate, Failure, Run, refuses_times, tolerances
-from ..equations import damps, in_floats, unwritten
+from ..candidate import Answer, Candidate, Failure, Run, tolerances
+from ..equations import in_floats, refuses
 from .found import version
 
 NAME, INSTALL = "SciPy", "pip install scipy"
@@ -63,14 +63,9 @@ def _start(scene: Scene, method: str) -> Run:
 
 def candidates() -> list[Candidate]:
     """RK45 and DOP853, whose continuous extensions are of order 4 and 7, LSODA, its fastest, and Radau for what damps."""
-    def refuses(scene: Scene, method: str) -> str:
-        if method == "Radau" and not damps(scene):
-            return "implicit: for scenes that damp"
-        return unwritten(scene) or refuses_times(scene)
-
     def one(method: str) -> Candidate:
         # A run takes up to seconds, so every third decade is what there is time for.
         return Candidate(f"SciPy {method}", "peer", f"scipy.integrate.solve_ivp(method={method!r})", tolerances(3, 12, 3),
-                         lambda scene: _start(scene, method), lambda scene: refuses(scene, method))
+                         lambda scene: _start(scene, method), lambda scene: refuses(scene, method == "Radau"))
 
     return [one(method) for method in ("RK45", "DOP853", "LSODA", "Radau")]

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from ...scene import Scene
-from ..candidate import Answer, Candidate, Failure, Run, refuses_times, tolerances
-from ..equations import damps, in_floats, unwritten
+from ..candidate import Answer, Candidate, Failure, Run, tolerances
+from ..equations import in_floats, refuses
 from .found import version
 from .scipy import sizes, watched
 
@@ -44,13 +44,8 @@ def _start(scene: Scene, method: str) -> Run:
 
 def candidates() -> list[Candidate]:
     """Adams for what is not stiff, BDF for what is."""
-    def refuses(scene: Scene, method: str) -> str:
-        if method == "BDF" and not damps(scene):
-            return "implicit: for scenes that damp"
-        return unwritten(scene) or refuses_times(scene)
-
     def one(method: str) -> Candidate:
         return Candidate(f"SUNDIALS {method}", "peer", f"sksundae.cvode.CVODE(method={method!r})", tolerances(3, 12, 3),
-                         lambda scene: _start(scene, method), lambda scene: refuses(scene, method))
+                         lambda scene: _start(scene, method), lambda scene: refuses(scene, method == "BDF"))
 
     return [one("Adams"), one("BDF")]
