@@ -16,7 +16,7 @@ RESULTS, PICTURES, PAGE = DOCS.parent / "benchmarks/results/atlas.json", DOCS / 
 INTRODUCTION = """
 ```
 polhode atlas --quick              # about a minute on two cores: every family, fewer values of what is swept
-polhode atlas -o atlas             # the whole, within a quarter of an hour
+polhode atlas -o atlas             # the whole: many minutes (25 beside other work)
 polhode atlas racket damping       # some families
 ```
 

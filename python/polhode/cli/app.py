@@ -264,7 +264,7 @@ def atlas(
     families: Annotated[list[str] | None, typer.Argument(help="Names of families; all when none is given.")] = None,
     output: Annotated[pathlib.Path, typer.Option(
         "-o", "--output", help="The folder; what is finished there is kept.")] = pathlib.Path("atlas"),
-    quick: Annotated[bool, typer.Option("--quick", help="Fewer values: a minute, not a quarter of an hour.")] = False,
+    quick: Annotated[bool, typer.Option("--quick", help="Fewer values: about a minute, not many.")] = False,
     fresh: Annotated[bool, typer.Option("--fresh", help="Run finished families again.")] = False,
     processes: Annotated[int, typer.Option(help="How many work at a time.")] = 2,
     limit: Annotated[
