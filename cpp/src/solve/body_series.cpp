@@ -6,16 +6,13 @@
 
 #include "polhode/attitude/matrix.hpp"
 #include "polhode/core/simd.hpp"
+#include "polhode/solve/separatrix.hpp"
 #include "solve/lanes/levels.hpp"
 
 namespace polhode {
 namespace {
 
 using math::DD;
-
-/// How k, which tells how the separatrix lies, may differ from 1: far from 1 the two variables of one size mix rates
-/// of two, which pays only where the motion stays near the separatrix.
-constexpr double widest_k = 8.0;
 
 /// Components in the body of a unit quaternion's rows of R: R^T e_x, R^T e_y or R^T e_z.
 Vector3d to_body(const double* q, const Vector3d& v_W) { return rotate({-q[0], -q[1], -q[2], q[3]}, v_W); }
@@ -87,27 +84,14 @@ BodySeries::BodySeries(const Scene& scene, bool attitude) {
 }
 
 void BodySeries::choose_variables(const Vector3d& w) {
-  // Lengths of 1e-120 and 1e120 kg m^2 must not underflow in products of two.
-  const double scale = math::power_of_two_below(I_[2]);
-  const DD I1 = I_[0] / scale, I2 = I_[1] / scale, I3 = I_[2] / scale;
-  const DD lower = I2 - I1, upper = I3 - I2;
-  const DD k = math::sqrt((I1 * lower) / (I3 * upper));
-  const DD kw = k * DD(w[0]), u = DD(w[2]) - kw, v = DD(w[2]) + kw;
-  if (!(k.hi > 1.0 / widest_k && k.hi < widest_k)) {
-    // Far from the separatrix the plain rates do better; 1 there where |w3| or |k w1| is the larger by far.
-    const double size = w.squaredNorm(), near = std::min(k.hi, 1.0 / k.hi);
-    if (!(std::abs(u.hi * v.hi) < near * near * size)) return;
-  }
-  k_ = k.hi;
+  const Separatrix separatrix(I_);
+  if (!separatrix.suits(w)) return;
+  k_ = separatrix.k().hi;
   terms_.variables = RateVariables::separatrix;
-  const DD half_over_k = DD(0.5) / k;
-  terms_.to_rates[0] = half_over_k.hi, terms_.to_rates[1] = 1.0, terms_.to_rates[2] = 0.5;
-  const DD rate = math::sqrt((lower * upper) / (I1 * I3));
-  const DD middle = (I3 - I1) / I2 * half_over_k * DD(0.5);   // of (v - u)(v + u)
-  const DD product[3] = {rate, -rate, middle};
+  terms_.to_rates[0] = separatrix.half_over_k().hi, terms_.to_rates[1] = 1.0, terms_.to_rates[2] = 0.5;
+  const DD product[3] = {separatrix.rate(), -separatrix.rate(), separatrix.middle()};
   for (int i = 0; i < 3; ++i) terms_.product[i] = product[i].hi, terms_.product_low[i] = product[i].lo;
-  start_[0] = u.hi, start_[1] = v.hi, start_[2] = w[1];
-  start_carry_[0] = u.lo, start_carry_[1] = v.lo;
+  separatrix.from_rates(w.data(), start_, start_carry_);
 }
 
 void BodySeries::set_column(double* column, const Vector3d& torque_P) const {

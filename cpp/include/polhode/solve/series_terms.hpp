@@ -3,9 +3,7 @@
 namespace polhode {
 
 /// Which numbers carry the rates of a body with principal axes 1, 2, 3: the rates themselves, or, in the middle of a
-/// triaxial body, u = w3 - k w1, v = w3 + k w1 and w2, with k^2 = I1 (I2 - I1) / (I3 (I3 - I2)). On the separatrix u or
-/// v is zero, and near it each keeps its relative accuracy through every flip, where w1 and w3 shrink together:
-/// u' = +Lam w2 u, v' = -Lam w2 v, w2' = (I3 - I1)/I2 w1 w3, Lam^2 = (I2 - I1)(I3 - I2)/(I1 I3).
+/// triaxial body, u, v and w2 (solve/separatrix.hpp).
 enum class RateVariables { plain, separatrix };
 
 /// Euler's equations with every polynomial torque, as the constants of their Taylor recurrences. Lanes of `r` are the
