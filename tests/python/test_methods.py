@@ -61,6 +61,26 @@ def test_the_symplectic_map_has_order_four_and_its_energy_stays(name, step):
     assert moved[1] < 3 * moved[0] < 3e-6, "bounded, not growing"
 
 
+@pytest.mark.parametrize("moments", [(0.2, 0.4, 0.52), (0.52, 0.2, 0.4), (0.4, 0.52, 0.2), (0.4, 0.2, 0.52), (0.02, 0.999, 1.0),
+                                     (1.0, 1.0 + 1e-9, 1.5), (0.5, 1.0, 1.0 + 1e-12), (0.999, 1.0, 1.001)])
+@pytest.mark.parametrize("omega", [(1, 2, 3), (-3, 1e-3, 2), (0.3, -4, 1e-7)])
+def test_the_drift_of_the_symplectic_map_is_the_free_motion(moments, omega):
+    """By series of every order, in several parts, and where that would be long by the closed form."""
+    for step in np.geomspace(1e-3, 4, 12):
+        one = scene("S1", inertia=moments, omega=omega, times=[0.0, step, 2 * step])
+        found, exact = ph.solve(one, method="symplectic", step=step), ph.solve(one, method="exact")
+        least = max(5e-15, 4e-16 * 2 * step * max(moments) / min(moments) * np.linalg.norm(omega))   # rounding of the fastest rate
+        assert error(found.omega, found.attitude, {"omega": exact.omega, "attitude": exact.attitude}) < least
+
+
+@pytest.mark.parametrize("closeness", [1e-2, 1e-6, 1e-12])
+def test_the_symplectic_map_keeps_the_racket(closeness):
+    """At its own times, of flips that forget every digit of omega that is not carried along."""
+    one = scene("S1", inertia=(0.4, 0.52, 0.2), omega=(5, closeness, closeness), times=np.arange(0, 401) * 0.5)
+    found, exact = ph.solve(one, method="symplectic", step=0.0625), ph.solve(one, method="exact")
+    assert error(found.omega, found.attitude, {"omega": exact.omega, "attitude": exact.attitude}) < 5e-12
+
+
 # ---- the engines' steps (the reference figures are of prototypes in another program, to two digits)
 
 AT_40_SECONDS = {   # S1's body at h = 0.02: T/T0 - 1, |L|/|L0| - 1

@@ -23,7 +23,7 @@ CLAIMS: dict[str, dict[str, str]] = {
              "sleeping": "holds"},
     "radau": {"damping": "holds", "gimbal": "holds", "scales": "holds", "norm": "holds", "spin-up": "degrades",
               "sleeping": "holds"},
-    "symplectic": {"step": "holds", "gimbal": "holds", "long": "degrades", "near": "holds", "scales": "holds",
+    "symplectic": {"racket": "holds", "step": "holds", "gimbal": "holds", "long": "degrades", "near": "holds", "scales": "holds",
                    "norm": "holds", "spin-up": "holds", "sleeping": "holds"},
     # The best cheap step of a free body.
     "dmv8": {"step": "holds", "gimbal": "holds", "long": "degrades", "near": "degrades", "scales": "holds",

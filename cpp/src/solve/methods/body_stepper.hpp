@@ -17,6 +17,8 @@ namespace polhode {
 /// for one step of L_P and q_WP, false where it finds no solution, and
 ///   static constexpr bool kick_within   its torque acts inside the step, as h tau in `kick`
 ///   static constexpr int interior       shorter steps that the polynomial between the steps is drawn through
+/// A Step that carries numbers of its own beside L has their count `carried`, `start(w, own)` and `kick(kick, own)`; they
+/// stand behind L. One with `ascending` wants the moments of a triaxial body in that order.
 /// Without kick_within the torque acts between the parts of a step, by `kicks` and `drifts` where Step has them, else
 /// half of it before and half after (Strang 1968, SIAM J. Numer. Anal. 5, 506).
 template <class Step>
@@ -25,12 +27,22 @@ class BodyStepper final : public ode::FixedStepper {
   static constexpr int N = 7;                            ///< (w_B, q_WB)
   static constexpr int nodes = 4 + Step::interior;       ///< of the polynomial: each end twice, and the shorter steps
   static constexpr int segment_size = nodes * N;
+  static constexpr bool carries = requires { Step::carried; };
+  static constexpr int momenta = [] {                    ///< numbers in L: its own three, and those behind it
+    if constexpr (carries) return 3 + Step::carried;
+    return 3;
+  }();
 
   BodyStepper(const Scene& scene, double t0, const double* y0, const ode::Tolerances& tolerances)
-      : FixedStepper(N, segment_size, &evaluate_segment, t0, tolerances.step), body_(scene, tolerances.step), step_(body_, scene),
+      : FixedStepper(N, segment_size, &evaluate_segment, t0, tolerances.step), body_(scene, tolerances.step, requires { Step::ascending; }), step_(body_, scene),
         earlier_(step_) {
     std::copy_n(y0, N, y_);
     body_.enter(y0, L_, q_);
+    if constexpr (carries) {
+      double w[3];
+      body_.compute_rates(y0, w);
+      step_.start(w, L_ + 3);
+    }
   }
 
   const double* y() const override {
@@ -57,8 +69,8 @@ class BodyStepper final : public ode::FixedStepper {
     compute_rates(t_old_, segment_, rate[0]);
     compute_rates(t_, segment_ + 2 * N, rate[1]);
     for (int k = 4; k < nodes; ++k) {
-      double L[3], q[4];
-      std::copy_n(L_old_, 3, L);
+      double L[momenta], q[4];
+      std::copy_n(L_old_, momenta, L);
       std::copy_n(q_old_, 4, q);
       Step step = earlier_;
       advance(step, t_old_, node(k) * h_taken(), L, q);
@@ -108,15 +120,15 @@ class BodyStepper final : public ode::FixedStepper {
   }
 
   ode::StepResult step(double t, double h) override {
-    double L[3], q[4];
-    std::copy_n(L_, 3, L);
+    double L[momenta], q[4];
+    std::copy_n(L_, momenta, L);
     std::copy_n(q_, 4, q);
     Step next = step_;
     if (!advance(next, t, h, L, q)) return ode::StepResult::no_solution;
     if (!std::isfinite(L[0] + L[1] + L[2]) || !std::isfinite(q[0] + q[1] + q[2] + q[3])) return ode::StepResult::not_finite;
-    std::copy_n(L_, 3, L_old_);
+    std::copy_n(L_, momenta, L_old_);
     std::copy_n(q_, 4, q_old_);
-    std::copy_n(L, 3, L_);
+    std::copy_n(L, momenta, L_);
     std::copy_n(q, 4, q_);
     earlier_ = step_;
     step_ = next;
@@ -154,6 +166,7 @@ class BodyStepper final : public ode::FixedStepper {
     double kick[3];
     compute_kick(t, h, L, q, kick);
     for (int i = 0; i < 3; ++i) L[i] += kick[i];
+    if constexpr (carries) step_.kick(kick, L + 3);
   }
 
   /// What the torque alone does to L in the (scaled) time h at the time t: h tau, or where the torque sees the rates
@@ -174,7 +187,7 @@ class BodyStepper final : public ode::FixedStepper {
   Step step_, earlier_;
   bool segment_ready_ = false;
   mutable double y_[N];
-  double L_[3], q_[4], L_old_[3] = {}, q_old_[4] = {}, segment_[segment_size] = {};
+  double L_[momenta], q_[4], L_old_[momenta] = {}, q_old_[4] = {}, segment_[segment_size] = {};
 };
 
 /// The run of a fixed-step method on a scene.

@@ -12,13 +12,17 @@ namespace polhode {
 /// by powers of two, so that scales change no bit and no formula runs out of range.
 class PrincipalBody {
  public:
-  PrincipalBody(const Scene& scene, double step)
+  /// @param ascending  the principal axes in the order of their moments, where these differ
+  PrincipalBody(const Scene& scene, double step, bool ascending = false)
       : torques_{scene.torques()}, I_B_(scene.inertia_B().matrix()), diagonal_(scene.inertia_B().is_diagonal()),
         driven_(!scene.torques().empty()), uses_rates_(scene.torque_sum().uses_rates) {
     const InertiaTensor& inertia = scene.inertia_B();
-    R_BP_ = diagonal_ ? Matrix3d(Matrix3d::Identity()) : inertia.axes();
+    const bool as_given = diagonal_ && !(ascending && inertia.moments()[0] < inertia.moments()[1] &&
+                                         inertia.moments()[1] < inertia.moments()[2]);
+    R_BP_ = as_given ? Matrix3d(Matrix3d::Identity()) : inertia.axes();
+    turned_ = R_BP_ != Matrix3d::Identity();
     q_BP_ = to_quat(R_BP_);
-    const Vector3d moments = diagonal_ ? Vector3d(I_B_.diagonal()) : inertia.moments();
+    const Vector3d moments = as_given ? Vector3d(I_B_.diagonal()) : inertia.moments();
     const int e = std::ilogb(moments.maxCoeff()), f = std::ilogb(step);
     mass_ = std::ldexp(1.0, -e);
     time_ = std::ldexp(1.0, -f);
@@ -32,13 +36,16 @@ class PrincipalBody {
   bool uses_rates() const { return uses_rates_; }
   double to_scaled_time(double t) const { return t * time_; }
 
+  /// w_P, scaled.
+  void compute_rates(const double* y, double* w) const {
+    for (int i = 0; i < 3; ++i) w[i] = (R_BP_(0, i) * y[0] + R_BP_(1, i) * y[1] + R_BP_(2, i) * y[2]) * rate_;
+  }
+
   /// (w_B, q_WB) of the scene as L_P, scaled, and q_WP.
   void enter(const double* y, double* L, double* q) const {
-    for (int i = 0; i < 3; ++i) {
-      double w = 0.0;
-      for (int j = 0; j < 3; ++j) w += R_BP_(j, i) * y[j];
-      L[i] = I[i] * (w * rate_);
-    }
+    double w[3];
+    compute_rates(y, w);
+    for (int i = 0; i < 3; ++i) L[i] = I[i] * w[i];
     const Quat q_WP = Quat{y[3], y[4], y[5], y[6]} * q_BP_;
     q[0] = q_WP.x, q[1] = q_WP.y, q[2] = q_WP.z, q[3] = q_WP.w;
   }
@@ -46,7 +53,7 @@ class PrincipalBody {
   void leave(const double* L, const double* q, double* y) const {
     double w[3];
     for (int i = 0; i < 3; ++i) w[i] = L[i] / I[i] * time_;
-    if (diagonal_) {
+    if (!turned_) {
       for (int i = 0; i < 3; ++i) y[i] = w[i];
       for (int i = 0; i < 4; ++i) y[3 + i] = q[i];
       return;
@@ -62,7 +69,7 @@ class PrincipalBody {
     leave(L, q, y);
     torques_.add(TorqueInput{t, y, y + 3, I_B_, diagonal_}, tau_B);
     for (int i = 0; i < 3; ++i) {
-      const double one = diagonal_ ? tau_B[i] : R_BP_(0, i) * tau_B[0] + R_BP_(1, i) * tau_B[1] + R_BP_(2, i) * tau_B[2];
+      const double one = !turned_ ? tau_B[i] : R_BP_(0, i) * tau_B[0] + R_BP_(1, i) * tau_B[1] + R_BP_(2, i) * tau_B[2];
       tau[i] = one * mass_ * rate_ * rate_;
     }
   }
@@ -86,7 +93,7 @@ class PrincipalBody {
   SeveralTorques torques_;
   Matrix3d I_B_, R_BP_;
   Quat q_BP_;
-  bool diagonal_, driven_, uses_rates_;
+  bool diagonal_, driven_, uses_rates_, turned_ = false;
   double mass_ = 1.0, time_ = 1.0, rate_ = 1.0;
 };
 

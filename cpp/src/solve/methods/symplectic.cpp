@@ -1,13 +1,19 @@
+#include <optional>
+
 #include "polhode/exact/free_motion.hpp"
 #include "solve/methods/body_stepper.hpp"
+#include "solve/methods/free_drift.hpp"
 
 namespace polhode {
 namespace {
 
-/// The exact motion of the free body over each part of a step: a turn p of the body, and L_B = R(p)^T L_B.
+/// The exact motion of the free body over each part of a step: of a triaxial one by its series, or where that would be
+/// long, and of others, as a turn p of the body, and L_B = R(p)^T L_B.
 class ExactDrift {
  public:
   static constexpr bool kick_within = false;
+  static constexpr bool ascending = true;
+  static constexpr int carried = FreeDrift::numbers;
   static constexpr int interior = 2;
   /// SRKN6b of Blanes & Moan 2002, table 3: of order 4 where three kicks round a drift commute to nothing, as they do
   /// when the torque does not see the rates and the energy of the drift is quadratic in L.
@@ -17,17 +23,37 @@ class ExactDrift {
   static constexpr double drifts[6] = {a1, a2, a3, a3, a2, a1};
   static constexpr double kicks[7] = {b1, b2, b3, b4, b3, b2, b1};
 
-  ExactDrift(const PrincipalBody& body, const Scene&)
+  ExactDrift(const PrincipalBody& body, const Scene& scene)
       : inertia_(InertiaTensor::from_moments({body.I[0], body.I[1], body.I[2]}, false)) {
     for (int i = 0; i < 3; ++i) {
       I_[i] = body.I[i];
       if (body.I[(i + 1) % 3] == body.I[(i + 2) % 3]) axis_ = i;
     }
+    if (axis_ >= 0) return;
+    const State start = scene.start();
+    double y[7], w[3];
+    EulerProblem<NoTorque, true, true>::pack(start, y);
+    body.compute_rates(y, w);
+    series_.emplace(Vector3d(I_[0], I_[1], I_[2]), Vector3d(w[0], w[1], w[2]));
+  }
+
+  void start(const double* w, double* own) const {
+    if (series_) series_->start(w, own);
+  }
+  void kick(const double* kick, double* own) const {
+    if (!series_) return;
+    const double a[3] = {kick[0] / I_[0], kick[1] / I_[1], kick[2] / I_[2]};
+    series_->kick(a, own);
   }
 
   bool advance(double h, const double*, double* L, double* q) {
     if (!std::isfinite(L[0] + L[1] + L[2])) return true;   // told by the stepper
-    double p[4];
+    double p[4], w[3];
+    if (series_ && series_->advance(h, L + 3, q)) {
+      series_->to_rates(L + 3, w);
+      for (int i = 0; i < 3; ++i) L[i] = I_[i] * w[i];
+      return true;
+    }
     if (axis_ >= 0) {
       turn_symmetric(h, L, p);
     } else {
@@ -36,6 +62,10 @@ class ExactDrift {
     }
     turn_by(p, q);
     turn_back(p, L);
+    if (series_) {
+      for (int i = 0; i < 3; ++i) w[i] = L[i] / I_[i];
+      series_->start(w, L + 3);
+    }
     return true;
   }
 
@@ -53,6 +83,7 @@ class ExactDrift {
   }
 
   InertiaTensor inertia_;
+  std::optional<FreeDrift> series_;
   int axis_ = -1;
   double I_[3];
 };
