@@ -25,6 +25,7 @@ class Point:
     values: dict[str, Any] = field(default_factory=dict)
     why: str = ""
     status: str = "answered"   # "failed" | "refused" | "left out"
+    cpu: float = 0.0           # seconds it took, with everything around the answer
 
     def get(self, name: str) -> float:
         """A value; infinite where the run failed, NaN where it was not made."""
@@ -50,7 +51,7 @@ def to_json(point: Point) -> dict[str, Any]:
         return None if isinstance(value, float) and not math.isfinite(value) else value
 
     return {"x": finite(point.x), "series": point.series, "status": point.status, "why": point.why,
-            "values": {name: finite(value) for name, value in point.values.items()}}
+            "cpu": point.cpu, "values": {name: finite(value) for name, value in point.values.items()}}
 
 
 def from_json(content: dict[str, Any]) -> Point:
@@ -59,7 +60,8 @@ def from_json(content: dict[str, Any]) -> Point:
         return math.nan if value is None else value
 
     values = {name: number(value) for name, value in content["values"].items()}
-    return Point(number(content["x"]), content["series"], values, content["why"], content["status"])
+    return Point(number(content["x"]), content["series"], values, content["why"], content["status"],
+                 content["cpu"])
 
 
 @dataclass

@@ -2,89 +2,62 @@
 
 from __future__ import annotations
 
-import json
-import os
-import selectors
-import signal
-import subprocess
-import sys
+import select
 import time
-from collections.abc import Callable, Sequence
-from typing import IO, Any
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
 
-from .family import Point, from_json
-from .jobs import Job
+from .. import workers
+from ..workers import Worker
+from .family import Point, from_json, to_json
+from .jobs import Job, find_entrant, find_family
 
-COMMAND = (sys.executable, "-m", "polhode.atlas.worker")
 PATIENCE = 10.0   # times the limit of a run, in CPU: a point is a few runs
 SILENCE = 60.0    # seconds of wall time without a sign of life
 
 Done = Callable[[Job, list[Point]], object]
 
 
-class _Worker:
-    """A process and the job it has."""
+def answerer() -> Callable[[Job], Iterator[dict[str, Any]]]:
+    """What a worker does: the points of one row, each with the CPU time it took."""
+    def answer(job: Job) -> Iterator[dict[str, Any]]:
+        mark = time.process_time()
+        for point in find_family(job.family).measure(find_entrant(job.entrant), job.quick, job.limit):
+            point.cpu = time.process_time() - mark
+            yield to_json(point)
+            mark = time.process_time()
 
-    def __init__(self, command: Sequence[str]) -> None:
-        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-        self.job: Job | None = None
-        self.points: list[Point] = []
-        self.heard = time.monotonic()
-        self.cpu = self.mark = 0.0   # of the process, now and at its last point
-        self._rest = b""
+    return answer
 
-    @property
-    def out(self) -> IO[bytes]:
-        assert self.process.stdout is not None
-        return self.process.stdout
+
+class _Hand(Worker):
+    """A worker and the job it has."""
+
+    job: Job | None = None
+    points: list[Point]
 
     def give(self, job: Job) -> None:
-        self.job, self.points, self.heard, self.mark = job, [], time.monotonic(), self.cpu
-        assert self.process.stdin is not None
-        try:
-            self.process.stdin.write(json.dumps(job._asdict()).encode() + b"\n")
-            self.process.stdin.flush()
-        except BrokenPipeError:
-            pass   # its end is seen when its output is read
+        self.job, self.points, self.limit = job, [], job.limit
+        self.tell(job)
 
-    def read(self) -> tuple[bool, bool]:
-        """Take what has come; whether the job is done, and whether the process has ended."""
-        chunk = os.read(self.out.fileno(), 1 << 16)
-        self.heard = time.monotonic()
-        *lines, self._rest = (self._rest + chunk).split(b"\n")
-        done = False
-        for line in lines:
-            content: dict[str, Any] = json.loads(line)
-            if "cpu" in content:
-                self.cpu = content["cpu"]
-                continue
-            self.mark = self.cpu
-            if "fault" in content:
-                self.points.append(Point(float("nan"), status="failed", why=content["fault"]))
-            elif "end" in content:
-                done = True
-            else:
+    def broke_off(self, why: str) -> None:
+        """What it was at counts as failed, for this reason."""
+        if why:
+            self.points.append(Point(float("nan"), status="failed", why=why, cpu=self.spent))
+
+    def take(self) -> bool | None:
+        """Take what has come; whether the job is done, None when the process has ended."""
+        heard = self.hear()
+        for kind, content in heard or ():
+            if kind == "answer":
                 self.points.append(from_json(content))
-        return done, not chunk
-
-    def stop(self) -> int:
-        self.process.kill()
-        code = self.process.wait()
-        for pipe in (self.process.stdin, self.process.stdout):
-            if pipe is not None:
-                try:
-                    pipe.close()
-                except BrokenPipeError:
-                    pass
-        return code
+            else:
+                self.broke_off(content)
+        return None if heard is None else bool(heard) and heard[-1][0] == "end"
 
 
-def _how_it_ended(code: int) -> str:
-    return f"the process ended: {signal.Signals(-code).name}" if code < 0 else f"the process ended with status {code}"
-
-
-def work(jobs: Sequence[Job], done: Done, *, processes: int = 2, command: Sequence[str] = COMMAND,
-         silence: float = SILENCE) -> None:
+def work(jobs: Sequence[Job], done: Done, *, processes: int = 2,
+         command: Sequence[str] = workers.command(__name__), silence: float = SILENCE) -> None:
     """Do all jobs, in their order, and hand over the points of each as soon as it ends.
 
     Parameters
@@ -100,48 +73,37 @@ def work(jobs: Sequence[Job], done: Done, *, processes: int = 2, command: Sequen
         a run without an answer.
     """
     waiting = list(reversed(jobs))
-    workers: list[_Worker] = []
-    selector = selectors.DefaultSelector()
+    hands: list[_Hand] = []
 
-    def start() -> None:
-        worker = _Worker(command)
-        selector.register(worker.out, selectors.EVENT_READ, worker)
-        workers.append(worker)
-        worker.give(waiting.pop())
-
-    def finish(worker: _Worker, why: str, code_known: bool = False) -> None:
-        """Take a process out; what it was at counts as failed, for this reason."""
-        selector.unregister(worker.out)
-        code = worker.process.wait() if code_known else 0
-        worker.stop()
-        workers.remove(worker)
-        job = worker.job
+    def hand_over(hand: _Hand) -> None:
+        job, hand.job = hand.job, None
         if job is not None:
-            said = why or _how_it_ended(code)
-            done(job, [*worker.points, Point(float("nan"), status="failed", why=said)])
+            done(job, hand.points)
+
+    def lay_off(hand: _Hand, why: str = "") -> None:
+        """Take a process out, with what it was at."""
+        hands.remove(hand)
+        ended = hand.end(kill=bool(why))
+        if hand.job:
+            hand.broke_off(why or ended)
+        hand_over(hand)
 
     try:
-        while waiting or any(w.job for w in workers):
-            while waiting and len(workers) < processes:
-                start()
-            for event, _ in selector.select(timeout=0.5):
-                worker: _Worker = event.data
-                complete, ended = worker.read()
-                if complete and worker.job is not None:
-                    job, points = worker.job, worker.points
-                    worker.job = None
-                    done(job, points)
-                    if waiting and not ended:
-                        worker.give(waiting.pop())
-                if ended:
-                    finish(worker, "", code_known=True)
-            now = time.monotonic()
-            for worker in [w for w in workers if w.job]:
-                assert worker.job is not None
-                spent = worker.cpu - worker.mark
-                if now - worker.heard > silence or spent > PATIENCE * worker.job.limit:
-                    finish(worker, f"hung: no answer for {max(now - worker.heard, spent):.0f} s")
+        while waiting or any(hand.job for hand in hands):
+            hands += [_Hand(*command) for _ in range(min(len(waiting), processes - len(hands)))]
+            for hand in hands:
+                if waiting and not hand.job:
+                    hand.give(waiting.pop())
+            for hand in select.select(hands, [], [], 0.5)[0]:
+                complete = hand.take()
+                if complete is None:
+                    lay_off(hand)
+                elif complete:
+                    hand_over(hand)
+            for hand in [hand for hand in hands if hand.job]:
+                quiet = time.monotonic() - hand.alive
+                if quiet > silence or hand.spent > PATIENCE * hand.limit:
+                    lay_off(hand, f"hung: no answer for {max(quiet, hand.spent):.0f} s")
     finally:
-        selector.close()
-        for worker in list(workers):
-            worker.stop()
+        for hand in hands:
+            hand.end()

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import pickle
-import select
-import struct
-import subprocess
-import sys
 import time
-from typing import IO, Any, NamedTuple
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..scene import Scene
+from ..workers import Worker, command
 from .candidate import Answer, Candidate, Failure, Run
+from .candidates import candidates
 
 WARM = 0.5      # seconds: a first run shorter than this is warm-up, and is run again
 START = 120.0   # seconds a candidate may take to get ready
@@ -33,8 +31,8 @@ class Reply(NamedTuple):
 class Here:
     """Runs candidates in this process."""
 
-    def __init__(self, candidates: list[Candidate]) -> None:
-        self._candidates = {candidate.name: candidate for candidate in candidates}
+    def __init__(self, taking_part: list[Candidate]) -> None:
+        self._candidates = {candidate.name: candidate for candidate in taking_part}
         self._runs: dict[str, Run] = {}
         self._answers: dict[tuple[str, float], Answer] = {}
         self._scene: Scene | None = None
@@ -91,26 +89,11 @@ class Here:
         """Nothing is held here."""
 
 
-def send(stream: IO[bytes], message: Any) -> None:
-    """Write a message with its length before it."""
-    data = pickle.dumps(message)
-    stream.write(struct.pack("<q", len(data)) + data)
-    stream.flush()
-
-
-def receive(stream: IO[bytes]) -> Any:
-    """Read a message; None at the end."""
-    head = stream.read(8)
-    if len(head) < 8:
-        return None
-    return pickle.loads(stream.read(struct.unpack("<q", head)[0]))
-
-
 class Apart:
     """Runs candidates in a process of their own, which is ended when it hangs and made anew when it is gone."""
 
     def __init__(self) -> None:
-        self._process: subprocess.Popen[bytes] | None = None
+        self._process: Worker | None = None
         self._scene: Scene | None = None
 
     def enter(self, scene: Scene) -> None:
@@ -131,56 +114,53 @@ class Apart:
         """Run without a limit; return the mean seconds of a call."""
         return float(self._ask(START, "clock", name, value, calls))
 
-    def _open(self) -> subprocess.Popen[bytes]:
-        process = subprocess.Popen([sys.executable, "-m", "polhode.charts.worker"], stdin=subprocess.PIPE,
-                                   stdout=subprocess.PIPE, start_new_session=True)   # Ctrl-C is for this one
-        self._process = process
+    def _open(self) -> Worker:
+        self._process = Worker(*command(__name__))
         self._ask(START, "enter", self._scene)   # also after one that is gone
-        return process
+        return self._process
 
     def _ask(self, patience: float, *message: Any) -> Any:
         process = self._process or self._open()
-        assert process.stdin is not None and process.stdout is not None
-        try:
-            send(process.stdin, message)
-        except BrokenPipeError:
-            pass   # what the exit says is read below
-        ready, _, _ = select.select([process.stdout], [], [], patience)
-        reply = receive(process.stdout) if ready else None
-        if reply is None:
-            raise Failure(self._end(patience if not ready else None))
-        good, content = reply
-        if not good:
-            raise Failure(content)
+        process.tell(message)
+        replies: list[tuple[str, Any]] = []
+        end = time.monotonic() + patience
+        while not replies or replies[-1][0] != "end":
+            left = end - time.monotonic()
+            heard = process.hear(max(0.0, left))
+            if heard is None or left <= 0:
+                how = self.close(kill=heard is not None)
+                raise Failure(how if heard is None else f"hung: not back after {patience:.0f} s")
+            replies += heard
+        content = replies[0][1]   # or, at the end, why there is none
+        if len(replies) < 2 or isinstance(content, Failure):
+            raise Failure(str(content))
         return content
 
-    def _end(self, waited: float | None) -> str:
+    def close(self, kill: bool = True) -> str:
         """End the process; say how it went."""
-        assert self._process is not None
         process, self._process = self._process, None
-        if waited is not None:
-            process.kill()
-        code = process.wait()
-        for stream in (process.stdin, process.stdout):
-            assert stream is not None
-            with contextlib.suppress(BrokenPipeError):   # what was not sent to a process that is gone
-                stream.close()
-        if waited is not None:
-            return f"hung: not back after {waited:.0f} s"
-        return f"ended its process by signal {-code}" if code < 0 else f"ended its process with status {code}"
-
-    def close(self) -> None:
-        """End the process."""
-        if self._process is not None:
-            self._end(0.0)
+        return process.end(kill) if process else ""
 
 
-def make_stage(candidates: list[Candidate], scenes: list[Scene]) -> tuple[Here | Apart, str]:
+def answerer() -> Callable[[tuple[Any, ...]], Iterator[Any]]:
+    """What the process apart does: calls a method of `Here` with arguments, as it is told."""
+    stage = Here(candidates())
+
+    def answer(message: tuple[Any, ...]) -> Iterator[Any]:
+        try:
+            yield getattr(stage, message[0])(*message[1:])
+        except Failure as failure:   # in its own words
+            yield failure
+
+    return answer
+
+
+def make_stage(taking_part: list[Candidate], scenes: list[Scene]) -> tuple[Here | Apart, str]:
     """Return a process apart where that can be, else this one, and why."""
     if os.name != "posix":
-        return Here(candidates), "all in this process: one apart needs POSIX"
+        return Here(taking_part), "all in this process: one apart needs POSIX"
     try:
         pickle.dumps(scenes)
     except Exception as error:   # such as a torque that is a function of a notebook
-        return Here(candidates), f"all in this process: a scene cannot be sent to another ({error})"
+        return Here(taking_part), f"all in this process: a scene cannot be sent to another ({error})"
     return Apart(), ""
