@@ -11,12 +11,12 @@ from ..candidate import Answer, Candidate, Failure, Run, tolerances
 from ..equations import STATE, refuses, source
 from .found import version
 
-NAME, INSTALL = "numbalsoda", "pip install numbalsoda (and a Fortran compiler)"
+NAME, INSTALL = "numbalsoda", "pip install numba numbalsoda (built on the spot: apt install g++ gfortran)"
 
 
 def found() -> str:
     """The version, or ""."""
-    return version("numbalsoda") and version("numba")
+    return version("numba") and version("numbalsoda")
 
 
 def _start(scene: Scene, method: str) -> Run:
