@@ -98,7 +98,7 @@ def test_a_made_truth_of_what_has_no_series_is_checked_by_another_method():
     known = find_truth(scene.replace(torques=[ph.torques.Damping((0.01, 0.02, 0.03))]))
     error = compute_errors(made.omega, made.attitude, known).largest
     assert "checked by" in made.source and "long double" not in made.source and "long double" in known.source
-    assert 0 < error <= made.uncertainty < 1e-11
+    assert 0 < error <= made.uncertainty < 1.5e-11   # about 1e-11, by the cubic that radau draws between its steps
 
 
 # candidates

@@ -214,7 +214,7 @@ def test_claims_that_are_false_are_found_out(function, claims, named):
 def test_claims_that_are_true_are_believed():
     torque = ph.torques.Custom(lambda t, w, q: (0.1 * np.cos(t), 0, 0), uses_attitude=False, uses_rates=False)
     motion = ph.solve(ph.Scene(inertia=BLOCK, omega=(1, 2, 3), torques=[torque], times=[0, 1.0], want="omega"), 1e-7)
-    assert motion.success and motion.plan.state == "omega"
+    assert motion.success and "attitude" not in motion.plan.state
 
 
 # ---- the costs of this machine

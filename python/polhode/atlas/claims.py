@@ -21,7 +21,7 @@ CLAIMS: dict[str, dict[str, str]] = {
                "sleeping": "holds"},
     "rk45": {"racket": "degrades", "gimbal": "holds", "scales": "holds", "norm": "holds", "near": "degrades",
              "sleeping": "holds"},
-    "radau": {"damping": "holds", "gimbal": "holds", "scales": "holds", "norm": "holds", "spin-up": "degrades",
+    "radau": {"racket": "holds", "damping": "holds", "gimbal": "holds", "scales": "holds", "norm": "holds", "spin-up": "degrades",
               "sleeping": "holds"},
     "symplectic": {"racket": "holds", "step": "holds", "gimbal": "holds", "long": "degrades", "near": "holds", "scales": "holds",
                    "norm": "holds", "spin-up": "holds", "sleeping": "holds"},

@@ -9,18 +9,15 @@ namespace polhode {
 /// (3.9); rates in body axes multiply from the right, so each commutator changes its sign. `beyond`, where it is not
 /// null: what it adds to order 4, which tells how far to trust it.
 inline void compute_turn(const double* c, double h, double s1, double* turn, double* beyond = nullptr) {
+  // The points lie at m and m -+ d, d^2 = 3/20 s1^2: differences of a cubic are its derivatives at m.
   constexpr double root15 = 3.8729833462074168852;
-  const double points[3] = {s1 * (0.5 - root15 / 10), s1 * 0.5, s1 * (0.5 + root15 / 10)}, width = h * s1;
-  double A[3][3], a1[3], a2[3], a3[3], c1[3], c2[3], left[3], right[3];
-  for (int k = 0; k < 3; ++k) {
-    for (int i = 0; i < 3; ++i) {
-      A[k][i] = c[i] + points[k] * (c[3 + i] + points[k] * (c[6 + i] + points[k] * c[9 + i]));
-    }
-  }
+  const double m = 0.5 * s1, d = s1 * (root15 / 10), dd = d * d, width = h * s1;
+  double a1[3], a2[3], a3[3], c1[3], c2[3], left[3], right[3];
   for (int i = 0; i < 3; ++i) {
-    a1[i] = width * A[1][i];
-    a2[i] = width * (root15 / 3) * (A[2][i] - A[0][i]);
-    a3[i] = width * (10.0 / 3) * (A[2][i] - 2 * A[1][i] + A[0][i]);
+    const double slope = c[3 + i] + m * (2 * c[6 + i] + m * (3 * c[9 + i]));
+    a1[i] = width * (c[i] + m * (c[3 + i] + m * (c[6 + i] + m * c[9 + i])));
+    a2[i] = width * (root15 * 2 / 3) * d * (slope + dd * c[9 + i]);
+    a3[i] = width * (20.0 / 3) * dd * (c[6 + i] + 3 * m * c[9 + i]);
   }
   cross(a2, a1, c1);
   for (int i = 0; i < 3; ++i) right[i] = 2 * a3[i] + c1[i];

@@ -117,10 +117,17 @@ inline void turn_by(const double* p, double* q) {
 
 /// The unit quaternion of the rotation vector r, exp(r / 2).
 inline void exponential(const double* r, double* p) {
-  const double half = 0.5 * std::sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
-  const double s = half > 0.0 ? 0.5 * std::sin(half) / half : 0.5;
+  const double x = 0.25 * (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);   // the half angle, squared
+  double s;
+  if (x < 0.25) {   // sin and cos by their series, to rounding
+    s = 0.5 * (1 - x * (1.0 / 6) * (1 - x * (1.0 / 20) * (1 - x * (1.0 / 42) * (1 - x * (1.0 / 72) * (1 - x * (1.0 / 110) * (1 - x * (1.0 / 156) * (1 - x * (1.0 / 210))))))));
+    p[3] = 1 - x * (1.0 / 2) * (1 - x * (1.0 / 12) * (1 - x * (1.0 / 30) * (1 - x * (1.0 / 56) * (1 - x * (1.0 / 90) * (1 - x * (1.0 / 132) * (1 - x * (1.0 / 182)))))));
+  } else {
+    const double half = std::sqrt(x);
+    s = 0.5 * std::sin(half) / half;
+    p[3] = std::cos(half);
+  }
   for (int i = 0; i < 3; ++i) p[i] = s * r[i];
-  p[3] = std::cos(half);
 }
 
 inline void turn_by_vector(const double* r, double* q) {

@@ -5,27 +5,26 @@
 #include "polhode/ode/step_control.hpp"
 #include "solve/methods/body_method.hpp"
 #include "solve/methods/magnus.hpp"
+#include "solve/methods/radau_body.hpp"
 #include "solve/methods/radau_system.hpp"
 
 namespace polhode {
 namespace {
 
 using ode::StepResult;
-using Equations = EulerProblem<SeveralTorques, false, true>;
 
 double sum3(const double* v) { return std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]); }
 
-/// Radau IIA of order 5 for the rates, its Newton steps in systems of three equations; the attitude follows from the
-/// collocation polynomial w(s) by Magnus' expansion, at the end of a step, at its stages and between them alike.
+/// Radau IIA of order 5 for the rate variables r, its Newton steps in systems of three equations; the attitude follows
+/// from the collocation polynomial r(s) by Magnus' expansion, at the end of a step, at its stages and between them alike.
 class RadauStepper final : public ode::Stepper {
  public:
-  static constexpr int N = 7;
-  static constexpr int segment_size = 1 + 12 + 4;   ///< h, the cubic w(s), q at the start of the step
+  static constexpr int N = radau::Body::N;
+  static constexpr int segment_size = 2 + 12 + 4;   ///< h, half_over_k, the cubic r(s), q at the start of the step
 
-  RadauStepper(const Scene& scene, bool with_attitude, const double* y0, double t_end, const ode::Tolerances& tolerances)
+  RadauStepper(const radau::Body& body, const Scene& scene, bool with_attitude, const double* y0, double t_end, const ode::Tolerances& tolerances)
       : Stepper(N, segment_size, &evaluate_segment, scene.t0()),
-        torques_{scene.torques()},
-        equations_(scene.inertia_B(), torques_),
+        body_(body),
         control_(3),
         with_attitude_(with_attitude),
         coupled_(scene.torque_sum().uses_attitude),
@@ -35,6 +34,8 @@ class RadauStepper final : public ode::Stepper {
     rtol_ = 0.1 * std::pow(tolerances.rtol, 2.0 / 3);
     newton_tolerance_ = std::max(10 * std::numeric_limits<double>::epsilon() / rtol_, std::min(0.03, std::sqrt(rtol_)));
     std::copy_n(y0, N, y_);
+    std::copy_n(body.start_carry(), 3, carry_);
+    segment_[1] = body.half_over_k();
     compute(t_, y_, f_);
     h_ = initial_step(t_end);
   }
@@ -44,11 +45,12 @@ class RadauStepper final : public ode::Stepper {
   const double* segment() override { return segment_; }
 
   static void evaluate_segment(const double* segment, double s, double* out) {
-    const double* c = segment + 1;
+    const double* c = segment + 2;
     for (int i = 0; i < 3; ++i) out[i] = c[i] + s * (c[3 + i] + s * (c[6 + i] + s * c[9 + i]));
     std::copy_n(c + 12, 4, out + 3);
-    double turn[3];
-    compute_turn(c, segment[0], s, turn);
+    double w[12], turn[3];
+    to_rates(segment[1], c, w);
+    compute_turn(w, segment[0], s, turn);
     turn_by_vector(turn, out + 3);
   }
 
@@ -63,6 +65,7 @@ class RadauStepper final : public ode::Stepper {
       const double least = last ? std::numeric_limits<double>::min() : 8 * std::numeric_limits<double>::epsilon() * std::abs(t_);
       if (!(std::abs(h) > least)) return finite ? StepResult::underflow : StepResult::not_finite;
       double Z[3][3];
+      body_.compute_sizes(h, y_, f_, size_);
       const Newton newton = solve_stages(h, Z);
       if (newton != Newton::converged) {
         finite = newton != Newton::not_finite;
@@ -74,19 +77,23 @@ class RadauStepper final : public ode::Stepper {
       set_polynomial(Z, c);
       double error = estimate(h, Z, c, first_try);
       if (error <= 1.0) {
-        double y[N], f[N];
+        double y[N], f[3], carry[3];
         segment_[0] = h;
-        std::copy_n(c, 12, segment_ + 1);
-        std::copy_n(y_ + 3, 4, segment_ + 13);
+        std::copy_n(c, 12, segment_ + 2);
+        std::copy_n(y_ + 3, 4, segment_ + 14);
         evaluate_segment(segment_, 1.0, y);
-        for (int i = 0; i < 3; ++i) y[i] = y_[i] + Z[2][i];
+        for (int i = 0; i < 3; ++i) {
+          const math::DD sum = math::two_sum(y_[i], carry_[i] + Z[2][i]);
+          y[i] = sum.hi, carry[i] = sum.lo;
+        }
         if (!with_attitude_) std::copy_n(y_ + 3, 4, y + 3);
         const double t_new = last ? t_end : t_ + h;
         compute(t_new, y, f);
         error = std::isfinite(sum3(f)) ? error : std::numeric_limits<double>::quiet_NaN();
         if (error <= 1.0) {
           std::copy_n(y, N, y_);
-          std::copy_n(f, N, f_);
+          std::copy_n(f, 3, f_);
+          std::copy_n(carry, 3, carry_);
           t_old_ = t_;
           t_ = t_new;
           const double next = h * control_.accepted(error);
@@ -106,22 +113,20 @@ class RadauStepper final : public ode::Stepper {
   enum class Newton { converged, diverged, not_finite };
 
   void compute(double t, const double* y, double* f) {
-    equations_.compute_derivative(t, y, f);
+    body_.compute_derivative(t, y, f);
     ++counts_.derivatives;
   }
 
-  /// d(w')/dw at the start of the step, by differences: Newton only needs it nearly.
+  /// The polynomial of the rates from that of the rate variables.
+  static void to_rates(double half_over_k, const double* c, double* w) {
+    for (int k = 0; k < 12; k += 3) radau::Body::to_rates(half_over_k, c + k, w + k);
+  }
+
+  /// d(r')/dr at the start of the step.
   void compute_jacobian() {
     const double size = std::max(sum3(y_), sum3(f_) * std::abs(h_));
     const double change = size > 0 ? std::ldexp(1.0, std::ilogb(size) - 26) : 1.0;
-    for (int j = 0; j < 3; ++j) {
-      double y[N], f[N];
-      std::copy_n(y_, N, y);
-      y[j] += change;
-      const double exact = y[j] - y_[j];
-      compute(t_, y, f);
-      for (int i = 0; i < 3; ++i) J_[i][j] = (f[i] - f_[i]) / exact;
-    }
+    counts_.derivatives += body_.compute_jacobian(t_, y_, f_, change, J_);
   }
 
   /// The increments of the three stages by simplified Newton steps in the variables W = T^-1 Z.
@@ -132,21 +137,27 @@ class RadauStepper final : public ode::Stepper {
     double W[3][3];
     for (int k = 0; k < 3; ++k)
       for (int i = 0; i < 3; ++i) W[k][i] = T_inverse[k][0] * Z[0][i] + T_inverse[k][1] * Z[1][i] + T_inverse[k][2] * Z[2][i];
-    // What the rounding of a stiff torque leaves of w' in every direction: no iteration gets below it.
-    double steepness = 0.0;
-    for (const auto& row : J_) steepness += sum3(row);
-    const double noise = 0.25 * std::numeric_limits<double>::epsilon() * std::abs(h) * steepness * sum3(y_);
+    // What the rounding of r' leaves in an iteration, as its linear systems spread it: no further one gets below.
+    double rounding[3], noise[3];
+    for (int i = 0; i < 3; ++i) {
+      const double sum = std::abs(J_[i][0] * y_[0]) + std::abs(J_[i][1] * y_[1]) + std::abs(J_[i][2] * y_[2]);
+      rounding[i] = 16 * std::numeric_limits<double>::epsilon() * std::abs(h) * sum;
+    }
+    systems_.spread(rounding, noise);
     double last = -1.0;
     for (int n = 0; n < most_iterations_; ++n) {
-      double F[3][N], c[12] = {};
-      if (coupled_) set_polynomial(Z, c);
+      double F[3][3], c[12], w[12];
+      if (coupled_) {
+        set_polynomial(Z, c);
+        to_rates(segment_[1], c, w);
+      }
       for (int k = 0; k < 3; ++k) {
         double y[N];
         for (int i = 0; i < 3; ++i) y[i] = y_[i] + Z[k][i];
         std::copy_n(y_ + 3, 4, y + 3);
         if (coupled_) {
           double turn[3];
-          compute_turn(c, h, node[k], turn);
+          compute_turn(w, h, node[k], turn);
           turn_by_vector(turn, y + 3);
         }
         compute(t_ + node[k] * h, y, F[k]);
@@ -161,24 +172,26 @@ class RadauStepper final : public ode::Stepper {
       }
       systems_.solve_real(b, change);
       systems_.solve_complex(bc, pair);
-      double moved = 0.0;
+      double moved[3];
+      bool at_rounding = true;
       for (int i = 0; i < 3; ++i) {
         W[0][i] += change[i];
         W[1][i] += pair[i].re;
         W[2][i] += pair[i].im;
-        moved += std::abs(change[i]) + std::abs(pair[i].re) + std::abs(pair[i].im);
+        moved[i] = std::abs(change[i]) + std::abs(pair[i].re) + std::abs(pair[i].im);
+        at_rounding = at_rounding && moved[i] <= noise[i];
       }
       for (int k = 0; k < 3; ++k)
         for (int i = 0; i < 3; ++i) Z[k][i] = T[k][0] * W[0][i] + T[k][1] * W[1][i] + T[k][2] * W[2][i];
-      if (!std::isfinite(moved)) return Newton::not_finite;
-      if (moved <= noise) return Newton::converged;
-      moved /= allowed(Z[2]);
+      if (!std::isfinite(sum3(moved))) return Newton::not_finite;
+      if (at_rounding) return Newton::converged;
+      const double now = measure(moved, Z[2]);
       if (last >= 0.0) {
-        const double rate = moved / last;
-        if (rate < 1.0 && rate / (1 - rate) * moved < newton_tolerance_) return Newton::converged;
-        if (rate >= 1.0 || std::pow(rate, most_iterations_ - n) / (1 - rate) * moved > newton_tolerance_) return Newton::diverged;
+        const double rate = now / last;
+        if (rate < 1.0 && rate / (1 - rate) * now < newton_tolerance_) return Newton::converged;
+        if (rate >= 1.0 || std::pow(rate, most_iterations_ - n) / (1 - rate) * now > newton_tolerance_) return Newton::diverged;
       }
-      last = moved;
+      last = now;
     }
     return Newton::diverged;
   }
@@ -186,7 +199,7 @@ class RadauStepper final : public ode::Stepper {
   /// Where the last step's polynomial would lead.
   void guess(double h, double (&Z)[3][3]) const {
     const double reach = counts_.steps == 0 ? 0.0 : h / segment_[0];
-    const double* c = segment_ + 1;
+    const double* c = segment_ + 2;
     for (int k = 0; k < 3; ++k) {
       const double s = 1 + reach * radau::node[k];
       for (int i = 0; i < 3; ++i) {
@@ -195,7 +208,7 @@ class RadauStepper final : public ode::Stepper {
     }
   }
 
-  /// w(s) through the start and the stages.
+  /// r(s) through the start and the stages.
   void set_polynomial(const double (&Z)[3][3], double* c) const {
     using radau::node;
     for (int i = 0; i < 3; ++i) {
@@ -209,10 +222,15 @@ class RadauStepper final : public ode::Stepper {
     }
   }
 
-  double allowed(const double* change) const {
-    const double end[3] = {y_[0] + change[0], y_[1] + change[1], y_[2] + change[2]};
-    return rtol_ * std::max(sum3(y_), sum3(end)) + atol_;
+  /// An error of the rate variables in units of what is allowed, for a step that changes them by `change`.
+  double measure(const double* error, const double* change) const {
+    const double end[3] = {std::abs(y_[0] + change[0]), std::abs(y_[1] + change[1]), std::abs(y_[2] + change[2])};
+    if (!body_.relative()) return ratio(sum3(error), std::max(size_[2], sum3(end)));
+    const double u = ratio(error[0], std::max(size_[0], end[0])), v = ratio(error[1], std::max(size_[1], end[1]));
+    // As plain rates are measured by their sum: max(|u|, |v|) is |w3| + k |w1|. What is no number must not hide in it.
+    return (u > v || u != u ? u : v) + ratio(error[2], std::max(size_[2], std::max(end[0], end[1]) + end[2]));
   }
+  double ratio(double error, double size) const { return error == 0.0 ? 0.0 : std::abs(error) / (rtol_ * size + atol_); }
 
   /// The error of the embedded formula in units of what is allowed, of the rates and of the turn.
   double estimate(double h, const double (&Z)[3][3], const double* c, bool again) {
@@ -223,51 +241,55 @@ class RadauStepper final : public ode::Stepper {
       b[i] = h * f_[i] + ZE[i];
     }
     systems_.solve_real(b, e);
-    double rates = sum3(e) / allowed(Z[2]);
+    double rates = measure(e, Z[2]);
     if (again && rates > 1.0) {   // filtered once more, for the first steps of a stiff problem (8.20)
-      double y[N], f[N];
+      double y[N], f[3];
       std::copy_n(y_, N, y);
       for (int i = 0; i < 3; ++i) y[i] += e[i];
       compute(t_, y, f);
       for (int i = 0; i < 3; ++i) b[i] = h * f[i] + ZE[i];
       systems_.solve_real(b, e);
-      rates = sum3(e) / allowed(Z[2]);
+      rates = measure(e, Z[2]);
     }
     if (!with_attitude_) return rates;
     // The same formula for the integral of w(s), of which it sees the cubic term alone: sum of E_i node_i^4 / 4.
     constexpr auto fourth = [](double x) { return x * x * x * x; };
     constexpr double weight = (error[0] * fourth(node[0]) + error[1] * fourth(node[1]) + error[2]) / 4 / mu_real;
-    double turn[3], beyond[3];
-    compute_turn(c, h, 1.0, turn, beyond);
-    const double angle = 0.5 * std::max(std::abs(h * weight) * sum3(c + 9), sum3(beyond)) / (rtol_ + atol_);
+    double w[12], turn[3], beyond[3];
+    to_rates(segment_[1], c, w);
+    compute_turn(w, h, 1.0, turn, beyond);
+    const double angle = 0.5 * std::max(std::abs(h * weight) * sum3(w + 9), sum3(beyond)) / (rtol_ + atol_);
     return rates > angle || rates != rates ? rates : angle;
   }
 
   double initial_step(double t_end) const {
-    const double span = t_end - t_, d0 = sum3(y_), d1 = sum3(f_);
-    const double first = d1 > 0 && d0 > 0 ? 0.01 * d0 / d1 : 1e-3 * std::abs(span);
+    const double span = t_end - t_;
+    double size[3], rate = 0.0;
+    body_.compute_sizes(0.0, y_, f_, size);
+    for (int i = 0; i < 3; ++i) rate += size[i] > 0.0 ? std::abs(f_[i]) / size[i] : 0.0;
+    const double first = rate > 0 ? 0.01 / rate : 1e-3 * std::abs(span);
     return std::copysign(std::min(first, std::abs(span)), span);
   }
 
   static constexpr int most_iterations_ = 12;
-  SeveralTorques torques_;
-  Equations equations_;
+  const radau::Body& body_;
   ode::StepControl control_;
   radau::Systems systems_;
   bool with_attitude_, coupled_;
   double rtol_ = 0.0, atol_, newton_tolerance_ = 0.0, h_ = 0.0;
-  double y_[N], f_[N], J_[3][3] = {}, segment_[segment_size] = {};
+  double y_[N], carry_[3], f_[3], size_[3] = {}, J_[3][3] = {}, segment_[segment_size] = {};
 };
 
 Motion solve_radau(const Scene& scene, const RunOptions& options) {
   const bool with_attitude =
       scene.want().attitude || scene.torque_sum().uses_attitude || !options.asked.events.empty();
-  double y0[7];
-  Equations::pack(scene.start(), y0);
-  Motion motion = run(scene, options.asked, y0, &Equations::unpack, [&](const double* y, double t_end) {
-    return std::make_unique<RadauStepper>(scene, with_attitude, y, t_end, options.tolerances);
+  const auto body = std::make_shared<const radau::Body>(scene);   // the motion's dense output needs it to be read
+  const Unpack unpack = [body](const double* y, double* omega, double* attitude) { body->unpack(y, omega, attitude); };
+  Motion motion = run(scene, options.asked, body->start(), unpack, [&](const double* y, double t_end) {
+    return std::make_unique<RadauStepper>(*body, scene, with_attitude, y, t_end, options.tolerances);
   });
-  motion.plan = {"euler", "", with_attitude ? "omega, attitude" : "omega"};
+  const std::string rates = body->relative() ? "separatrix variables" : "omega";
+  motion.plan = {"euler", "", with_attitude ? rates + ", attitude" : rates};
   return motion;
 }
 

@@ -69,6 +69,13 @@ class Systems {
     for (int i = 0; i < 3; ++i) x[i] = complex_[i][0] * b[0] + complex_[i][1] * b[1] + complex_[i][2] * b[2];
   }
 
+  /// How large the solution may be for right-hand sides of these sizes.
+  void spread(const double* size, double* x) const {
+    for (int i = 0; i < 3; ++i) {
+      x[i] = std::abs(real_[i][0]) * size[0] + std::abs(real_[i][1]) * size[1] + std::abs(real_[i][2]) * size[2];
+    }
+  }
+
  private:
   double real_[3][3];
   Complex complex_[3][3];
