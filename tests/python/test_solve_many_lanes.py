@@ -180,7 +180,7 @@ def test_stored_scenes_in_lanes_and_the_rest_by_themselves():
         many = ph.solve_many([one, one], method="taylor", rtol=1e-13)
         alone = ph.solve(one, method="taylor", rtol=1e-13)
         assert many.lanes.all() and distance(many.attitude[1], alone.attitude) < 1e-9
-    assert not ph.solve_many(scenes[1:2] * 2, rtol=1e-8, method="rk45").lanes.any()
+    assert not ph.solve_many(scenes[1:2] * 2, rtol=1e-8, method="dop853").lanes.any()
     with pytest.raises(ph.InvalidInput, match="body 1.*Custom"):
         ph.solve_many([scenes[0], scenes[0].replace(torques=[T.Custom(lambda t, w, q: (0, 0, 0))])], method="taylor")
     with pytest.raises(ph.InvalidInput, match="rtol"):

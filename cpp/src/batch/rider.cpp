@@ -7,78 +7,48 @@
 #include "polhode/core/error.hpp"
 
 namespace polhode {
-namespace {
 
-void put(double (*rows)[LaneBlock::width], int lane, const double* values, int n) {
-  for (int i = 0; i < n; ++i) rows[i][lane] = values[i];
-}
-
-void put_constants(LaneBlock& b, int lane, const BodySeries& series) {
-  const SeriesTerms& terms = series.terms();
-  b.to_rates[lane] = terms.to_rates[0], b.orbit_rate[lane] = terms.orbit_rate;
-  put(b.product, lane, terms.product, 3), put(b.product_low, lane, terms.product_low, 3), put(b.torque, lane, terms.torque, 3);
-  for (int j = 0; j < 3; ++j) put(b.damping[j], lane, terms.damping[j], 3);
-  for (int i = 0; i < 2; ++i) {
-    for (int j = 0; j < 3; ++j) put(b.pull[i][j], lane, terms.pull[i][j], 3);
-    put(b.tidal[i], lane, terms.tidal[i], 3), put(b.space[i], lane, series.fixed_vector(i).data(), 3);
-    b.kept[i][lane] = series.kept(i).hi, b.kept_low[i][lane] = series.kept(i).lo;
-  }
-  b.balance[lane] = series.balance();
-}
-
-}  // namespace
-
-Rider::Rider(Scene scene)
-    : scene_(std::move(scene)), series_(scene_, scene_.want().attitude), itinerary_(scene_.times(), scene_.t0()),
+Rider::Rider(Scene scene, const LaneMethod& method)
+    : scene_(std::move(scene)), body_(method.make_body(scene_)), kind_(body_->kind()), itinerary_(scene_.times(), scene_.t0()),
       answered_(scene_.times().size(), 0) {
   const std::size_t n = scene_.times().size();
   if (scene_.want().omega) motion_.omega.resize(3 * n);
   if (scene_.want().attitude) motion_.attitude.resize(4 * n);
   motion_.start = scene_.start(), motion_.t_reached = scene_.t0();
-  motion_.plan = {"euler", "taylor", series_.describe_state()};
+  motion_.plan = {"euler", std::string(method.record.name), body_->describe_state()};
 }
 
-int Rider::kind() const {
-  const SeriesTerms& terms = series_.terms();
-  const int flags = (terms.variables == RateVariables::separatrix) | series_.has_attitude() << 1 | terms.gradient << 2 |
-                    terms.damped << 3 | series_.keeps_balance() << 4;
-  return flags | terms.fixed_vectors << 5;
-}
-
-bool Rider::board(LaneBlock& b, int lane) {
+bool Rider::board(LaneTeam& team, int lane) {
   while (legs_ < 2) {
     leg_ = legs_++ == 0 ? &itinerary_.backward : &itinerary_.forward;
-    next_ = 0, attempts_ = 0, leg_steps_ = 0;
+    next_ = 0;
+    if (leg_->empty()) continue;
     const std::vector<double>& times = scene_.times();
     const double t0 = scene_.t0();
-    for (; next_ < leg_->size() && times[(*leg_)[next_]] == t0; ++next_) write((*leg_)[next_], nullptr, nullptr);
+    motion_.t_reached = t0;
+    for (; next_ < leg_->size() && sample_time() == t0; ++next_) write((*leg_)[next_], nullptr, nullptr);
     if (next_ == leg_->size()) continue;
-
-    const double t_end = times[leg_->back()];
-    put_constants(b, lane, series_);
-    double carry[8];
-    series_.start_carry(carry);
-    put(b.y, lane, series_.start(), 8), put(b.carry, lane, carry, 8);
-    b.time[lane] = t0, b.time_low[lane] = 0.0, b.t_end[lane] = t_end;
-    const double unit = std::min(series_.compute_time_scale(t0, series_.start()), std::abs(t_end - t0));
-    b.unit[lane] = math::power_of_two_below(std::clamp(unit, 0x1p-900, 0x1p900));
+    LaneClock& clock = team.clock();
+    clock.time[lane] = t0, clock.t_end[lane] = times[leg_->back()];
+    clock.next_sample[lane] = sample_time(), clock.steps[lane] = 0.0;
+    clock.riding |= 1u << lane;
+    team.seat(lane, *body_);
     return true;
   }
   return false;
 }
 
-bool Rider::has_sample(const LaneBlock& b, int lane, double& s) const {
-  if (next_ == leg_->size()) return false;
-  const double t = scene_.times()[(*leg_)[next_]], reached = b.time[lane];
-  if (b.t_end[lane] >= scene_.t0() ? t > reached : t < reached) return false;
-  s = ((t - b.time_old[lane]) - b.time_old_low[lane]) / b.unit_old[lane];
-  return true;
+bool Rider::has_sample(const LaneClock& clock, int lane) const {
+  if (next_ == leg_->size() || clock.outcome[lane] > double{lane_arrived}) return false;
+  const double t = sample_time(), reached = clock.time[lane];
+  return clock.t_end[lane] >= scene_.t0() ? t <= reached : t >= reached;
 }
 
-void Rider::take_sample(const double* y) {
+void Rider::take_sample(LaneClock& clock, int lane, const double* y) {
   double omega[3], attitude[4];
-  series_.unpack(y, omega, attitude);
+  body_->unpack(y, omega, attitude);
   write((*leg_)[next_++], omega, attitude);
+  if (next_ < leg_->size()) clock.next_sample[lane] = sample_time();
 }
 
 void Rider::write(std::size_t row, const double* omega, const double* attitude) {
@@ -90,31 +60,36 @@ void Rider::write(std::size_t row, const double* omega, const double* attitude) 
   answered_[row] = 1;
 }
 
-bool Rider::step(LaneOutcome outcome, double time, long max_steps) {
-  if (outcome == lane_not_finite) {
-    if (++attempts_ <= 8) return true;
-    fail(Status::failed, "the derivative is not finite");
-    return false;
-  }
-  if (outcome == lane_underflow) {
+bool Rider::go_on(const LaneClock& clock, int lane) {
+  const auto outcome = static_cast<LaneOutcome>(static_cast<int>(clock.outcome[lane]));
+  if (outcome == lane_stepped && clock.steps[lane] < clock.most_steps) return true;
+  count(clock, lane);
+  if (outcome == lane_stepped) {
+    fail(Status::max_steps, "gave up after max_steps = " + std::to_string(static_cast<long>(clock.most_steps)) + " steps");
+  } else if (outcome == lane_not_finite) {
+    fail(Status::failed, "the derivative is not finite", " just beyond t = ");
+  } else if (outcome == lane_underflow) {
     fail(Status::failed, "the step became smaller than the spacing of the times");
-    return false;
   }
-  attempts_ = 0;
-  motion_.t_reached = time;
-  ++motion_.stats.steps, ++leg_steps_;
-  if (outcome == lane_arrived) return false;
-  if (leg_steps_ < max_steps) return true;
-  fail(Status::max_steps, "gave up after max_steps = " + std::to_string(max_steps) + " steps");
   return false;
 }
 
-void Rider::stop() { fail(Status::stopped, "stopped by the progress callback"); }
+void Rider::count(const LaneClock& clock, int lane) {
+  motion_.t_reached = clock.time[lane];
+  motion_.stats.steps += static_cast<long>(clock.steps[lane]);
+}
 
-void Rider::fail(Status status, const std::string& why) {
+void Rider::stop(const LaneClock& clock, int lane) {
+  count(clock, lane);
+  never_begin();
+}
+
+void Rider::never_begin() { fail(Status::stopped, "stopped by the progress callback"); }
+
+void Rider::fail(Status status, const std::string& why, const char* when) {
   motion_.status = status;
   motion_.message = why;
-  motion_.message += " at t = " + to_text(motion_.t_reached) + " s";
+  motion_.message += when + to_text(motion_.t_reached) + " s";
   legs_ = 2;
 }
 

@@ -12,7 +12,6 @@
 #include "polhode/batch/parallel.hpp"
 #include "polhode/core/error.hpp"
 #include "solve/checked_options.hpp"
-#include "solve/methods/body_method.hpp"
 #include "solve/planning.hpp"
 
 namespace polhode {
@@ -32,9 +31,13 @@ void place(const Scene& scene, const Motion& motion, double* omega, double* atti
   }
 }
 
-/// What the lanes cover: taylor by a step's tolerance, for every body that it takes.
-bool ride_in_lanes(const SolveOptions& options) {
-  return options.method == "taylor" && (options.rtol || options.atol) && !options.step;
+/// What the lanes cover: taylor and rk45, which is what solve() takes by itself, by a step's tolerance.
+const LaneMethod* find_lane_method(const SolveOptions& options) {
+  if (!(options.rtol || options.atol) || options.step || options.formulation != Formulation::euler) return nullptr;
+  const std::string name = options.method.value_or("rk45");
+  for (const LaneMethod* method : {&taylor_lanes, &rk45_lanes})
+    if (name == method->record.name) return method;
+  return nullptr;
 }
 
 }  // namespace
@@ -58,10 +61,10 @@ std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeS
   SolveOptions one = options;
   if (options.progress) one.progress = tell;
 
-  const auto keep = [&](std::size_t body, const Scene& scene, const Motion& motion, bool lanes) {
+  const auto keep = [&](std::size_t body, const Scene& scene, const Motion& motion, bool beside_others) {
     place(scene, motion, omega ? omega + 3 * times * body : nullptr, attitude ? attitude + 4 * times * body : nullptr);
     results[body] = {motion.status, motion.message, motion.plan.method, motion.t_reached, motion.error,
-                     motion.stats.steps, succeeded(scene, motion), lanes};
+                     motion.stats.steps, succeeded(scene, motion), beside_others};
     ++done;
   };
   const auto guarded = [&](std::size_t body, const auto& piece) {
@@ -75,46 +78,51 @@ std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeS
       throw;
     }
   };
+  const LaneMethod* lanes = find_lane_method(options);
+  std::vector<unsigned char> in_lanes(n, 0);
   const auto one_by_one = [&](std::size_t, std::size_t) {
     // Bodies are taken one by one as threads come free: a long run holds up nobody, and no answer depends on it.
     for (std::size_t body = next++; body < n && !stopped; body = next++) {
+      if (in_lanes[body] != 0) continue;
       guarded(body, [&] {
         const Scene scene = make_scene(body);
         keep(body, scene, solve(scene, one), false);
       });
     }
   };
-  const bool lanes = ride_in_lanes(options);
   const std::size_t threads_there = thread_count(threads, n, 2);
   const std::size_t chunk = std::clamp<std::size_t>(n / (2 * threads_there), 64, 512);
-  const CheckedOptions checked = choose_tolerances(taylor_method.record, options);
   const auto side_by_side = [&](std::size_t, std::size_t) {
+    const CheckedOptions checked = choose_tolerances(lanes->record, options);
     for (std::size_t begin = next.fetch_add(chunk); begin < n && !stopped; begin = next.fetch_add(chunk)) {
       std::vector<std::unique_ptr<Rider>> riders;
+      std::vector<std::size_t> bodies;
       const std::size_t end = std::min(n, begin + chunk);
       for (std::size_t body = begin; body < end; ++body) {
         guarded(body, [&] {
           Scene scene = make_scene(body);
           check_options(scene, options);
+          if (!lanes->takes(scene)) return;
           if (scene.torque_sum().acting > 0) require_finite_start(scene);
-          riders.push_back(std::make_unique<Rider>(std::move(scene)));
+          riders.push_back(std::make_unique<Rider>(std::move(scene), *lanes));
+          bodies.push_back(body), in_lanes[body] = 1;
         });
       }
       const auto wants_to_stop = [&] { return one.progress ? !one.progress(0.0, 0.0) : stopped.load(); };
       guarded(begin, [&] { ride(riders, checked.tolerances, options.max_steps, wants_to_stop); });
-      for (std::size_t body = begin; body < end; ++body) {
-        Rider& rider = *riders[body - begin];
+      for (std::size_t i = 0; i < bodies.size(); ++i) {
+        Rider& rider = *riders[i];
         describe_end(checked, rider.motion());
-        keep(body, rider.scene(), rider.motion(), true);
+        keep(bodies[i], rider.scene(), rider.motion(), true);
       }
     }
   };
-  if (lanes) {
+  if (lanes != nullptr) {
     const std::size_t team = std::min(threads_there, (n + chunk - 1) / chunk);
     parallel_for(team, team, 1, side_by_side);
-  } else {
-    parallel_for(threads_there, threads_there, 1, one_by_one);
+    next = 0;
   }
+  if (std::ranges::find(in_lanes, 0) != in_lanes.end()) parallel_for(threads_there, threads_there, 1, one_by_one);
   for (std::size_t i = 0; stopped && i < n; ++i) {
     if (results[i].message.empty()) results[i].status = Status::stopped, results[i].message = "not begun: stopped by the progress callback";
   }

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <string_view>
 
 #include "polhode/core/error.hpp"
 
@@ -15,12 +16,19 @@ Scene make_body(std::size_t i) {
   return Scene(SceneParts{.inertia_B = InertiaTensor::from_moments({1.0, 1.5, 2.0}), .omega = {0.1, spin, 0.3}, .times = {1.0, 2000.0}});
 }
 
+Scene make_tilted(std::size_t) {
+  return Scene(SceneParts{.inertia_B = InertiaTensor::from_moments({1.0, 1.5, 2.0}), .omega = {0.0, 0.0, 0.5},
+                          .attitude = {0.6, 0.0, 0.0, 0.8}, .times = {0.5, 1.0}});
+}
+
 }  // namespace
 
 TEST_CASE("solve_many: a callback ends bodies in lanes, and what they reached is kept") {
   constexpr std::size_t n = 200;
   SolveOptions options;
-  options.method = "taylor", options.rtol = 1e-12;
+  SUBCASE("taylor") { options.method = "taylor"; }
+  SUBCASE("rk45") { options.method = "rk45"; }
+  options.rtol = 1e-12;
   std::atomic<int> calls{0};
   options.progress = [&](double, double) { return ++calls < 3; };
   std::vector<double> omega(n * 2 * 3);
@@ -36,16 +44,20 @@ TEST_CASE("solve_many: a callback ends bodies in lanes, and what they reached is
   CHECK(stopped > 100);
 }
 
-TEST_CASE("solve_many: lanes are taken with taylor alone, and options are checked as solve() does") {
+TEST_CASE("solve_many: lanes are taken with taylor and rk45 alone, and options are checked as solve() does") {
   SolveOptions options;
   options.rtol = 1e-9;
-  for (const char* method : {"taylor", "dop853"}) {
-    options.method = method;
+  for (const char* method : {"taylor", "rk45", "dop853", "rk45 of angles"}) {
+    const bool angles = std::string_view(method).ends_with("angles");
+    options.method = angles ? "rk45" : method;
+    options.formulation = angles ? Formulation::lagrangian : Formulation::euler;
     double omega[2 * 2 * 3];
-    const auto results = solve_many(2, 2, make_body, options, omega, nullptr);
-    CHECK(results[1].lanes == (options.method == "taylor"));
+    const auto results = solve_many(2, 2, angles ? make_tilted : make_body, options, omega, nullptr);
+    CHECK(results[1].lanes == (!angles && options.method != "dop853"));
+    CHECK(results[1].method == options.method);
     CHECK(results[1].status == Status::finished);
   }
+  options.formulation = Formulation::euler;
   options.method = "taylor", options.step = 0.1;
   CHECK_THROWS_AS(solve_many(2, 2, make_body, options, nullptr, nullptr), InvalidInput);
   options.step.reset(), options.max_steps = 0;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "polhode/ode/first_step.hpp"
 #include "polhode/ode/problem.hpp"
 #include "polhode/ode/step_control.hpp"
 #include "polhode/ode/stepper.hpp"
@@ -29,7 +30,8 @@ class RungeKuttaStepper final : public Stepper {
         tolerances_(tolerances) {
     std::copy_n(y0, N, y_);
     compute(t0, y_, k_[0]);
-    h_ = initial_step(t_end);
+    h_ = choose_first_step(problem_, tolerances_, Tableau::order, t0, y_, k_[0], t_end,
+                           [this](double t, const double* y1, double* f1) { compute(t, y1, f1); });
   }
 
   const double* y() const override { return y_; }
@@ -172,26 +174,6 @@ class RungeKuttaStepper final : public Stepper {
         segment_[(4 + row) * M + i] = h * sum;
       }
     }
-  }
-
-  /// The first step, from the size of y' and y''. After Hairer, Norsett, Wanner 1993, Solving ODEs I, sec. II.4, made
-  /// free of the unit of time: all is measured against tau, the time in which y changes by its own size.
-  double initial_step(double t_end) {
-    const double span = std::abs(t_end - t_), direction = t_end < t_ ? -1.0 : 1.0;
-    if (span == 0.0) return 0.0;
-    const double d0 = problem_.error_norm(y_, y_, y_, tolerances_.rtol, tolerances_.atol);
-    const double d1 = problem_.error_norm(k_[0], y_, y_, tolerances_.rtol, tolerances_.atol);
-    if (d1 == 0.0) return direction * span;
-    const double tau = d0 > 0 && std::isfinite(d1) ? std::min(d0 / d1, span) : 0.1 * span;
-    const double h0 = 0.01 * tau;
-    double y1[N], f1[N], change[N];
-    for (int i = 0; i < N; ++i) y1[i] = y_[i] + direction * h0 * k_[0][i];
-    compute(t_ + direction * h0, y1, f1);
-    for (int i = 0; i < N; ++i) change[i] = (f1[i] - k_[0][i]) / h0;
-    const double d2 = problem_.error_norm(change, y_, y1, tolerances_.rtol, tolerances_.atol);
-    const double size = std::max(d0, d2 * tau * tau);
-    const double h1 = std::isfinite(size) && size > 0 ? tau * std::pow(0.01 / size, 1.0 / Tableau::order) : h0;
-    return direction * std::min({100 * h0, h1, span});
   }
 
   const P& problem_;

@@ -32,14 +32,17 @@ class StepControl {
  public:
   /// @param error_order  order of the lower formula of the pair: the error goes as h^(error_order + 1)
   explicit StepControl(int error_order)
-      : integral_(1.0 / (error_order + 1) - 0.75 * proportional_) {}
+      : integral_(integral(error_order)) {}
+
+  static constexpr double safety = 0.9, smallest = 0.2, largest = 10.0, proportional = 0.04, least_error = 1e-4;
+  static constexpr double integral(int error_order) { return 1.0 / (error_order + 1) - 0.75 * proportional; }
 
   /// Factor for the next step after one that was accepted with this error (1 is just acceptable).
   double accepted(double error) {
-    double factor = largest_;
-    if (error > 0) factor = safety_ * rough_power(error, -integral_) * rough_power(previous_, proportional_);
-    factor = std::clamp(factor, smallest_, rejected_ ? 1.0 : largest_);
-    previous_ = std::max(error, 1e-4);
+    double factor = largest;
+    if (error > 0) factor = safety * rough_power(error, -integral_) * rough_power(previous_, proportional);
+    factor = std::clamp(factor, smallest, rejected_ ? 1.0 : largest);
+    previous_ = std::max(error, least_error);
     rejected_ = false;
     return factor;
   }
@@ -48,13 +51,12 @@ class StepControl {
   double rejected(double error) {
     rejected_ = true;
     if (!std::isfinite(error)) return 0.1;
-    return std::max(smallest_, safety_ * rough_power(error, -integral_));
+    return std::max(smallest, safety * rough_power(error, -integral_));
   }
 
  private:
-  static constexpr double safety_ = 0.9, smallest_ = 0.2, largest_ = 10.0, proportional_ = 0.04;
   double integral_;
-  double previous_ = 1e-4;
+  double previous_ = least_error;
   bool rejected_ = false;
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "polhode/scene/scene.hpp"
+#include "polhode/solve/euler_formulas.hpp"
 
 namespace polhode {
 
@@ -30,9 +31,8 @@ class EulerProblem {
   EulerProblem(const InertiaTensor& inertia_B, const Torque& torque) : I_(inertia_B.matrix()), torque_(torque) {
     if constexpr (diagonal) {
       for (int i = 0; i < 3; ++i) {
-        moment_[i] = I_(i, i);
         difference_[i] = I_((i + 1) % 3, (i + 1) % 3) - I_((i + 2) % 3, (i + 2) % 3);
-        inverse_moment_[i] = 1.0 / moment_[i];
+        inverse_moment_[i] = 1.0 / I_(i, i);
       }
     } else {
       const Matrix3d& R_BP = inertia_B.axes();
@@ -67,37 +67,15 @@ class EulerProblem {
     double tau[3] = {0.0, 0.0, 0.0};
     torque_.add(TorqueInput{t, w, q, I_, diagonal}, tau);
     if constexpr (diagonal) {
-      f[0] = (difference_[0] * w[1] * w[2] + tau[0]) * inverse_moment_[0];
-      f[1] = (difference_[1] * w[2] * w[0] + tau[1]) * inverse_moment_[1];
-      f[2] = (difference_[2] * w[0] * w[1] + tau[2]) * inverse_moment_[2];
+      compute_rate_change(difference_, inverse_moment_, w, tau, f);
     } else {
-      double L[3];
-      for (int i = 0; i < 3; ++i) L[i] = I_(i, 0) * w[0] + I_(i, 1) * w[1] + I_(i, 2) * w[2];
-      tau[0] += L[1] * w[2] - L[2] * w[1];
-      tau[1] += L[2] * w[0] - L[0] * w[2];
-      tau[2] += L[0] * w[1] - L[1] * w[0];
-      for (int i = 0; i < 3; ++i) f[i] = inverse_(i, 0) * tau[0] + inverse_(i, 1) * tau[1] + inverse_(i, 2) * tau[2];
+      compute_rate_change_skew(I_.data(), inverse_.data(), w, tau, f);
     }
-    if constexpr (with_attitude) {
-      const double a = 0.5 * w[0], b = 0.5 * w[1], c = 0.5 * w[2];
-      f[3] = q[3] * a + q[1] * c - q[2] * b;
-      f[4] = q[3] * b + q[2] * a - q[0] * c;
-      f[5] = q[3] * c + q[0] * b - q[1] * a;
-      f[6] = -(q[0] * a + q[1] * b + q[2] * c);
-    }
+    if constexpr (with_attitude) compute_turning(q, w, f + 3);
   }
 
-  /// Two blocks, since rates have a unit and a quaternion has none; sums of magnitudes carry a NaN through.
   double error_norm(const double* error, const double* y0, const double* y1, double rtol, double atol) const {
-    const double size = std::max(sum(y0, 3), sum(y1, 3));
-    const double e = sum(error, 3), allowed = rtol * size + atol;
-    const double rates = e == 0.0 ? 0.0 : e / allowed;
-    if constexpr (with_attitude) {
-      const double turn = (sum(error + 3, 3) + std::abs(error[6])) / (rtol + atol);
-      return rates > turn || rates != rates ? rates : turn;
-    } else {
-      return rates;
-    }
+    return compute_error_norm<with_attitude>(error, y0, y1, rtol, atol);
   }
 
   /// |q| = 1 again. The derivative of q is linear in q and the torques see only its direction, so both scale alike.
@@ -108,22 +86,14 @@ class EulerProblem {
     }
   }
 
+  const double* difference() const { return difference_; }           ///< (I2 - I3, I3 - I1, I1 - I2) of principal axes
+  const double* inverse_moment() const { return inverse_moment_; }
+  const Matrix3d& inverse() const { return inverse_; }               ///< of the tensor in other axes
+
  private:
-  /// 1/|q|; within 1e-8 of unity its tangent is exact to rounding.
-  static double compute_unit_scale(const double* q) {
-    const double n = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-    return std::abs(n - 1.0) < 1e-8 ? 1.5 - 0.5 * n : 1.0 / std::sqrt(n);
-  }
-
-  static double sum(const double* v, int n) {
-    double total = 0.0;
-    for (int i = 0; i < n; ++i) total += std::abs(v[i]);
-    return total;
-  }
-
   Matrix3d I_;
   const Torque& torque_;
-  double moment_[3] = {}, difference_[3] = {}, inverse_moment_[3] = {};
+  double difference_[3] = {}, inverse_moment_[3] = {};
   Matrix3d inverse_ = Matrix3d::Zero();
 };
 

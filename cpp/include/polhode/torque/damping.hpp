@@ -1,5 +1,6 @@
 #pragma once
 
+#include "polhode/torque/formulas.hpp"
 #include "polhode/torque/record.hpp"
 
 namespace polhode::torques {
@@ -18,11 +19,7 @@ class Damping {
 
   TorqueTraits traits() const { return {.uses_rates = true, .vanishes = matrix_.isZero(0.0)}; }
 
-  void add(const TorqueInput& in, double* tau_B) const {
-    for (int i = 0; i < 3; ++i) {
-      tau_B[i] -= matrix_(i, 0) * in.omega[0] + matrix_(i, 1) * in.omega[1] + matrix_(i, 2) * in.omega[2];
-    }
-  }
+  void add(const TorqueInput& in, double* tau_B) const { add_damping(matrix_.data(), in.omega, tau_B); }
 
   double compute_potential(const TorqueInput&) const { return 0.0; }   ///< it has none: see traits()
 

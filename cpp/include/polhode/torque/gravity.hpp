@@ -1,7 +1,7 @@
 #pragma once
 
+#include "polhode/torque/formulas.hpp"
 #include "polhode/torque/record.hpp"
-#include "polhode/torque/vertical.hpp"
 
 namespace polhode::torques {
 
@@ -23,13 +23,9 @@ class Gravity {
     return {.uses_attitude = true, .has_potential = true, .keeps_vertical = true, .vanishes = moment_.isZero(0.0)};
   }
 
-  void add(const TorqueInput& in, double* tau_B) const {
-    double g[3];
-    compute_vertical(in.attitude, g);
-    tau_B[0] -= moment_[1] * g[2] - moment_[2] * g[1];
-    tau_B[1] -= moment_[2] * g[0] - moment_[0] * g[2];
-    tau_B[2] -= moment_[0] * g[1] - moment_[1] * g[0];
-  }
+  const Vector3d& moment() const { return moment_; }   ///< m g r [N m]
+
+  void add(const TorqueInput& in, double* tau_B) const { add_weight(moment_.data(), in.attitude, tau_B); }
 
   /// m g times the height of the centre of mass above the pivot [J]
   double compute_potential(const TorqueInput& in) const {
@@ -41,7 +37,7 @@ class Gravity {
  private:
   double weight_;
   Vector3d arm_;
-  Vector3d moment_;   // m g r
+  Vector3d moment_;
 };
 
 }  // namespace polhode::torques

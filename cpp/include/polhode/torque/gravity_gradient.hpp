@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "polhode/torque/formulas.hpp"
 #include "polhode/torque/record.hpp"
 
 namespace polhode::torques {
@@ -19,6 +20,7 @@ class GravityGradient {
 
   double mean_motion() const { return mean_motion_; }
   double phase() const { return phase_; }
+  double strength() const { return 3 * mean_motion_ * mean_motion_; }   ///< 3 n^2 [1/s^2]
 
   TorqueTraits traits() const {
     return {.uses_time = true,
@@ -29,43 +31,28 @@ class GravityGradient {
   }
 
   void add(const TorqueInput& in, double* tau_B) const {
-    double u[3], h[3];
+    double u[3];
     compute_radial(in, u);
-    const double s = 3 * mean_motion_ * mean_motion_;
-    const Matrix3d& I = in.inertia_B;
     if (in.principal) {
-      tau_B[0] += s * (I(2, 2) - I(1, 1)) * (u[1] * u[2]);
-      tau_B[1] += s * (I(0, 0) - I(2, 2)) * (u[2] * u[0]);
-      tau_B[2] += s * (I(1, 1) - I(0, 0)) * (u[0] * u[1]);
-      return;
+      add_gradient<true>(strength(), in.inertia_B.data(), u, tau_B);
+    } else {
+      add_gradient<false>(strength(), in.inertia_B.data(), u, tau_B);
     }
-    apply(I, u, h);
-    tau_B[0] += s * (u[1] * h[2] - u[2] * h[1]);
-    tau_B[1] += s * (u[2] * h[0] - u[0] * h[2]);
-    tau_B[2] += s * (u[0] * h[1] - u[1] * h[0]);
   }
 
   /// (3/2) n^2 u . I u, up to the constant -n^2 tr(I)/2 [J]
   double compute_potential(const TorqueInput& in) const {
-    double u[3], h[3];
+    double u[3];
     compute_radial(in, u);
-    apply(in.inertia_B, u, h);
-    return 1.5 * mean_motion_ * mean_motion_ * (u[0] * h[0] + u[1] * h[1] + u[2] * h[2]);
+    const double* I = in.inertia_B.data();
+    return 1.5 * mean_motion_ * mean_motion_ *
+           (u[0] * row_product(I, 0, u) + u[1] * row_product(I, 1, u) + u[2] * row_product(I, 2, u));
   }
 
  private:
   void compute_radial(const TorqueInput& in, double* u_B) const {
     const double angle = mean_motion_ * in.t + phase_;
-    const double x = in.attitude[0], y = in.attitude[1], z = in.attitude[2], w = in.attitude[3];
-    const double xx = x * x, yy = y * y, zz = z * z, ww = w * w;
-    const double unit = 1.0 / (xx + yy + zz + ww);
-    const double c = std::cos(angle) * unit, s = std::sin(angle) * unit;
-    u_B[0] = c * (ww + xx - yy - zz) + s * (2 * (x * y + w * z));   // rows x and y of R_WB
-    u_B[1] = c * (2 * (x * y - w * z)) + s * (ww - xx + yy - zz);
-    u_B[2] = c * (2 * (x * z + w * y)) + s * (2 * (y * z - w * x));
-  }
-  static void apply(const Matrix3d& I, const double* u, double* h) {
-    for (int i = 0; i < 3; ++i) h[i] = I(i, 0) * u[0] + I(i, 1) * u[1] + I(i, 2) * u[2];
+    polhode::compute_radial(std::cos(angle), std::sin(angle), in.attitude, u_B);
   }
 
   double mean_motion_;

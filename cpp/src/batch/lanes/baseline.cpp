@@ -1,14 +1,16 @@
 // One lane at a time, for any processor.
 #define POLHODE_ISA isa_baseline
-#include "batch/lanes/levels.hpp"
 #include "math/lanes/scalar.hpp"
 
 namespace polhode::POLHODE_ISA {
 using Wide = One;
+POLHODE_INLINE unsigned bits(bool mask) { return mask; }
 }
 
+#include "batch/lanes/rk45_loops.hpp"
 #include "batch/lanes/taylor_loops.hpp"
 
 namespace polhode {
-LaneKernels baseline_lane_kernels(const SeriesTerms& terms, bool attitude) { return POLHODE_ISA::choose_lanes(terms, attitude); }
+TaylorKernels baseline_taylor_lanes(const SeriesTerms& terms, bool attitude) { return POLHODE_ISA::choose_lanes(terms, attitude); }
+Rk45Kernels baseline_rk45_lanes(bool diagonal, bool attitude) { return POLHODE_ISA::choose_rk45(diagonal, attitude); }
 }  // namespace polhode

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "batch/lanes/lane_step.hpp"
+#include "batch/lanes/taylor_step.hpp"
 
 // Taylor steps of bodies side by side, for one lane type `Wide`; included once by each file that is built for one
 // instruction set. The recurrences are those of solve/lanes/series_loops.hpp, with a body in each lane.
@@ -29,8 +29,8 @@ class LaneSeries {
   static constexpr bool seen = !attitude && fixed == 1;   // a vector in the quaternion's place
 
  public:
-  static void step(LaneBlock& block) {
-    for (int at = 0; at < LaneBlock::width; at += Wide::width) {
+  static void step(TaylorBlock& block) {
+    for (int at = 0; at < TaylorBlock::width; at += Wide::width) {
       LaneSeries series(block, Pass{at});
       series.start();
       int n = 0;
@@ -45,12 +45,12 @@ class LaneSeries {
   }
 
  private:
-  POLHODE_INLINE LaneSeries(LaneBlock& block, Pass pass) : b_(block), pass_(pass) {}
+  POLHODE_INLINE LaneSeries(TaylorBlock& block, Pass pass) : b_(block), pass_(pass) {}
 
   POLHODE_INLINE Wide load(const Row& row) const { return pass_.load(row); }
 
   // Where a coefficient is kept: the rates, the left factors of the rates' products, vectors.
-  static POLHODE_INLINE auto& rate_rows(const LaneBlock& b, int i) { return !separatrix || i == 1 ? b.c[separatrix ? 2 : i] : b.side[i]; }
+  static POLHODE_INLINE auto& rate_rows(const TaylorBlock& b, int i) { return !separatrix || i == 1 ? b.c[separatrix ? 2 : i] : b.side[i]; }
   POLHODE_INLINE auto& rate_rows(int i) const { return rate_rows(b_, i); }
   POLHODE_INLINE auto& vector_rows(int v, int i) const { return seen ? b_.c[4 + i] : b_.vector[v][i]; }
   POLHODE_INLINE Wide rate(int i, int n) const { return load(rate_rows(i)[n]); }
@@ -108,7 +108,7 @@ class LaneSeries {
   };
 
   /// Nearly all of the work.
-  static POLHODE_INLINE void sum_rates(const LaneBlock& b, Pass pass, int n, Sums& sums) {
+  static POLHODE_INLINE void sum_rates(const TaylorBlock& b, Pass pass, int n, Sums& sums) {
     const Wide zero(0.0);
     Wide p[3] = {zero, zero, zero}, a[4] = {zero, zero, zero, zero}, o[4] = {zero, zero, zero, zero};
     const auto load = [pass](const Row& row) __attribute__((always_inline)) { return pass.load(row); };
@@ -211,25 +211,25 @@ class LaneSeries {
       for (int i = 0; i < 3; ++i) pass_.store(vector_rows(v, i)[n + 1], early && n == 2 ? next[v][i] / count : next[v][i] * inverse);
   }
 
-  LaneBlock& b_;
+  TaylorBlock& b_;
   Pass pass_;
   Wide product_[3], product_low_[3], torque_[3], damping_[3][3], pull_[fixed > 0 ? fixed : 1][3][3], tidal_[2][3], orbit_;
 };
 
 template <bool separatrix, bool attitude, int fixed, bool gradient>
-LaneKernels make_kernels() {
+TaylorKernels make_kernels() {
   return {&LaneSeries<separatrix, attitude, fixed, gradient>::step, &sample_lanes};
 }
 
 template <bool separatrix>
-LaneKernels choose_lanes(const SeriesTerms& c, bool attitude) {
+TaylorKernels choose_lanes(const SeriesTerms& c, bool attitude) {
   if (!attitude) return c.fixed_vectors == 1 ? make_kernels<separatrix, false, 1, false>() : make_kernels<separatrix, false, 0, false>();
   if (c.gradient) return c.fixed_vectors > 0 ? make_kernels<separatrix, true, 2, true>() : make_kernels<separatrix, true, 0, true>();
   if (c.fixed_vectors == 0) return make_kernels<separatrix, true, 0, false>();
   return c.fixed_vectors == 1 ? make_kernels<separatrix, true, 1, false>() : make_kernels<separatrix, true, 2, false>();
 }
 
-inline LaneKernels choose_lanes(const SeriesTerms& c, bool attitude) {
+inline TaylorKernels choose_lanes(const SeriesTerms& c, bool attitude) {
   return c.variables == RateVariables::separatrix ? choose_lanes<true>(c, attitude) : choose_lanes<false>(c, attitude);
 }
 

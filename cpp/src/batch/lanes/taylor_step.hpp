@@ -1,20 +1,13 @@
 #pragma once
 
-#include "batch/lanes/levels.hpp"
+#include "batch/lanes/pass.hpp"
+#include "batch/lanes/taylor_block.hpp"
 #include "polhode/math/double_double.hpp"
 
 // What is the same for every set of torques: how far a series may be used, its sum, and what holds after a step.
 namespace polhode::POLHODE_ISA {
 
-using Row = LaneBlock::Row;
 using WideDD = math::DoubleDouble<Wide>;
-
-/// One of the passes over a block: its lanes from `at` on, as many as a register holds.
-struct Pass {
-  int at;
-  POLHODE_INLINE Wide load(const Row& row) const { return Wide::load(row + at); }
-  POLHODE_INLINE void store(Row& row, Wide value) const { value.store(row + at); }
-};
 
 /// log2(x) to 1e-3 (ode/step_control.hpp), for 2^-1022 <= x < 2^1023.
 POLHODE_INLINE Wide rough_log2(Wide x) {
@@ -29,7 +22,7 @@ POLHODE_INLINE Wide rough_exp2(Wide x) {
 }
 
 /// The coefficients' sum at s without the first one; it begins with the carry.
-POLHODE_INLINE void sum_series(const LaneBlock& b, Pass pass, Wide s, Wide unit, const Row (&carry)[8], Wide (&out)[8]) {
+POLHODE_INLINE void sum_series(const TaylorBlock& b, Pass pass, Wide s, Wide unit, const Row (&carry)[8], Wide (&out)[8]) {
   constexpr int used[7] = {0, 1, 2, 4, 5, 6, 7};
   Wide sum[7];
   for (int i = 0; i < 7; ++i) sum[i] = pass.load(b.c[used[i]][b.order]);
@@ -64,7 +57,7 @@ POLHODE_INLINE Wide log_step(const Wide (&size)[5], Wide tolerance, int order) {
 }
 
 /// One Newton step of a free body back to its energy and |L|: BodySeries::correct_rates in lanes.
-POLHODE_INLINE void balance_rates(const LaneBlock& b, Pass pass, Wide (&y)[8], Wide (&carry)[8]) {
+POLHODE_INLINE void balance_rates(const TaylorBlock& b, Pass pass, Wide (&y)[8], Wide (&carry)[8]) {
   const Wide zero(0.0), balance = pass.load(b.balance);
   const WideDD u(y[0], carry[0]), v(y[1], carry[1]), w(y[2], carry[2]);
   const WideDD kept[2] = {{pass.load(b.kept[0]), pass.load(b.kept_low[0])}, {pass.load(b.kept[1]), pass.load(b.kept_low[1])}};
@@ -95,7 +88,7 @@ POLHODE_INLINE void balance_attitude(Wide (&y)[8], Wide (&carry)[8]) {
 
 /// Steps by the coefficients that are there: `rates` of the rows 0, 1, 2, order - 1 and order, for their sizes.
 template <bool attitude, bool vector>
-POLHODE_INLINE void finish_step(LaneBlock& b, Pass pass, const Wide (&rates)[5][3]) {
+POLHODE_INLINE void finish_step(TaylorBlock& b, Pass pass, const Wide (&rates)[5][3]) {
   const Wide zero(0.0), unit = pass.load(b.unit);
   const int row[5] = {0, 1, 2, b.order - 1, b.order};
   Wide size[5], probe(0.0);   // the probe stays zero unless something is not finite: comparisons let that pass
@@ -149,8 +142,8 @@ POLHODE_INLINE void finish_step(LaneBlock& b, Pass pass, const Wide (&rates)[5][
   pass.store(b.unit, select(finite, power_of_two_below(next), larger(unit * Wide(0x1p-16), Wide(0x1p-900))));
 }
 
-inline void sample_lanes(const LaneBlock& b, const double* s, double (*out)[LaneBlock::width]) {
-  for (int at = 0; at < LaneBlock::width; at += Wide::width) {
+inline void sample_lanes(const TaylorBlock& b, const double* s, double (*out)[TaylorBlock::width]) {
+  for (int at = 0; at < TaylorBlock::width; at += Wide::width) {
     const Pass pass{at};
     Wide increment[8];
     sum_series(b, pass, Wide::load(s + at), pass.load(b.unit_old), b.carry_old, increment);

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "batch/lanes/clock.hpp"
+#include "polhode/math/number.hpp"
+
+namespace polhode::POLHODE_ISA {
+
+using Row = LaneClock::Row;
+
+/// One of the passes over a block: its lanes from `at` on, as many as a register holds.
+struct Pass {
+  int at;
+  POLHODE_INLINE Wide load(const Row& row) const { return Wide::load(row + at); }
+  POLHODE_INLINE void store(Row& row, Wide value) const { value.store(row + at); }
+};
+
+}  // namespace polhode::POLHODE_ISA

@@ -1,0 +1,157 @@
+#include <algorithm>
+#include <variant>
+#include <vector>
+
+#include "batch/lane_method.hpp"
+#include "batch/lanes/rk45_block.hpp"
+#include "polhode/core/simd.hpp"
+#include "polhode/ode/first_step.hpp"
+#include "polhode/ode/rk45.hpp"
+#include "polhode/ode/step_control.hpp"
+#include "polhode/solve/euler_problem.hpp"
+
+namespace polhode {
+namespace {
+
+using Row = LaneClock::Row;
+
+Rk45Kernels find_kernels(bool diagonal, bool attitude) {
+  Rk45Kernels found = {nullptr, nullptr};
+  const SimdLevel level = simd_level();
+  if (level == SimdLevel::avx512) found = avx512_rk45_lanes(diagonal, attitude);
+  if (found.advance == nullptr && level != SimdLevel::baseline) found = avx2_rk45_lanes(diagonal, attitude);
+  return found.advance != nullptr ? found : baseline_rk45_lanes(diagonal, attitude);
+}
+
+void put(Row* rows, int lane, const double* values, int n) {
+  for (int i = 0; i < n; ++i) rows[i][lane] = values[i];
+}
+
+/// A torque as the lanes have it: its kind, and its numbers when `values` is given.
+LaneTorque::Kind describe(const AnyTorque& torque, double* values = nullptr) {
+  using Kind = LaneTorque::Kind;
+  const auto give = [values](const double* numbers, int n) {
+    if (values != nullptr) std::copy_n(numbers, n, values);
+  };
+  if (const auto* one = std::get_if<torques::Constant>(&torque)) {
+    give(one->torque().data(), 3);
+    return one->frame() == torques::Constant::Frame::space ? Kind::space_constant : Kind::body_constant;
+  }
+  if (const auto* one = std::get_if<torques::Gravity>(&torque)) {
+    give(one->moment().data(), 3);
+    return Kind::weight;
+  }
+  if (const auto* one = std::get_if<torques::GravityGradient>(&torque)) {
+    const double numbers[3] = {one->mean_motion(), one->phase(), one->strength()};
+    give(numbers, 3);
+    return Kind::gradient;
+  }
+  give(std::get<torques::Damping>(torque).matrix().data(), 9);
+  return Kind::damping;
+}
+
+/// Euler's equations, as run_euler() has them.
+class EulerBody final : public LaneBody {
+ public:
+  explicit EulerBody(const Scene& scene)
+      : scene_(scene), diagonal_(scene.inertia_B().is_diagonal()), attitude_(scene.want().attitude || scene.torque_sum().uses_attitude) {}
+
+  const Scene& scene() const { return scene_; }
+  bool diagonal() const { return diagonal_; }
+  bool attitude() const { return attitude_; }
+
+  std::string kind() const override {
+    std::string kind = {static_cast<char>(diagonal_), static_cast<char>(attitude_)};
+    for (const AnyTorque& torque : scene_.torques()) kind += static_cast<char>(describe(torque));
+    return kind;
+  }
+
+  std::string describe_state() const override { return attitude_ ? "omega, attitude" : "omega"; }
+
+  void unpack(const double* y, double* omega, double* attitude) const override {
+    attitude_ ? EulerProblem<NoTorque, true, true>::unpack(y, omega, attitude)
+              : EulerProblem<NoTorque, true, false>::unpack(y, omega, attitude);
+  }
+
+  std::unique_ptr<LaneTeam> make_team(const ode::Tolerances& tolerances) const override;
+
+ private:
+  const Scene& scene_;
+  bool diagonal_, attitude_;
+};
+
+class Rk45Team final : public LaneTeam {
+ public:
+  Rk45Team(const EulerBody& first, const ode::Tolerances& tolerances)
+      : kernels_(find_kernels(first.diagonal(), first.attitude())), tolerances_(tolerances), torques_(first.scene().torques().size()) {
+    b_.rtol = tolerances.rtol, b_.atol = tolerances.atol;
+    for (std::size_t i = 0; i < torques_.size(); ++i) torques_[i].kind = describe(first.scene().torques()[i]);
+    b_.torques = torques_.data(), b_.torque_count = static_cast<int>(torques_.size());
+  }
+
+  LaneClock& clock() override { return b_; }
+
+  void seat(int lane, const LaneBody& rider) override {
+    const auto& body = static_cast<const EulerBody&>(rider);
+    for (std::size_t i = 0; i < torques_.size(); ++i) {
+      double values[9] = {};
+      describe(body.scene().torques()[i], values);
+      put(torques_[i].values, lane, values, 9);
+    }
+    if (body.diagonal()) {
+      body.attitude() ? start<true, true>(lane, body.scene()) : start<true, false>(lane, body.scene());
+    } else {
+      body.attitude() ? start<false, true>(lane, body.scene()) : start<false, false>(lane, body.scene());
+    }
+    b_.log_previous[lane] = ode::rough_log2(ode::StepControl::least_error);
+    b_.rejected[lane] = b_.not_finite[lane] = 0.0;
+  }
+
+  void leave_empty(int lane) override {
+    for (int i = 0; i < 7; ++i) b_.y[i][lane] = b_.f[i][lane] = 0.0;
+    b_.time[lane] = b_.t_end[lane] = b_.step[lane] = 0.0;
+  }
+
+  unsigned advance(int rounds) override { return kernels_.advance(b_, rounds); }
+  double find_place(int lane, double t) const override { return (t - b_.time_old[lane]) / b_.step_taken[lane]; }
+  void sample(const double* places, double (*y)[width]) override { kernels_.sample(b_, places, y); }
+
+ private:
+  /// The body's constants, its start, its derivative there and the first step.
+  template <bool diagonal, bool attitude>
+  void start(int lane, const Scene& scene) {
+    using Problem = EulerProblem<SeveralTorques, diagonal, attitude>;
+    const SeveralTorques torques{scene.torques()};
+    const Problem problem(scene.inertia_B(), torques);
+    put(b_.inertia, lane, scene.inertia_B().matrix().data(), 9), put(b_.inverse, lane, problem.inverse().data(), 9);
+    put(b_.difference, lane, problem.difference(), 3), put(b_.inverse_moment, lane, problem.inverse_moment(), 3);
+    double y[Problem::dimension], f[Problem::dimension];
+    const double t0 = b_.time[lane], t_end = b_.t_end[lane];
+    const auto compute = [&](double t, const double* at, double* change) { problem.compute_derivative(t, at, change); };
+    Problem::pack(scene.start(), y);
+    compute(t0, y, f);
+    put(b_.y, lane, y, Problem::dimension), put(b_.f, lane, f, Problem::dimension);
+    b_.step[lane] = ode::choose_first_step(problem, tolerances_, ode::Rk45::record.order, t0, y, f, t_end, compute);
+  }
+
+  Rk45Block b_;
+  Rk45Kernels kernels_;
+  ode::Tolerances tolerances_;
+  std::vector<LaneTorque> torques_;
+};
+
+std::unique_ptr<LaneTeam> EulerBody::make_team(const ode::Tolerances& tolerances) const {
+  return std::make_unique<Rk45Team>(*this, tolerances);
+}
+
+/// A callable serves one body at a time.
+bool is_built_in(const Scene& scene) {
+  return std::ranges::none_of(scene.torques(), [](const AnyTorque& t) { return std::holds_alternative<torques::Custom>(t); });
+}
+
+}  // namespace
+
+const LaneMethod rk45_lanes{ode::Rk45::record, &is_built_in,
+                            [](const Scene& scene) -> std::unique_ptr<LaneBody> { return std::make_unique<EulerBody>(scene); }};
+
+}  // namespace polhode

@@ -1,0 +1,149 @@
+#include <algorithm>
+#include <cmath>
+
+#include "batch/lane_method.hpp"
+#include "batch/lanes/taylor_block.hpp"
+#include "polhode/core/simd.hpp"
+#include "polhode/ode/taylor.hpp"
+#include "polhode/solve/body_series.hpp"
+
+namespace polhode {
+namespace {
+
+using Row = LaneClock::Row;
+
+TaylorKernels find_kernels(const SeriesTerms& terms, bool attitude) {
+  TaylorKernels found = {nullptr, nullptr};
+  const SimdLevel level = simd_level();
+  if (level == SimdLevel::avx512) found = avx512_taylor_lanes(terms, attitude);
+  if (found.step == nullptr && level != SimdLevel::baseline) found = avx2_taylor_lanes(terms, attitude);
+  return found.step != nullptr ? found : baseline_taylor_lanes(terms, attitude);
+}
+
+/// One order for all lanes, by measured time: with bodies side by side a step costs nearly the square of its order.
+int choose_lane_order(double tolerance) {
+  const int order = static_cast<int>(std::ceil(1.0 - 0.65 * std::log(tolerance)));
+  return std::clamp(order, ode::Taylor::least_order, ode::most_series_order - 2);
+}
+
+void put(Row* rows, int lane, const double* values, int n) {
+  for (int i = 0; i < n; ++i) rows[i][lane] = values[i];
+}
+
+class TaylorBody final : public LaneBody {
+ public:
+  explicit TaylorBody(const Scene& scene) : series_(scene, scene.want().attitude) {}
+
+  const BodySeries& series() const { return series_; }
+
+  std::string kind() const override {
+    const SeriesTerms& terms = series_.terms();
+    const bool flags[] = {terms.variables == RateVariables::separatrix, series_.has_attitude(), terms.gradient, terms.damped,
+                          series_.keeps_balance(), terms.fixed_vectors > 0, terms.fixed_vectors > 1};
+    return std::string(std::begin(flags), std::end(flags));
+  }
+
+  std::string describe_state() const override { return series_.describe_state(); }
+  void unpack(const double* y, double* omega, double* attitude) const override { series_.unpack(y, omega, attitude); }
+  std::unique_ptr<LaneTeam> make_team(const ode::Tolerances& tolerances) const override;
+
+ private:
+  BodySeries series_;
+};
+
+class TaylorTeam final : public LaneTeam {
+ public:
+  TaylorTeam(const BodySeries& first, const ode::Tolerances& tolerances)
+      : kernels_(find_kernels(first.terms(), first.has_attitude())), gradient_(first.terms().gradient) {
+    b_.order = choose_lane_order(tolerances.rtol + tolerances.atol);
+    b_.rtol = tolerances.rtol, b_.atol = tolerances.atol;
+    b_.damped = first.terms().damped, b_.balanced = first.keeps_balance();
+  }
+
+  LaneClock& clock() override { return b_; }
+
+  void seat(int lane, const LaneBody& body) override {
+    const BodySeries& series = static_cast<const TaylorBody&>(body).series();
+    put_constants(lane, series);
+    double carry[8];
+    series.start_carry(carry);
+    put(b_.y, lane, series.start(), 8), put(b_.carry, lane, carry, 8);
+    const double t0 = b_.time[lane];
+    b_.time_low[lane] = 0.0, phase_[lane] = series.orbit_phase(), attempts_[lane] = 0;
+    const double unit = std::min(series.compute_time_scale(t0, series.start()), std::abs(b_.t_end[lane] - t0));
+    b_.unit[lane] = math::power_of_two_below(std::clamp(unit, 0x1p-900, 0x1p900));
+  }
+
+  void leave_empty(int lane) override {
+    for (int i = 0; i < 8; ++i) b_.y[i][lane] = b_.carry[i][lane] = 0.0;
+    b_.t_end[lane] = b_.time[lane] = b_.time_low[lane] = 0.0, b_.unit[lane] = 1.0;
+  }
+
+  unsigned advance(int rounds) override {
+    unsigned calls = 0;
+    for (int round = 0; round < rounds && calls == 0; ++round, ++b_.rounds) {
+      for (int lane = 0; lane < width && gradient_; ++lane) put_orbit(lane);
+      kernels_.step(b_);
+      for (int lane = 0; lane < width; ++lane)
+        if ((b_.riding >> lane & 1u) != 0 && wants_to_call(lane)) calls |= 1u << lane;
+    }
+    return calls;
+  }
+
+  double find_place(int lane, double t) const override {
+    return ((t - b_.time_old[lane]) - b_.time_old_low[lane]) / b_.unit_old[lane];
+  }
+
+  void sample(const double* places, double (*y)[width]) override { kernels_.sample(b_, places, y); }
+
+ private:
+  static constexpr int most_attempts = 8;   // in a unit of time that is smaller each time
+
+  bool wants_to_call(int lane) {
+    if (b_.outcome[lane] == double{lane_not_finite}) return ++attempts_[lane] > most_attempts;
+    if (b_.outcome[lane] == double{lane_underflow}) return true;
+    attempts_[lane] = 0;
+    const double reached = b_.time[lane], next = b_.next_sample[lane];
+    const bool due = b_.t_end[lane] >= b_.time_old[lane] ? next <= reached : next >= reached;
+    return ++b_.steps[lane] >= b_.most_steps || due;
+  }
+
+  void put_constants(int lane, const BodySeries& series) {
+    const SeriesTerms& terms = series.terms();
+    b_.to_rates[lane] = terms.to_rates[0], b_.orbit_rate[lane] = terms.orbit_rate;
+    put(b_.product, lane, terms.product, 3), put(b_.product_low, lane, terms.product_low, 3), put(b_.torque, lane, terms.torque, 3);
+    for (int j = 0; j < 3; ++j) put(b_.damping[j], lane, terms.damping[j], 3);
+    for (int i = 0; i < 2; ++i) {
+      for (int j = 0; j < 3; ++j) put(b_.pull[i][j], lane, terms.pull[i][j], 3);
+      put(b_.tidal[i], lane, terms.tidal[i], 3), put(b_.space[i], lane, series.fixed_vector(i).data(), 3);
+      b_.kept[i][lane] = series.kept(i).hi, b_.kept_low[i][lane] = series.kept(i).lo;
+    }
+    b_.balance[lane] = series.balance();
+  }
+
+  /// Where the orbit stands, without the rounding of n t (BodySeries::compute_series).
+  void put_orbit(int lane) {
+    const double rate = b_.orbit_rate[lane];
+    const math::DD product = math::two_prod(rate, b_.time[lane]), angle = math::two_sum(product.hi, phase_[lane]);
+    const double low = angle.lo + product.lo + rate * b_.time_low[lane];
+    const double s = std::sin(angle.hi), c = std::cos(angle.hi);
+    b_.orbit_sin[lane] = s + c * low, b_.orbit_cos[lane] = c - s * low;
+  }
+
+  TaylorBlock b_;
+  TaylorKernels kernels_;
+  bool gradient_;
+  double phase_[width] = {};
+  int attempts_[width] = {};
+};
+
+std::unique_ptr<LaneTeam> TaylorBody::make_team(const ode::Tolerances& tolerances) const {
+  return std::make_unique<TaylorTeam>(series_, tolerances);
+}
+
+}  // namespace
+
+const LaneMethod taylor_lanes{ode::Taylor::record, [](const Scene& scene) { return compute_series_refusal(scene).empty(); },
+                              [](const Scene& scene) -> std::unique_ptr<LaneBody> { return std::make_unique<TaylorBody>(scene); }};
+
+}  // namespace polhode
