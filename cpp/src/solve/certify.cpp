@@ -56,8 +56,13 @@ class Certifier {
       Motion motion = run_pair(coarse, std::max(coarse / ratio_, least));
       const double error = motion.error;
       const bool ended = !arrived(motion), done = ended || error <= plan_.accuracy;
-      stalled = round == 0 || error < 0.5 * best_.error ? 0 : stalled + 1;
-      if (round == 0 || error < best_.error || motion.status == Status::stopped) best_ = std::move(motion);
+      // Where all is lost by the end, its size says nothing: then the run counts that is good for longest.
+      const bool lost = round > 0 && error > 0.5 && best_.error > 0.5, lasts = parting_ > kept_parting_;
+      stalled = round == 0 || error < 0.5 * best_.error || (lost && lasts) ? 0 : stalled + 1;
+      if (round == 0 || (lost ? lasts : error < best_.error) || motion.status == Status::stopped) {
+        best_ = std::move(motion);
+        kept_parting_ = parting_;
+      }
       if (done || stalled >= 2 || coarse <= ratio_ * least) return conclude();
       coarse = std::max(coarse / std::clamp(2 * error / plan_.accuracy, 3.0, 1e4), ratio_ * least);
     }
@@ -171,8 +176,8 @@ class Certifier {
       n = std::snprintf(text, sizeof text, "the accuracy of %.3g was not reached: rounding and the inputs' last digits grow to %.2g "
                         "over this span, by %s in float64", plan_.accuracy, best_.error, plan_.method.c_str());
     }
-    if (parting_ > 0 && parting_ < infinity && n > 0 && static_cast<std::size_t>(n) < sizeof text) {
-      std::snprintf(text + n, sizeof text - static_cast<std::size_t>(n), "; it holds for the first %.4g s", parting_);
+    if (kept_parting_ > 0 && kept_parting_ < infinity && n > 0 && static_cast<std::size_t>(n) < sizeof text) {
+      std::snprintf(text + n, sizeof text - static_cast<std::size_t>(n), "; it holds for the first %.4g s", kept_parting_);
     }
     return text;
   }
@@ -212,7 +217,8 @@ class Certifier {
   double safety_ = 1.5, ratio_ = pair_ratio;
   std::optional<Scene> longer_, moved_;
   std::size_t asked_ = 0;
-  double parting_ = infinity;   // how far from the start the last pair parted by more than is asked
+  double parting_ = infinity;   // how far from the start the last pair stayed within what is asked
+  double kept_parting_ = infinity;   // and that of the motion that is returned
   Motion best_;
   ode::Counts stats_;
   int runs_ = 0;

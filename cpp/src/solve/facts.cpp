@@ -47,6 +47,21 @@ Vector3d compute_drive_rates(const Scene& scene) {
   return S.allFinite() ? compute_principal_axes(S).moments : Vector3d::Zero();
 }
 
+/// The angle turned under a torque that stays as it is in the body. Such a torque ends up spinning it about its first or its
+/// third axis, at the share of that axis over its moment; until then the start's rate counts. Within a factor 2 of what is
+/// integrated for nine in ten of random blocks.
+double turn_under_thrust(const Scene& scene, double span) {
+  const InertiaTensor& inertia = scene.inertia_B();
+  const Vector3d share = inertia.axes().transpose() * compute_torque(scene, scene.omega());
+  const Vector3d& I = inertia.moments();
+  const double gain = std::max(std::abs(share[0]) / I[0], std::abs(share[2]) / I[2]);
+  const double start = scene.omega().norm(), added = gain * span;
+  if (added <= 1e-8 * start) return start * span;
+  // The integral of hypot(start, gain t).
+  const double before = start > 0 ? 0.5 * start * (start / gain) * std::asinh(added / start) : 0.0;
+  return 0.5 * span * std::hypot(start, added) + before;
+}
+
 }  // namespace
 
 TorqueSum find_acting_torques(const Scene& scene) {
@@ -113,6 +128,9 @@ double estimate_turns(const Scene& scene, const TorqueSum& torques, double span)
   double turned = start * span;
   if (torques.acting == 0) return turned / (2 * std::numbers::pi);
   if (may_spin_up(scene, torques)) {
+    if (!torques.uses_time && !torques.uses_attitude && !torques.uses_rates) {
+      return turn_under_thrust(scene, span) / (2 * std::numbers::pi);
+    }
     // Between a torque that never adds up and one that always does, in the middle by their ratio.
     const double acceleration = compute_torque_scale(scene) / scene.inertia_B().moments()[0];
     turned = std::hypot(start, std::sqrt(acceleration)) * span;

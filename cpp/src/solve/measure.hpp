@@ -34,7 +34,8 @@ inline double compute_distance(std::size_t n, const double* omega_a, const doubl
   return rates > angle || rates != rates ? rates : angle;
 }
 
-/// How far from the start the first sample lies at which two motions are farther apart than `most`; infinity for none.
+/// How far from the start the last sample lies up to which two motions are no farther apart than `most`; infinity where
+/// all are, 0 where none is.
 inline double find_parting(std::size_t n, const double* t, double t0, const double* omega_a, const double* attitude_a,
                            const double* omega_b, const double* attitude_b, double most) {
   double size = 0.0, parting = HUGE_VAL;
@@ -47,7 +48,13 @@ inline double find_parting(std::size_t n, const double* t, double t0, const doub
     const double turned = attitude_a == nullptr ? 0.0 : compute_distance(1, nullptr, attitude_a + 4 * i, nullptr, attitude_b + 4 * i);
     if (!(moved <= most * size && turned <= most)) parting = std::min(parting, std::abs(t[i] - t0));
   }
-  return parting;
+  if (parting == HUGE_VAL) return parting;
+  double together = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double away = std::abs(t[i] - t0);
+    if (away < parting) together = std::max(together, away);
+  }
+  return together;
 }
 
 }  // namespace polhode

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "polhode/exact/free_motion.hpp"
 #include "polhode/solve/closed_form.hpp"
@@ -97,6 +98,12 @@ TEST_CASE("facts: a thruster may spin a body up, gravity and damping do not") {
   const Facts up = compute_facts(Scene(block({0.1, 0.2, 0.3}, {thruster})));
   CHECK(up.may_spin_up);
   CHECK(up.turns > (std::sqrt(0.14) * 10) / turn);
+  // Turns of the scene S9 carried on, integrated by SciPy's DOP853 at 1e-10.
+  for (const auto [span, truth] : {std::pair{10.0, 0.938487}, {100.0, 49.3240}, {1000.0, 4621.87}}) {
+    SceneParts parts = block({0.1, 0.2, 0.3}, {thruster});
+    parts.times = {span};
+    CHECK(compute_facts(Scene(parts)).turns == doctest::Approx(truth).epsilon(0.1));
+  }
   const Facts heavy = compute_facts(Scene(block({0, 0, 0}, {torques::Gravity(2, {0, 0, 1})})));
   CHECK(!heavy.may_spin_up);
   CHECK(heavy.turns == doctest::Approx(std::sqrt(2 / 0.20) * 10 / turn));
