@@ -15,8 +15,8 @@ DOCS = pathlib.Path(__file__).parents[1] / "docs"
 RESULTS, PICTURES, PAGE = DOCS.parent / "benchmarks/results/atlas.json", DOCS / "pictures/atlas", DOCS / "atlas.md"
 INTRODUCTION = """
 ```
-polhode atlas --quick              # about a minute on two cores: every family, fewer values of what is swept
-polhode atlas -o atlas             # the whole: many minutes (25 beside other work)
+polhode atlas --quick              # under a minute on two cores: every family, fewer values of what is swept
+polhode atlas -o atlas             # the whole: some minutes on two cores
 polhode atlas racket damping       # some families
 ```
 
@@ -30,8 +30,9 @@ a tolerance of 1e-14, and `solve` an accuracy of 1e-9, unless the tolerance is s
 [charts.md](charts.md) has both axes.
 
 **Failures are points.** The work is done in processes that may die without harm. A run that bursts, returns NaN, raises, crashes or
-hangs stands in the table with the reason, and the others go on. A run that does not end in its time (`--limit` seconds of CPU
-for each) is left out: that says nothing about the method but what it costs.
+hangs stands in the table with the reason, and the others go on. A run that does not end in its time (`--limit`, 60 seconds of
+CPU for each), or would not, judged from shorter ones by a power law, is left out: that says nothing about the method but what
+it costs. What every row cost stands in the results; dear families go first, so that all cores end together.
 
 **Files.** The folder (`-o`) gets a picture and a `.json` with every point of a family, the matrix, `atlas.json` with machine and
 versions, and this page as `atlas.md`. Families that are finished there are kept when the command is run again, so a long run

@@ -13,7 +13,7 @@ from polhode.atlas import FAMILIES, atlas, claims, scenes
 from polhode.atlas import atlas as atlas_function
 from polhode.atlas.entrants import entrants
 from polhode.atlas.families import step
-from polhode.atlas.family import LEVELS, Point, from_json, measure_cases, to_json
+from polhode.atlas.family import LEVELS, Point, from_json, measure_cases, to_json, too_long
 from polhode.atlas.jobs import Job, find_families, rows_of
 from polhode.atlas.page import page
 from polhode.atlas.results import FamilyResult, read_family, write_family
@@ -65,6 +65,28 @@ def test_the_longest_step_is_the_one_before_the_first_that_fails(monkeypatch):
     assert step.limits(WHO["rk4"], (0.2, 0.4, 0.52), False, 1.0)["right"] == pytest.approx(2 * math.pi / 64, rel=0.05)
 
 
+@pytest.mark.parametrize("last", [1, 3, 511, 512, 513, 725, 2048, 4095, 4096, 10**9])
+def test_the_longest_step_is_found_without_trying_all(last):
+    counts, tried = step.steps_a_turn(False), []
+
+    def held(count):
+        tried.append(count)
+        return {"right"} if count >= last else set()
+
+    by_all = [2 * math.pi / count for count in counts if count >= last]
+    assert step._longest(counts, held) == {"right": max(by_all, default=0.0), "kept": 0.0, "bounded": 0.0}
+    assert len(tried) == len(set(tried)) and sum(tried) < sum(counts)   # nothing twice, and less work
+
+
+def test_what_takes_too_long_is_foreseen_by_a_power_law():
+    assert too_long([], 1e3, 1.0) == too_long([(1e2, 0.5)], 1e3, 1.0) == ""   # nothing, one alone: no law yet
+    assert too_long([(1e2, 0.01), (1e3, 0.2)], 1e4, 3.0) == "would take about 4 s"   # 0.2 * 20
+    assert too_long([(1e2, 0.01), (1e3, 0.2)], 1e4, 3.5) == ""   # nearly in time: it is tried
+    assert too_long([(1e2, 0.01), (1e3, 0.05)], 1e4, 1e-3) == ""   # too short to go by
+    assert too_long([(1e2, 0.4), (1e3, 0.2)], 1e4, 0.1) == "would take about 0 s"
+    assert "the one before" in too_long([(1e2, math.inf)], 1e3, 1.0)
+
+
 def test_unnormalised_runge_kutta_falls_as_the_fifth_power():
     from polhode.atlas.families.norm import rk4_without_normalising
 
@@ -102,7 +124,7 @@ def test_crashes_hangs_and_faults_cost_one_row_each():
     assert whys["spin"].startswith("hung") and rows["spin"][-1].cpu >= 1.0   # ten times the limit of a run
     assert whys["fault"] == "ZeroDivisionError: float division by zero"
     # What they said before stays, and the verdict is what happened.
-    result = FamilyResult(BY_NAME["norm"], True, 2.0, {"rk4": rows["crash"], "rk45": rows["hang"]}, 0.0)
+    result = FamilyResult(BY_NAME["norm"], True, 2.0, {"rk4": rows["crash"], "rk45": rows["hang"]})
     assert len(rows["crash"]) == 2
     assert (result.verdict("rk4").level, result.verdict("rk4").text) == ("fails", "crashed")
     assert (result.verdict("rk45").level, result.verdict("rk45").text) == ("fails", "hung")
@@ -188,16 +210,16 @@ def test_unknown_families_and_folders_are_refused(tmp_path):
 
 def test_a_broken_claim_is_found():
     family = BY_NAME["near"]
-    result = FamilyResult(family, True, 2.0, {"exact": [Point(0.0, "sphere", {"error": 1e-3})]}, 0.0)
+    result = FamilyResult(family, True, 2.0, {"exact": [Point(0.0, "sphere", {"error": 1e-3})]})
     (sentence,) = [s for s in claims.find_broken([result]) if s.startswith("exact")]
     assert "near: degrades (1e-3), where it should be holds" in sentence
-    good = FamilyResult(family, True, 2.0, {"exact": [Point(0.0, "sphere", {"error": 1e-15})]}, 0.0)
+    good = FamilyResult(family, True, 2.0, {"exact": [Point(0.0, "sphere", {"error": 1e-15})]})
     assert not [s for s in claims.find_broken([good]) if s.startswith("exact")]
 
 
 def test_a_record_that_promises_too_much_is_found():
     rows = {"dmv2": [Point(1e2, "", {"error": 2.0, "energy": 1e-6, "angular_momentum": 1e-14})]}
-    (sentence,) = [s for s in claims.find_broken([FamilyResult(BY_NAME["long"], True, 2.0, rows, 0.0)]) if "dmv2" in s]
+    (sentence,) = [s for s in claims.find_broken([FamilyResult(BY_NAME["long"], True, 2.0, rows)]) if "dmv2" in s]
     assert "keeps energy by its record, which moved by 1.0e-06" in sentence
 
 

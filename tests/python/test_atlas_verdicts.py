@@ -215,7 +215,7 @@ def test_cases_of_scenes_that_are_stored_take_their_truth():
 
 def test_a_stated_error_that_is_too_small_is_found():
     def found(**values):
-        result = FamilyResult(BY_NAME["near"], True, 2.0, {"solve": [Point(0.1, "sphere", values)]}, 0.0)
+        result = FamilyResult(BY_NAME["near"], True, 2.0, {"solve": [Point(0.1, "sphere", values)]})
         return [s for s in claims.find_broken([result]) if "states" in s]
 
     assert found(error=2e-12, stated=1e-12) == ["solve, near, at 0.1 sphere: states an error of 1.0e-12, which is 2.0e-12"]

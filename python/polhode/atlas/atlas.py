@@ -19,7 +19,7 @@ from .page import page
 from .results import FamilyResult, document, read_family, write_family
 from .work import work
 
-LIMIT = {True: 2.0, False: 15.0}   # seconds of CPU a point: quick, whole
+LIMIT = {True: 2.0, False: 60.0}   # seconds of CPU a point: quick, whole
 
 
 def _folder(folder: str | os.PathLike[str]) -> pathlib.Path:
@@ -90,24 +90,27 @@ def atlas(
         raise InvalidInput(f"limit: must be positive, got {seconds:g}")
     output = _folder(folder)
     results: dict[str, FamilyResult] = {}
+    files: list[str] = []
+
+    def there(result: FamilyResult) -> None:
+        results[result.family.name] = result
+        if draw:   # while others are measured still
+            files.extend(path.name for path in pictures.draw_family(result, output))
+        show(result)
+
     for family in wanted:
         kept = None if fresh else read_family(output / f"{family.name}.json", (quick, seconds))
         if kept is not None:
-            results[family.name] = kept
-            show(kept)
-    _measure([f for f in wanted if f.name not in results], results, output, quick, seconds, processes, progress, show)
+            there(kept)
+    _measure([f for f in wanted if f.name not in results], there, output, quick, seconds, processes, progress)
 
     ordered = [results[family.name] for family in wanted]
     # The matrix is of all that the folder holds.
-    there = [results.get(f.name) or read_family(output / f"{f.name}.json", (quick, seconds)) for f in FAMILIES]
-    everything = [result for result in there if result is not None]
-    files: list[str] = []
+    held = [results.get(f.name) or read_family(output / f"{f.name}.json", (quick, seconds)) for f in FAMILIES]
+    everything = [result for result in held if result is not None]
     if draw:
-        for index, result in enumerate(ordered):
-            progress(index, len(ordered) + 1, f"picture: {result.family.name}")
-            files += [path.name for path in pictures.draw_family(result, output)]
         files += [path.name for path in pictures.draw_matrix(everything, output)]
-    files += [f"{family.name}.json" for family in wanted] + ["atlas.json", "atlas.md"]
+    files = sorted(files) + [f"{family.name}.json" for family in wanted] + ["atlas.json", "atlas.md"]
     content = document(everything, time.perf_counter() - start, find_broken(everything), files)
     (output / "atlas.json").write_text(json.dumps(content, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     (output / "atlas.md").write_text(page(content), encoding="utf-8")
@@ -115,11 +118,12 @@ def atlas(
 
 
 def _measure(
-    families: list[Family], results: dict[str, FamilyResult], output: pathlib.Path, quick: bool, limit: float,
-    processes: int, progress: Callable[[int, int, str], object], show: Callable[[FamilyResult], object],
+    families: list[Family], there: Callable[[FamilyResult], object], output: pathlib.Path, quick: bool, limit: float,
+    processes: int, progress: Callable[[int, int, str], object],
 ) -> None:
     """Do the rows of all families; each family is written when its last row is in."""
-    jobs = [Job(f.name, e.name, quick, limit) for f in families for e in rows_of(f)]
+    dear_first = sorted(families, key=lambda f: -f.cost)   # so that all processes end together
+    jobs = [Job(f.name, e.name, quick, limit) for f in dear_first for e in rows_of(f)]
     by_name = {f.name: f for f in families}
     order = {f.name: [e.name for e in rows_of(f)] for f in families}
     rows: dict[str, dict[str, list[Point]]] = {f.name: {} for f in families}
@@ -132,12 +136,9 @@ def _measure(
         found = rows[job.family]
         found[job.entrant] = points
         if len(found) == len(order[job.family]):
-            spent = sum(float(p.values.get("seconds") or 0.0) for ps in found.values() for p in ps)
             ordered = {name: found[name] for name in order[job.family]}
-            result = FamilyResult(by_name[job.family], quick, limit, ordered, spent,
-                                  made=time.strftime("%Y-%m-%d %H:%M"))
-            results[job.family] = result
+            result = FamilyResult(by_name[job.family], quick, limit, ordered, made=time.strftime("%Y-%m-%d %H:%M"))
             write_family(result, output)
-            show(result)
+            there(result)
 
     work(jobs, done, processes=processes)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import math
+import time
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
@@ -14,6 +15,8 @@ from .run import Failed, Refused, run, values_of
 
 LEVELS = ("holds", "degrades", "fails", "unknown", "none")
 LOST = 0.1   # rad: an attitude off by more is lost
+SURE = 1.2   # times the limit: what is foreseen to take longer is not tried
+CLEAR = 0.1  # seconds: from less no time is foreseen
 
 
 @dataclass
@@ -105,12 +108,29 @@ class Family:
     y_limits: tuple[float, float] | None = None
     tick_names: tuple[tuple[float, str], ...] = ()   # values that are called something else
     failed_below: bool = False   # a run that broke off is drawn at the bottom: where more is better
+    cost: float = 1.0            # seconds of CPU that the whole sweep takes, about: dear ones are begun first
     summary: str = ""            # what the column of the matrix is headed by, in two lines at most
 
 
 def fixed_only(entrant: Entrant) -> str:
     """For families about the length of a step."""
     return "" if entrant.fixed else "chooses its own steps"
+
+
+def too_long(clock: list[tuple[float, float]], x: float, limit: float) -> str:
+    """Why a run that costs more than those before it need not be tried, or "".
+
+    `clock` has (x, CPU seconds) of those; a power law through the last two foresees this one.
+    """
+    if not clock or clock[-1][1] < CLEAR:
+        return ""
+    if math.isinf(clock[-1][1]):
+        return "the one before was not done in time"
+    if len(clock) < 2:
+        return ""
+    (x0, c0), (x1, c1) = clock[-2:]
+    seconds = c1 * (x / x1) ** max(0.0, math.log(c1 / max(c0, 1e-4)) / math.log(x1 / x0))
+    return f"would take about {seconds:.0f} s" if seconds > SURE * limit else ""
 
 
 def measure_cases(
@@ -121,21 +141,23 @@ def measure_cases(
     setting: Callable[[Case], dict[str, float]] | None = None,
     more: Callable[[Any, Any], dict[str, float]] | None = None,
 ) -> Iterator[Point]:
-    """Run one case after another, each against its truth; where one was too long, those that grow are left out."""
-    late: set[str] = set()
+    """Run one case after another, each against its truth; of those that grow, what would be too long is left out."""
+    clocks: dict[str, list[tuple[float, float]]] = {}
     for case in cases:
-        point = Point(case.x, case.series)
-        if case.series in late and case.grows:
-            point.status, point.why = "left out", "the one before was not done in time"
+        point, clock = Point(case.x, case.series), clocks.setdefault(case.series, [])
+        if case.grows and (why := too_long(clock, case.x, limit)):
+            point.status, point.why = "left out", why
             yield point
             continue
         options = setting(case) if setting else entrant.setting(step=turn_of(case.scene) / PER_TURN)
+        begin = time.thread_time()
         with point.trying():
             truth = truth_of(family, case)
+            start = time.thread_time()
             motion = run(entrant, case.scene, options, limit)
-            point.values = values_of(motion, truth) | (more(motion, truth) if more else {})
-        if point.status == "left out":
-            late.add(case.series)
+            point.values = values_of(motion, truth) | {"took": time.thread_time() - start}
+            point.values |= more(motion, truth) if more else {}
+        clock.append((case.x, math.inf if point.status == "left out" else time.thread_time() - begin))
         yield point
 
 

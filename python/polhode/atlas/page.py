@@ -26,6 +26,12 @@ def _listed(content: dict[str, Any], family: str, level: str) -> str:
     return ", ".join(names) if names else "nobody"
 
 
+def costs(seconds: dict[str, float]) -> str:
+    """What a family's rows took, and the dearest three."""
+    dear = [f"{name} {spent:.0f} s" for name, spent in seconds.items() if spent >= 1][:3]
+    return f"{sum(seconds.values()):.0f} s of CPU{', of them ' if dear else ''}{', '.join(dear)}"
+
+
 def page(content: dict[str, Any], pictures: str = "", introduction: str = "") -> str:
     """Return Markdown.
 
@@ -44,13 +50,13 @@ def page(content: dict[str, Any], pictures: str = "", introduction: str = "") ->
     said = "; ".join(f"{name}: {family['number']}" for name, family in content["families"].items())
     lines += [f"![Methods against families: what holds, what degrades, what fails]({pictures}matrix.svg)", "",
               f"`polhode atlas{whole}`, polhode {content['polhode']['version']}, {machine['processor']}, "
-              f"{content['made']}. ● holds, ◐ degrades, ✕ fails, ? too slow to be known, empty: does not apply.",
+              f"{content['made']}; {content['cpu_seconds']:.0f} s of CPU time. ● holds, ◐ degrades, ✕ fails, ? too slow to be known, empty: does not apply.",
               "", *_matrix(content), "", f"What the cells say: {said}.", ""]
     for name, family in content["families"].items():
         lines += [f"## {name}", "", f"**{family['title']}.** {family['about']}", "",
                   f"![{family['title']}]({pictures}{name}.svg)", "",
                   f"Swept: {family['sweeps']}. Truth: {family['truth']}. "
-                  f"`polhode atlas {name}{whole}` makes it again.", "",
+                  f"`polhode atlas {name}{whole}` makes it again: {costs(family['cpu_seconds'])}.", "",
                   "| | threshold | who |", "|---|---|---|",
                   f"| ● holds | {_escaped(family['holds'])} | {_listed(content, name, 'holds')} |",
                   f"| ◐ degrades | {_escaped(family['degrades'])} | {_listed(content, name, 'degrades')} |",

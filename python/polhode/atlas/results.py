@@ -15,7 +15,7 @@ from .entrants import KINDS, WITNESS, entrants
 from .family import Family, Point, Verdict, from_json, to_json
 from .jobs import find_family, rows_of
 
-FORMAT = "polhode atlas 1"
+FORMAT = "polhode atlas 2"
 
 
 @dataclass
@@ -26,9 +26,14 @@ class FamilyResult:
     quick: bool
     limit: float              # seconds of CPU that a run might take
     rows: dict[str, list[Point]]
-    seconds: float            # that the answers took, inside the compiled core
     kept: bool = False        # read from an earlier run
     made: str = ""            # when
+
+    @property
+    def cpu(self) -> dict[str, float]:
+        """Seconds of CPU that each row took, the dearest first."""
+        spent = {name: round(sum(p.cpu for p in points), 2) for name, points in self.rows.items()}
+        return dict(sorted(spent.items(), key=lambda item: -item[1]))
 
     def verdict(self, entrant: str) -> Verdict:
         """The cell of the matrix; one without points is empty, and says why."""
@@ -56,7 +61,7 @@ def family_document(result: FamilyResult) -> dict[str, Any]:
     return {
         **signature(family, result.quick, result.limit), "family": family.name, "title": family.title,
         "truth": family.truth,
-        "value": family.y, "value_means": family.y_label, "made": result.made, "seconds": result.seconds,
+        "value": family.y, "value_means": family.y_label, "made": result.made, "cpu_seconds": result.cpu,
         "machine": machine(), "versions": versions(), "build": build_info(),
         "verdicts": {name: _verdict(result.verdict(name)) for name in result.rows},
         "points": {name: [to_json(p) for p in points] for name, points in result.rows.items()},
@@ -76,7 +81,7 @@ def read_family(path: pathlib.Path, settings: tuple[bool, float] | None = None) 
         if settings is not None and any(content.get(k) != v for k, v in signature(family, *settings).items()):
             return None
         rows = {name: [from_json(p) for p in points] for name, points in content["points"].items()}
-        return FamilyResult(family, content["quick"], content["limit"], rows, content["seconds"], True, content["made"])
+        return FamilyResult(family, content["quick"], content["limit"], rows, True, content["made"])
     except (OSError, ValueError, KeyError, TypeError):
         return None
 
@@ -103,10 +108,10 @@ def document(results: list[FamilyResult], seconds: float, broken: list[str], fil
     kinds = {e.name: e.kind for e in [*entrants(), WITNESS]}
     return {
         "format": FORMAT, "made": time.strftime("%Y-%m-%d %H:%M"), "quick": all(r.quick for r in results),
-        "seconds": seconds, "polhode": build_info(), "machine": machine(), "versions": versions(),
+        "seconds": seconds, "cpu_seconds": round(sum(sum(r.cpu.values()) for r in results), 1), "polhode": build_info(), "machine": machine(), "versions": versions(),
         "families": {r.family.name: {"title": r.family.title, "about": r.family.about, "number": r.family.number,
                                      "sweeps": r.family.sweeps, "truth": r.family.truth, "holds": r.family.holds,
-                                     "degrades": r.family.degrades, "seconds": r.seconds, "kept": r.kept} for r in results},
+                                     "degrades": r.family.degrades, "cpu_seconds": r.cpu, "kept": r.kept} for r in results},
         "matrix": {name: {"group": KINDS[kinds[name]], **{f: _verdict(v) for f, v in row.items()}}
                    for name, row in matrix(results).items()},
         "broken_claims": broken, "files": files,

@@ -63,8 +63,8 @@ def run(entrant: Entrant, scene: Scene, setting: dict[str, float], limit: float,
 
 
 def values_of(motion: Motion, truth: Truth | None) -> dict[str, Any]:
-    """What is written down of a run: errors against the truth and as stated, drift, steps, wall seconds."""
-    values: dict[str, Any] = {"steps": motion.stats["steps"], "seconds": motion.stats["seconds"]}
+    """What is written down of a run: errors against the truth and as stated, drift, steps."""
+    values: dict[str, Any] = {"steps": motion.stats["steps"]}
     if truth is not None:
         assert motion.omega is not None and motion.attitude is not None
         errors = compute_errors(motion.omega, motion.attitude, truth)

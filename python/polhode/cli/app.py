@@ -268,7 +268,7 @@ def atlas(
     fresh: Annotated[bool, typer.Option("--fresh", help="Run finished families again.")] = False,
     processes: Annotated[int, typer.Option(help="How many work at a time.")] = 2,
     limit: Annotated[
-        float | None, typer.Option(help="Seconds of CPU a single run may take; 15, quick 2.")] = None,
+        float | None, typer.Option(help="Seconds of CPU a single run may take; 60, quick 2.")] = None,
     as_json: Json = False,
 ) -> int:
     """Chart where methods fail.

@@ -21,10 +21,12 @@ STYLES = {"holds": "blue", "degrades": "yellow", "fails": "red", "unknown": "dim
 def family(result: FamilyResult) -> None:
     """The numbers of one family: a row an entrant, a column a value of what is swept."""
     from ..atlas.family import Point, to_short
+    from ..atlas.page import costs
 
     out, what = show.console(), result.family
     out.print(Text(f"\n{what.title}{' (kept from ' + result.made + ')' if result.kept else ''}"))
     out.print(Text(f"swept: {what.sweeps}\nholds: {what.holds}; degrades: {what.degrades}; truth: {what.truth}"))
+    out.print(Text(f"took {costs(result.cpu)}"))
     for series, title in what.series:
         def of(points: list[Point], series: str = series) -> dict[float, Point]:
             return {p.x: p for p in points if p.series == series and not math.isnan(p.x) and p.status != "refused"}
@@ -68,7 +70,7 @@ def end(content: dict[str, Any], folder: pathlib.Path) -> None:
     """Say where the files are, and which of polhode's own claims did not hold."""
     out = show.console()
     count = len(content["families"])
-    out.print(Text(f"\n{count} famil{'ies' if count > 1 else 'y'} in {content['seconds']:.0f} s on "
+    out.print(Text(f"\n{count} famil{'ies' if count > 1 else 'y'} in {content['seconds']:.0f} s ({content['cpu_seconds']:.0f} s of CPU) on "
                    f"{content['machine']['processor']}; in {folder}:"))
     out.print(Text("  ".join(name for name in content["files"] if not name.endswith(".svg"))))
     for sentence in content["broken_claims"]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Iterator
 
 import numpy as np
@@ -12,7 +13,7 @@ from .. import scenes
 from ..case import stored
 from ..entrants import Entrant
 from ..errors import attitude_errors
-from ..family import LOST, Family, Point, Verdict, answered, nobody, to_short
+from ..family import LOST, Family, Point, Verdict, answered, nobody, to_short, too_long
 from ..run import run
 
 TOLERANCES = tuple(10.0**-k for k in range(4, 17))
@@ -27,17 +28,24 @@ def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
     values = STEPS if entrant.fixed else TOLERANCES
     if entrant.kind == "solve":
         values = (1e-3, 1e-6, 1e-9)
+    clock: list[tuple[float, float]] = []
     for value in [v for v in values if v >= 1e-3 or not entrant.fixed][::2] if quick else values:
         point = Point(value, series)
+        if entrant.fixed and (why := too_long(clock, 1 / value, limit)):
+            point.status, point.why = "left out", why
+            yield point
+            return
+        begin = time.thread_time()
         with point.trying():
             motion = run(entrant, scene, entrant.setting(step=value, rtol=value, accuracy=value), limit, True)
             n = motion.t.size
             known = Truth(truth.omega[:n], truth.attitude[:n], "stored", "", 0.0, None)
             off = np.flatnonzero(attitude_errors(motion, known) > LOST)
             point.values = {"horizon": float(motion.t[off[0]] if off.size else motion.t[-1]),
-                            "steps": motion.stats["steps"], "seconds": motion.stats["seconds"]}
+                            "steps": motion.stats["steps"]}
             if math.isfinite(motion.error):
                 point.values |= {"stated": motion.error, "claims": float(motion.success), "lost": float(off.size > 0)}
+        clock.append((1 / value, time.thread_time() - begin))
         yield point
         if point.status in ("refused", "left out"):   # a finer one would take longer
             return
@@ -68,7 +76,7 @@ FAMILY = Family(
     number="until the attitude is lost, at the best setting",
     about="Neighbouring motions part in bursts, so each digit of the tolerance buys some more seconds and no "
           "more. Past the horizon of float64 every answer is a guess, whatever it costs.",
-    measure=measure, judge=judge, x_label="tolerance, or step [s]", x_inverted=True, y="horizon",
+    measure=measure, judge=judge, cost=18, x_label="tolerance, or step [s]", x_inverted=True, y="horizon",
     y_label="time until the attitude is lost [s]", y_log=False, y_limits=(0.0, 300.0),
     series=(("tolerance", "against the tolerance"), ("step", "against the step")), failed_below=True,
     lines=((180.0, "holds"), (60.0, "degrades")),

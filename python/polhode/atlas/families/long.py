@@ -45,7 +45,7 @@ FAMILY = Family(
     about="Energy and angular momentum can be kept to rounding for ever while the phase runs away: conserving "
           "is not being right. What grows as the square of the time, as the time, or not at all, is the slope "
           "in this picture.",
-    measure=measure, judge=judge, x_label="turns", y="error", y_label="error of the attitude [rad]",
+    measure=measure, judge=judge, cost=120, x_label="turns", y="error", y_label="error of the attitude [rad]",
     also=(("energy", "energy moved by, relative", (1e-16, 10.0)),
           ("angular_momentum", "angular momentum in space moved by, relative", (1e-16, 10.0))),
     lines=((1e-7, "holds"), (LOST, "lost")), y_limits=(1e-16, 10.0),

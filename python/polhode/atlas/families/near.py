@@ -34,7 +34,7 @@ FAMILY = Family(
     about="Closed forms divide by differences of moments and steppers do not, so this is where formulas break: "
           "a body that is all but a sphere, or all but symmetric. Nothing may happen as the difference goes to "
           "zero, nor at zero itself.",
-    measure=measure, judge=judge, x_label="difference of moments d", x_inverted=True, x_scale="list",
+    measure=measure, judge=judge, cost=4, x_label="difference of moments d", x_inverted=True, x_scale="list",
     y="error", y_label="error after 1000 turns [rad]",
     series=(("sphere", "moments 1, 1 + d, 1 + 2d"), ("symmetric", "moments 1, 1 + d, 0.5")),
     lines=((1e-9, "holds"), (LOST, "lost")), y_limits=(1e-16, 10.0),

@@ -60,6 +60,6 @@ FAMILY = Family(
     about="Spun a little faster than the critical rate a top stands upright, a little slower it falls, however "
           "small the difference. A method's own error acts like a torque and moves the critical rate, so it may "
           "let a sleeping top fall or keep a falling one up.",
-    measure=measure, judge=judge, x_label="excess over the critical rate", x_inverted=True, x_scale="list",
+    measure=measure, judge=judge, cost=61, x_label="excess over the critical rate", x_inverted=True, x_scale="list",
     y="tilt", y_label="greatest tilt within 200 s [rad]", y_limits=(3e-7, 10.0),
 )

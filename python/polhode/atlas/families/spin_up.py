@@ -7,10 +7,15 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ...charts.truth import Truth
+from ...motion import Motion
 from .. import scenes
 from ..case import Case, truth_of
 from ..entrants import PER_TURN, Entrant
 from ..family import LOST, Family, Point, Verdict, answered, measure_cases, nobody, to_short
+
+
+BRIEF = 1e-3   # seconds: less says nothing about a forecast
 
 
 def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
@@ -20,7 +25,13 @@ def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
         return entrant.setting(step=2 * math.pi / fastest / PER_TURN)
 
     spans = scenes.SPIN_UP[:2] if quick else scenes.SPIN_UP
-    yield from measure_cases("spin-up", map(scenes.spin_up, spans), entrant, limit, setting)
+    yield from measure_cases("spin-up", map(scenes.spin_up, spans), entrant, limit, setting, foreseen)
+
+
+def foreseen(motion: Motion, truth: Truth) -> dict[str, float]:
+    """What a plan expected of the time."""
+    seconds = motion.plan.predicted_seconds
+    return {"foreseen": seconds} if math.isfinite(seconds) else {}
 
 
 def judge(points: list[Point]) -> Verdict:
@@ -29,7 +40,12 @@ def judge(points: list[Point]) -> Verdict:
         return none
     worst = max(p.get("error") for p in answered(points))
     level = "holds" if worst <= 1e-6 else "degrades" if worst <= LOST else "fails"
-    return Verdict(level, to_short(worst) if worst <= LOST else "lost", worst)
+    longest = max(p.x for p in answered(points))
+    why = f"up to {to_short(longest)} s" if any(p.status == "left out" for p in points) else ""
+    times = [p.get("foreseen") / p.get("took") for p in answered(points) if p.values.get("took", 0.0) > BRIEF]
+    if times and not math.isnan(min(times)):
+        why = f"its plan foresaw {min(times):.1f} to {max(times):.1f} times the time it took"
+    return Verdict(level, to_short(worst) if worst <= LOST else "lost", worst, why)
 
 
 FAMILY = Family(
@@ -42,6 +58,6 @@ FAMILY = Family(
     about="A torque that stays in the body spins it up, so turns grow as the square of the time and nearly all "
           "the work is at the end. A step that was fine at the start is wrong by then; fixed steps here are "
           "chosen for the last turn.",
-    measure=measure, judge=judge, x_label="time it burns [s]", y="error", y_label="largest error [rad]",
+    measure=measure, judge=judge, cost=165, x_label="time it burns [s]", y="error", y_label="largest error [rad]",
     lines=((1e-6, "holds"), (LOST, "lost")), y_limits=(1e-16, 10.0),
 )

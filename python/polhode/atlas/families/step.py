@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import bisect
+import functools
 import math
-import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
@@ -23,6 +24,7 @@ NEEDLES = (1e-1, 1e-2, 1e-3, 1e-4)
 TURNS, TURNS_RIGHT = 100, 10
 GOOD, FAIR = (2 * math.pi / count * (1 - 1e-9) for count in (64, 512))   # steps, as angles
 PASSES = ("bounded", "kept", "right")
+MODERATE = 512   # steps a turn, where the search begins
 
 
 def bodies(quick: bool) -> list[tuple[float, tuple[float, float, float]]]:
@@ -69,26 +71,38 @@ def limits(entrant: Entrant, moments: tuple[float, float, float], quick: bool, l
         times = 2 * math.pi * np.arange(1, TURNS + 1)   # whole turns, which are ends of steps
         scene = Scene(inertia=moments, omega=omega, times=times)
         truth = Truth(*polhode.FreeMotion(moments, omega).at(times), "closed form", "", 0.0, None)
-        best: dict[str, float] = dict.fromkeys(PASSES, 0.0)
-        going = set(PASSES)
-        for count in steps_a_turn(quick):
-            step = 2 * math.pi / count
-            going &= passes(entrant, scene, truth, step, limit)
-            best |= dict.fromkeys(going, step)
-            if not going:
-                break
+        best = _longest(steps_a_turn(quick), lambda count: passes(entrant, scene, truth, 2 * math.pi / count, limit))
         found = {name: min(found[name], best[name]) for name in PASSES}
     return found
+
+
+def _longest(counts: list[int], held: Callable[[int], set[str]]) -> dict[str, float]:
+    """The longest step before the first that fails, for each of the three; `counts` falls.
+
+    From moderate steps on to longer ones until all fail. What fails at once is looked for among shorter steps, each half
+    of those that are left: nothing fails with steps shorter than some that pass.
+    """
+    held = functools.cache(held)
+    first = next(i for i, count in enumerate(counts) if count <= MODERATE)
+    best, going = dict.fromkeys(PASSES, 0.0), set(PASSES)
+    for count in counts[first:]:
+        going &= held(count)
+        best |= dict.fromkeys(going, 2 * math.pi / count)
+        if not going:
+            break
+    for name in PASSES:
+        if not best[name]:
+            right = bisect.bisect_left(range(first), True, key=lambda i: name not in held(counts[i]))
+            best[name] = 2 * math.pi / counts[right - 1] if right else 0.0
+    return best
 
 
 def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
     """The longest step for every body."""
     for ratio, moments in bodies(quick):
         point = Point(ratio)
-        begin = time.thread_time()
         with point.trying("left out"):
             point.values = dict(limits(entrant, moments, quick, limit))
-            point.values["seconds"] = time.thread_time() - begin
         yield point
 
 
@@ -112,7 +126,8 @@ FAMILY = Family(
     about="No body makes the free equations stiff, since no moment differs from another by more than the third: "
           "what a step may be is an angle, h times the rate. Bounded energy says little about being right, so "
           "the attitude decides.",
-    measure=measure, judge=judge, takes=fixed_only, x_label="smallest moment over the middle one", x_inverted=True,
+    measure=measure, judge=judge, cost=12, takes=fixed_only,
+    x_label="smallest moment over the middle one", x_inverted=True,
     y="right", y_label="longest step h |omega| [rad]", failed_below=True,
     also=(("kept", "longest step with energy and |L| within 10 % [rad]", (1e-3, 10.0)),), y_limits=(1e-3, 10.0),
     lines=((GOOD, "holds"), (FAIR, "degrades")),
