@@ -34,11 +34,6 @@ py::dict describe_facts(const Facts& facts) {
   return all;
 }
 
-py::tuple describe_plan(const Plan& plan) {
-  return py::make_tuple(plan.model, plan.method, plan.state, plan.accuracy, plan.certify, plan.rtol, plan.predicted_error,
-                        plan.predicted_seconds);
-}
-
 py::dict make_report(const Scene& scene, const py::object& accuracy, const py::object& method, bool certify,
                      const std::string& formulation, const Factors* factors) {
   SolveOptions options = to_wishes(accuracy, method, certify, formulation);
@@ -58,6 +53,15 @@ py::dict make_report(const Scene& scene, const py::object& accuracy, const py::o
 }
 
 }  // namespace
+
+py::tuple describe_plan(const Plan& plan) {
+  py::list pieces;
+  for (const PiecePlan& one : plan.pieces) {
+    pieces.append(py::make_tuple(one.begin, one.end, py::tuple(py::cast(one.torques)), one.model, one.method, one.turns, one.predicted_seconds));
+  }
+  return py::make_tuple(plan.model, plan.method, plan.state, plan.accuracy, plan.certify, plan.rtol, plan.predicted_error,
+                        plan.predicted_seconds, py::tuple(pieces));
+}
 
 std::optional<double> to_optional(const py::object& value, const char* name) {
   if (value.is_none()) return std::nullopt;

@@ -17,6 +17,9 @@ struct Factors {
   CostFactors by_name;
 };
 
+/// A plan's parts, in the order of the constructor of polhode.Plan.
+py::tuple describe_plan(const Plan& plan);
+
 /// What a plan is made of, from Python.
 SolveOptions to_wishes(const py::object& accuracy, const py::object& method, bool certify, const std::string& formulation);
 

@@ -117,11 +117,7 @@ void bind_solve(py::module_& m) {
       .def_property_readonly("message", [](const Answer& answer) { return answer.motion.message; })
       .def_property_readonly("stats", [](const Answer& answer) { return describe_stats(answer.motion); })
       .def_property_readonly("events", [](const Answer& answer) { return describe_events(answer.motion); })
-      .def_property_readonly("plan", [](const Answer& answer) {
-        const Plan& plan = answer.motion.plan;
-        return py::make_tuple(plan.model, plan.method, plan.state, plan.accuracy, plan.certify, plan.rtol,
-                              plan.predicted_error, plan.predicted_seconds);
-      })
+      .def_property_readonly("plan", [](const Answer& answer) { return describe_plan(answer.motion.plan); })
       .def_property_readonly("error", [](const Answer& answer) { return answer.motion.error; })
       .def_property_readonly("error_kind", [](const Answer& answer) { return answer.motion.error_kind; })
       .def_property_readonly("asked", [](const Answer& answer) { return answer.motion.asked; })

@@ -170,6 +170,11 @@ void bind_one<torques::Custom>(py::module_& m) {
   bind_custom_torque(m);
 }
 
+template <>
+void bind_one<torques::During>(py::module_& m) {
+  bind_during(m);
+}
+
 py::dict describe(const TorqueRecord& record) {
   static constexpr const char* kinds[] = {"real", "vector", "matrix", "choice"};
   py::list parameters;
@@ -193,9 +198,9 @@ py::dict describe(const TorqueRecord& record) {
   return dict;
 }
 
-template <class Visitor>
+template <class List = AnyTorque, class Visitor>
 void for_each_torque(Visitor&& visitor) {
-  [&]<class... T>(std::variant<T...>*) { (visitor.template operator()<T>(), ...); }(static_cast<AnyTorque*>(nullptr));
+  [&]<class... T>(std::variant<T...>*) { (visitor.template operator()<T>(), ...); }(static_cast<List*>(nullptr));
 }
 
 }  // namespace
@@ -221,7 +226,7 @@ void bind_torque(py::module_& m) {
   for_each_torque([&]<class T>() { bind_one<T>(torques); });
   m.def("torque_records", [] {
     py::list list;
-    for_each_torque([&]<class T>() { list.append(describe(T::record())); });
+    for_each_torque<LastingTorque>([&]<class T>() { list.append(describe(T::record())); });
     return list;
   }, "The list of torques: name, scene-file key, doc, source, parameters.");
 }

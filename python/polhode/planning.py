@@ -23,6 +23,18 @@ class Candidate(NamedTuple):
     rtol: float                 # of the run that would be returned; 0 for exact models
 
 
+class Piece(NamedTuple):
+    """A stretch of the span in which the same torques act, and how it is answered."""
+
+    begin: float                # [s]
+    end: float                  # [s]
+    torques: tuple[str, ...]    # the names of those that act
+    model: str                  # a closed form's name, or "euler" or "lagrangian"
+    method: str                 # "exact", or a name of `methods()`
+    turns: float                # expected
+    predicted_seconds: float    # with every run of the certificate
+
+
 class Plan:
     """How a scene is solved to an accuracy; prints as a table.
 
@@ -30,9 +42,12 @@ class Plan:
     ----------
     scene : Scene
     model : str
-        The closed form's name, such as "triaxial" or "heavy_top", or "euler" or "lagrangian" where equations are stepped.
+        The closed form's name, such as "triaxial" or "heavy_top", or "euler" or "lagrangian" where equations are stepped;
+        "pieces" where torques begin or cease to act within the span.
     method : str
-        "exact", or a name of `methods()`.
+        "exact", or a name of `methods()`; of pieces, the one that has most to do.
+    pieces : tuple of Piece
+        What each piece of the span is answered by, in the order of time; empty where the span is not cut.
     state : str
         What is carried along.
     accuracy : float
@@ -61,8 +76,10 @@ class Plan:
         self.rtol: float
         self.predicted_error: float
         self.predicted_seconds: float
+        self.pieces: tuple[Piece, ...]
         (self.model, self.method, self.state, self.accuracy, self.certify, self.rtol, self.predicted_error,
-         self.predicted_seconds) = parts
+         self.predicted_seconds, pieces) = parts
+        self.pieces = tuple(Piece(*one) for one in pieces)
         self.wishes = wishes
 
     @functools.cached_property
@@ -103,6 +120,7 @@ class Plan:
             "scene": self.scene.name, "accuracy": number(self.accuracy), "model": self.model, "method": self.method,
             "state": self.state, "certify": self.certify, "rtol": self.rtol,
             "predicted_error": number(self.predicted_error), "predicted_seconds": number(self.predicted_seconds),
+            "pieces": [one._asdict() for one in self.pieces],
             "facts": self.facts, "candidates": [one._asdict() for one in self.candidates],
             "reasons": list(self.reasons), "left_out": list(self.left_out), "costs": calibration.describe(),
         }
@@ -161,9 +179,17 @@ def _describe_start(plan: Plan) -> str:
     return text + (f", k'^2 = {facts['separatrix']:.1e} from the separatrix" if 0 < facts["separatrix"] < 1e-3 else "")
 
 
+def _name(torque: Any) -> str:
+    """The torque's class, and how often it acts."""
+    if not hasattr(torque, "windows"):
+        return type(torque).__name__
+    count = len(torque.windows)
+    return f"{type(torque.torque).__name__} during {count} window{'' if count == 1 else 's'}"
+
+
 def _describe_torques(plan: Plan) -> str:
     facts = plan.facts
-    names = ", ".join(type(torque).__name__ for torque in plan.scene.torques) or "none"
+    names = ", ".join(_name(torque) for torque in plan.scene.torques) or "none"
     if not facts["free"]:
         seen = [name for name in ("time", "attitude", "rates") if facts[f"sees_{name}"]]
         names += f"; {'they look' if len(plan.scene.torques) > 1 else 'it looks'} at {' and '.join(seen) or 'nothing'}"
@@ -188,6 +214,23 @@ def _table(plan: Plan) -> list[str]:
             for row in [("candidate", "error", "time", ""), *rows]]
 
 
+def _pieces(plan: Plan, most: int = 12) -> list[str]:
+    """What each piece is answered by; of many, the first and the last."""
+    def row(piece: Piece) -> tuple[str, ...]:
+        how = f"{piece.model}, closed form" if piece.method == "exact" else piece.method
+        return (f"{piece.begin:.6g}", f"{piece.end:.6g}", f"{piece.turns:.3g}", _duration(piece.predicted_seconds), how,
+                ", ".join(piece.torques) or "none")
+
+    heads = ("from", "to [s]", "turns", "time", "by", "torques")
+    skipped = len(plan.pieces) - most
+    shown = plan.pieces if skipped <= 0 else (*plan.pieces[:most // 2], *plan.pieces[-most // 2:])
+    rows = [heads, *map(row, shown)]
+    widths = [max(len(one[i]) for one in rows) for i in range(len(heads))]
+    lines = ["  " + "  ".join(f"{part:<{width}}" if i > 3 else f"{part:>{width}}" for i, (part, width) in
+                              enumerate(zip(one, widths))).rstrip() for one in rows]
+    return lines if skipped <= 0 else [*lines[:1 + most // 2], f"  ... {skipped} more ...", *lines[1 + most // 2:]]
+
+
 def _lines(plan: Plan) -> list[str]:
     facts, scene = plan.facts, plan.scene
     count = scene.times.size
@@ -202,10 +245,12 @@ def _lines(plan: Plan) -> list[str]:
                  (f"; decay x span = {facts['stiffness']:.1e}" if facts["stiffness"] > 1 else "")),
     ]
     lines += [f"  {name:<9}{text}" for name, text in rows]
+    if plan.pieces:
+        lines += ["", *_pieces(plan)]
     if plan.candidates:
         lines += ["", *_table(plan)]
     lines.append("")
-    how = plan.model if plan.method == "exact" else f"{plan.method} on {'Euler' if plan.model == 'euler' else 'Lagrange'}'s equations"
+    how = "pieces, each by what fits it" if plan.pieces else plan.model if plan.method == "exact" else f"{plan.method} on {'Euler' if plan.model == 'euler' else 'Lagrange'}'s equations"
     lines.append(f"  choice   {how}, state: {plan.state}")
     for name, texts in (("because", plan.reasons), ("left out", plan.left_out)):
         lines += [f"  {name if i == 0 else '':<9}{text}" for i, text in enumerate(texts)]

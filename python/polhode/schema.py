@@ -32,6 +32,7 @@ class Kinds(NamedTuple):
 
     number: Any
     pair: Any
+    windows: Any   # pairs, either of them perhaps infinite
     vector: Any
     quaternion: Any
     matrix: Any
@@ -47,7 +48,7 @@ def kinds() -> Kinds:
         return Annotated[list[one], field(min_length=least, max_length=most)]
 
     vector = rows(number, 3, 3)
-    return Kinds(number, rows(number, 2, 2), vector, rows(number, 4, 4), rows(vector, 3, 3), rows(number, 1))
+    return Kinds(number, rows(number, 2, 2), rows(rows(float, 2, 2), 0), vector, rows(number, 4, 4), rows(vector, 3, 3), rows(number, 1))
 
 
 def model(name: str, check: Callable[[Any], None] | None = None, extra: str = "forbid", /, **fields: Any) -> Any:
@@ -114,7 +115,7 @@ def _torque_models() -> list[Any]:
     for record in torques.records():
         if record["key"] == "custom":
             continue   # a function cannot stand in a file
-        fields: dict[str, Any] = {"kind": (Literal[record["key"]], ...)}
+        fields: dict[str, Any] = {"kind": (Literal[record["key"]], ...), "during": (kind.windows | None, None)}
         for parameter in record["parameters"]:
             default = ... if parameter["default"] is None else parameter["default"]
             if parameter["kind"] == "matrix":
@@ -191,12 +192,13 @@ def validate(table: Any, data: dict[str, Any], where: str) -> Any:
 
 def _torque(entry: Any) -> Any:
     record = next(r for r in torques.records() if r["key"] == entry.kind)
-    values = entry.model_dump(exclude={"kind", "diagonal"})
+    values = entry.model_dump(exclude={"kind", "diagonal", "during"})
     if hasattr(entry, "diagonal"):
         if (entry.diagonal is None) == (entry.matrix is None):
             raise InvalidInput(f"torques: {entry.kind}: give matrix or diagonal, one of them")
         values["matrix"] = entry.matrix if entry.diagonal is None else entry.diagonal
-    return getattr(torques, record["name"])(**values)
+    torque = getattr(torques, record["name"])(**values)
+    return torque if entry.during is None else torques.During(torque, entry.during)
 
 
 def attitude_of(start: Any) -> Any:

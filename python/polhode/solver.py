@@ -58,7 +58,8 @@ def _take(plan: Plan, accuracy: float | None, method: str | None, rtol: float | 
     asked = plan.wishes.get("formulation", "euler")
     if formulation not in ("euler", asked):
         raise _core.InvalidInput(f"formulation: must be left out beside plan=, which has {asked!r}, got {formulation!r}")
-    return plan.accuracy, method if method is not None else plan.method, certify and plan.certify, asked
+    own = plan.wishes.get("method") if plan.pieces else plan.method   # pieces: each has its own
+    return plan.accuracy, method if method is not None else own, certify and plan.certify, asked
 
 
 def solve(

@@ -163,6 +163,8 @@ def test_every_public_module_has_what_it_lists(module):
 def test_shapes_torques_and_elliptic_functions():
     assert np.allclose(ph.shapes.box(12.0, (0.3, 0.2, 0.1)).inertia.moments, BLOCK)
     assert np.allclose(ph.elliptic.K(0.5), 1.8540746773013719)   # Abramowitz and Stegun, table 17.1
+    fired = ph.torques.During(ph.torques.Constant((0, 0, 0.52)), [(0.25, 0.75)])
+    assert np.allclose(ph.solve(scene(torques=[fired], omega=(0, 0, 0)), 1e-9).omega[:, 2], (0, 0, 0.25, 0.5, 0.5))
     pushed = ph.solve(scene(torques=[ph.torques.Constant((0, 0, 0.52)), ph.torques.Damping((0, 0, 0))], omega=(0, 0, 0)))
     assert np.allclose(pushed.omega[:, 2], TIMES)
 

@@ -12,6 +12,7 @@
 #include "polhode/batch/parallel.hpp"
 #include "polhode/core/error.hpp"
 #include "solve/checked_options.hpp"
+#include "solve/pieces.hpp"
 #include "solve/planning.hpp"
 
 namespace polhode {
@@ -102,7 +103,7 @@ std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeS
         guarded(body, [&] {
           Scene scene = make_scene(body);
           check_options(scene, options);
-          if (!lanes->takes(scene)) return;
+          if (has_windows(scene) || !lanes->takes(scene)) return;
           if (scene.torque_sum().acting > 0) require_finite_start(scene);
           riders.push_back(std::make_unique<Rider>(std::move(scene), *lanes));
           bodies.push_back(body), in_lanes[body] = 1;

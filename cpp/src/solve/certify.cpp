@@ -10,6 +10,7 @@
 #include "solve/measure.hpp"
 #include "solve/methods/body_method.hpp"
 #include "solve/perturb.hpp"
+#include "solve/planned_pieces.hpp"
 #include "solve/planning.hpp"
 
 namespace polhode {
@@ -69,8 +70,9 @@ class Certifier {
   }
 
  private:
-  Motion run(const Scene& scene, const SolveOptions& options, double rtol) {
-    Motion motion = method_.solve(scene, RunOptions{options, {rtol, options.atol.value_or(0.0)}});
+  Motion run(const Scene& scene, const SolveOptions& options, double rtol, bool moved = false) {
+    const RunOptions how{options, {rtol, options.atol.value_or(0.0)}};
+    Motion motion = plan_.pieces.empty() ? method_.solve(scene, how) : run_by_plan(scene, how, plan_, moved);
     stats_.steps += motion.stats.steps;
     stats_.rejected += motion.stats.rejected;
     stats_.derivatives += motion.stats.derivatives;
@@ -110,11 +112,12 @@ class Certifier {
   Motion run_pair(double coarse, double fine) {
     Motion motion = run(longer_ ? *longer_ : scene_, options_, fine);
     motion.plan.rtol = fine;
+    const double formulas = std::isnan(motion.error) ? 0.0 : motion.error;   // of closed forms between the steps
     motion.error = infinity;
     if (!arrived(motion) || motion.t.empty()) return motion;
     // A terminal event leaves the rest of the times unanswered: they are not compared either.
     const bool whole = motion.t.size() == moved_->times().size();
-    const Motion other = run(whole ? *moved_ : with_times(*moved_, motion.t, scene_.want()), quiet_, coarse);
+    const Motion other = run(whole ? *moved_ : with_times(*moved_, motion.t, scene_.want()), quiet_, coarse, true);
     if (other.status == Status::stopped) {
       motion.status = Status::stopped;
       motion.message = "stopped by the progress callback before the error was certified";
@@ -122,7 +125,7 @@ class Certifier {
       const auto data = [](const std::vector<double>& v) { return v.empty() ? nullptr : v.data(); };
       const double difference = compute_distance(motion.t.size(), data(motion.omega), data(motion.attitude),
                                                  data(other.omega), data(other.attitude));
-      if (difference < infinity) motion.error = safety_ * difference;
+      if (difference < infinity) motion.error = safety_ * difference + formulas;
       parting_ = motion.error <= plan_.accuracy
                      ? infinity
                      : find_parting(motion.t.size(), motion.t.data(), scene_.t0(), data(motion.omega), data(motion.attitude),
@@ -186,6 +189,7 @@ class Certifier {
 
   Motion finish() {
     best_.plan.method = plan_.method;
+    best_.plan.pieces = plan_.pieces;
     best_.plan.accuracy = plan_.accuracy;
     best_.plan.certify = plan_.certify;
     best_.plan.predicted_error = plan_.predicted_error;

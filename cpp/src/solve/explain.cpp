@@ -6,6 +6,7 @@
 #include "polhode/solve/closed_form.hpp"
 #include "solve/measure.hpp"
 #include "solve/perturb.hpp"
+#include "solve/planned_pieces.hpp"
 #include "solve/planning.hpp"
 
 namespace polhode {
@@ -149,6 +150,10 @@ void explain_left_out(const Scene& scene, const Facts& facts, const SolveOptions
 
 PlanReport explain_plan(const Scene& scene, const SolveOptions& options) {
   check_options(scene, options);
+  if (has_windows(scene)) {
+    const Pieces pieces = cut(scene);
+    return pieces.whole ? explain_plan(drop_windows(scene), options) : explain_pieces(scene, pieces, options);
+  }
   PlanReport report;
   report.facts = compute_facts(scene);
   const Facts& facts = report.facts;

@@ -5,6 +5,7 @@
 
 #include "polhode/core/error.hpp"
 #include "solve/methods/body_method.hpp"
+#include "solve/pieces.hpp"
 
 namespace polhode {
 namespace {
@@ -46,7 +47,16 @@ const ode::MethodRecord& find_method(std::string_view name) { return find_body_m
 
 std::string compute_refusal(std::string_view method, const Scene& scene) {
   const BodyMethod& one = find_body_method(method);
-  return one.refuse ? one.refuse(scene) : "";
+  if (!one.refuse) return "";
+  if (!has_windows(scene)) return one.refuse(scene);
+  const Pieces pieces = cut(scene);
+  for (const auto* one_way : {&pieces.backward, &pieces.forward}) {
+    for (const Piece& piece : *one_way) {
+      const std::string why = one.refuse(make_piece_scene(scene, piece, scene.start(), {piece.end}, scene.want()));
+      if (!why.empty()) return pieces.whole ? why : why + ", " + describe_span(piece);
+    }
+  }
+  return "";
 }
 
 }  // namespace polhode

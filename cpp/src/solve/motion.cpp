@@ -1,5 +1,6 @@
 #include "polhode/solve/motion.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "polhode/core/error.hpp"
@@ -26,11 +27,18 @@ State Motion::at(double time) const {
   double begin = dense_backward.empty() ? start.t : dense_backward.t_end();
   double end = dense_forward.empty() ? start.t : dense_forward.t_end();
   if (closed_form) begin = t_begin, end = t_reached;
+  const Motion* within = nullptr;
+  for (const auto& piece : pieces) {
+    begin = &piece == &pieces.front() ? piece->t_begin : std::min(begin, piece->t_begin);
+    end = &piece == &pieces.front() ? piece->t_reached : std::max(end, piece->t_reached);
+    if (time >= piece->t_begin && time <= piece->t_reached) within = piece.get();
+  }
   if (!(time >= begin && time <= end)) {
     throw InvalidInput("motion(t)", "a time between " + polhode::to_text(begin) + " and " + polhode::to_text(end) + " s",
                        polhode::to_text(time));
   }
   if (time == start.t) return start;
+  if (within != nullptr) return within->at(time);
   double y[64], q[4] = {NAN, NAN, NAN, NAN};
   State state;
   state.t = time;

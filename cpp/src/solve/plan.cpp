@@ -7,6 +7,7 @@
 #include "polhode/core/error.hpp"
 #include "polhode/solve/closed_form.hpp"
 #include "solve/methods/body_method.hpp"
+#include "solve/planned_pieces.hpp"
 #include "solve/planning.hpp"
 
 namespace polhode {
@@ -24,7 +25,10 @@ bool carries_attitude(const Scene& scene, const Facts& facts, const SolveOptions
 double find_seconds_per_call(const Scene& scene) {
   double seconds = 0.0;
   for (const AnyTorque& torque : scene.torques()) {
-    if (std::holds_alternative<torques::Custom>(torque)) seconds += custom_call_seconds;
+    const auto* during = std::get_if<torques::During>(&torque);
+    const bool custom = during != nullptr ? std::holds_alternative<torques::Custom>(during->torque())
+                                          : std::holds_alternative<torques::Custom>(torque);
+    if (custom) seconds += custom_call_seconds;
   }
   return seconds;
 }
@@ -64,11 +68,13 @@ Candidate judge_method(const Scene& scene, const Facts& facts, const SolveOption
 
 Candidate judge_closed_form(const Scene& scene, const ClosedForm& form, const Facts& facts, const SolveOptions& options) {
   Candidate one{.name = std::string(form.model()), .exact = true};
-  const bool top = one.name == "heavy_top";
   one.predicted_error = compute_closed_form_error(scene, facts, form);
-  const double n = static_cast<double>(scene.times().size());
-  one.predicted_seconds = (top ? 12e-6 + 60e-9 * n : 1.5e-6 + 15e-9 * n) * find_factor(options.cost_factors, one.name);
+  one.predicted_seconds = predict_closed_form(one.name, static_cast<double>(scene.times().size()), options.cost_factors);
   return one;
+}
+
+double predict_closed_form(std::string_view model, double samples, const CostFactors* factors) {
+  return (model == "heavy_top" ? 12e-6 + 60e-9 * samples : 1.5e-6 + 15e-9 * samples) * find_factor(factors, model);
 }
 
 double find_factor(const CostFactors* factors, std::string_view name) {
@@ -123,6 +129,11 @@ Plan make_exact_plan(const Scene& scene, const ClosedForm& form, const Facts& fa
 }
 
 Plan make_plan(const Scene& scene, const Facts& facts, const SolveOptions& options) {
+  if (has_windows(scene)) {
+    if (const Pieces pieces = cut(scene); !pieces.whole) return plan_pieces(scene, pieces, options).plan;
+    const Scene plain = drop_windows(scene);
+    return make_plan(plain, compute_facts(plain), options);
+  }
   if (options.method == "exact" || leaves_choice(options)) {
     const std::optional<ClosedForm> form = find_closed_form(scene, facts);
     if (form) return make_exact_plan(scene, *form, facts, options);

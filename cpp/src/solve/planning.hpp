@@ -23,6 +23,8 @@ double find_factor(const CostFactors* factors, std::string_view name);
 
 Candidate judge_method(const Scene& scene, const Facts& facts, const SolveOptions& options, const ode::MethodRecord& record);
 Candidate judge_closed_form(const Scene& scene, const ClosedForm& form, const Facts& facts, const SolveOptions& options);
+double predict_closed_form(std::string_view model, double samples, const CostFactors* factors);   ///< [s]
+Candidate choose_method(const Scene& scene, const Facts& facts, const SolveOptions& options);
 Plan make_method_plan(const Scene& scene, const Facts& facts, const SolveOptions& options);
 Plan make_exact_plan(const Scene& scene, const ClosedForm& form, const Facts& facts, const SolveOptions& options);
 [[noreturn]] void throw_no_closed_form(const Scene& scene, const Facts& facts);

@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "polhode/core/error.hpp"
+#include "solve/pieces.hpp"
 
 namespace polhode {
 namespace {
@@ -31,7 +32,7 @@ Real evaluate(const Series& a, Real s) {
 /// The series of a body's motion about one time; every method here works on coefficient n of all of them.
 class BodySeries {
  public:
-  BodySeries(const Scene& scene, int order) : scene_(scene), order_(order) {
+  BodySeries(const Scene& scene, int order) : scene_(&scene), order_(order) {
     for (Vector* v : {&w_, &L_, &row_x_, &row_y_, &row_z_, &u_, &Iu_})
       for (Series& s : *v) s.assign(static_cast<std::size_t>(order) + 1, 0);
     for (Series& s : q_) s.assign(static_cast<std::size_t>(order) + 1, 0);
@@ -57,8 +58,8 @@ class BodySeries {
         const auto j = index((i + 1) % 3), k = index((i + 2) % 3);
         tau[i] = multiply(L_[j], w_[k], n) - multiply(L_[k], w_[j], n);
       }
-      if (scene_.torque_sum().uses_attitude) expand_rows(n);
-      for (const AnyTorque& torque : scene_.torques())
+      if (scene_->torque_sum().uses_attitude) expand_rows(n);
+      for (const AnyTorque& torque : scene_->torques())
         std::visit([&](const auto& one) { add(one, t, n, tau); }, torque);
       for (int i = 0; i < 3; ++i)
         w_[index(i)][next] = (inverse_[i][0] * tau[0] + inverse_[i][1] * tau[1] + inverse_[i][2] * tau[2]) / (n + 1);
@@ -179,8 +180,9 @@ class BodySeries {
   void add(const torques::Custom&, Real, int, Real*) const {
     throw InvalidInput("torques", "none of a user's own functions, which have no series", "Custom");
   }
+  void add(const torques::During&, Real, int, Real*) const {}   // pieces have none
 
-  const Scene& scene_;
+  const Scene* scene_;
   int order_;
   Square I_{}, inverse_{};
   Vector w_, L_, row_x_, row_y_, row_z_, u_, Iu_;
@@ -188,10 +190,16 @@ class BodySeries {
   Series cos_, sin_;
 };
 
-/// Goes from t0 through times in the order of `visit`, all on one side of it.
-void follow(const Scene& scene, const ReferenceOptions& options, const std::vector<std::size_t>& visit,
-            Reference& found) {
-  BodySeries body(scene, options.order);
+/// Goes from t0 through times in the order of `visit`, all on one side of it, and from piece to piece where windows end.
+void follow(const Scene& scene, const ReferenceOptions& options, const std::vector<Piece>& pieces,
+            const std::vector<std::size_t>& visit, Reference& found) {
+  if (visit.empty()) return;
+  std::vector<Scene> scenes;
+  for (const Piece& piece : pieces) {
+    scenes.push_back(make_piece_scene(scene, piece, {piece.begin, scene.omega(), scene.attitude()}, {piece.end}, scene.want()));
+  }
+  std::size_t at = 0;
+  BodySeries body(scenes[at], options.order);
   Real t = scene.t0();
   std::size_t next = 0;
   for (long steps = 0; next < visit.size(); ++steps) {
@@ -199,7 +207,7 @@ void follow(const Scene& scene, const ReferenceOptions& options, const std::vect
       throw IntegrationFailure(static_cast<double>(t), "reference: more than " + std::to_string(steps) + " steps");
     }
     body.expand(t);
-    const Real left = Real(scene.times()[visit.back()]) - t;
+    const Real left = Real(pieces[at].end) - t;
     const Real size = body.step(options.tolerance, std::fabs(left)), h = left < 0 ? -size : size;
     for (; next < visit.size(); ++next) {
       const Real s = Real(scene.times()[visit[next]]) - t;
@@ -214,6 +222,11 @@ void follow(const Scene& scene, const ReferenceOptions& options, const std::vect
     body.restart(y);
     t += h;
     ++found.steps;
+    if (std::fabs(left) <= size && at + 1 < pieces.size()) {
+      body = BodySeries(scenes[++at], options.order);
+      body.restart(y);
+      t = Real(pieces[at].begin);
+    }
   }
 }
 
@@ -227,8 +240,9 @@ Reference compute_reference(const Scene& scene, const ReferenceOptions& options)
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return times[a] < times[b]; });
   for (std::size_t i : order) (times[i] < scene.t0() ? before : after).push_back(i);
   std::reverse(before.begin(), before.end());
-  follow(scene, options, after, found);
-  follow(scene, options, before, found);
+  const Pieces pieces = cut(scene);
+  follow(scene, options, pieces.forward, after, found);
+  follow(scene, options, pieces.backward, before, found);
   return found;
 }
 

@@ -23,8 +23,11 @@ template <class Action>
 Motion with_torque(const Scene& scene, Action&& action) {
   const auto& torques = scene.torques();
   if (torques.empty()) return action(NoTorque{});
-  if (torques.size() == 1) return std::visit([&](const auto& one) { return action(one); }, torques.front());
-  return action(SeveralTorques{torques});
+  if (torques.size() > 1 || std::holds_alternative<torques::During>(torques.front())) return action(SeveralTorques{torques});
+  return std::visit([&]<class Torque>(const Torque& one) -> Motion {
+    if constexpr (std::is_same_v<Torque, torques::During>) return {};   // among several, above
+    else return action(one);
+  }, torques.front());
 }
 
 template <class Method>

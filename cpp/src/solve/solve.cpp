@@ -9,6 +9,7 @@
 #include "solve/checked_options.hpp"
 #include "solve/exact_run.hpp"
 #include "solve/methods/body_method.hpp"
+#include "solve/planned_pieces.hpp"
 #include "solve/planning.hpp"
 #include "solve/spot_check.hpp"
 
@@ -109,7 +110,7 @@ void check_options(const Scene& scene, const SolveOptions& options) {
   if (options.formulation != Formulation::euler && method.of_bodies) {
     throw InvalidInput("formulation", "'euler' with method '" + name + "'", "'lagrangian'", "it steps the body itself");
   }
-  if (const std::string why = method.refuse ? method.refuse(scene) : ""; !why.empty()) {
+  if (const std::string why = compute_refusal(name, scene); !why.empty()) {
     throw InvalidInput("method '" + name + "'", "used with " + std::string(method.record.needs), why);
   }
 }
@@ -117,19 +118,25 @@ void check_options(const Scene& scene, const SolveOptions& options) {
 namespace {
 
 /// By tolerances of a step, or steps of one length: the error is not estimated.
-Motion solve_by_tolerance(const Scene& scene, const SolveOptions& options) {
+Motion solve_by_tolerance(const Scene& scene, const SolveOptions& options, const Pieces* pieces) {
   const std::string name = options.method.value_or("rk45");
   const BodyMethod& method = find_body_method(name);
   require_fitting(method.record, options);
   const CheckedOptions checked = choose_tolerances(method.record, options);
-  Motion motion = method.solve(scene, {options, checked.tolerances});
+  const auto run_one = [&](const Scene& piece, const SolveOptions& one) { return method.solve(piece, {one, checked.tolerances}); };
+  Motion motion = pieces == nullptr ? run_one(scene, options) : run_pieces(scene, *pieces, options, run_one);
   motion.plan.method = name;
   describe_end(checked, motion);
   return motion;
 }
 
 /// By the plan: a closed form where one holds, else steps whose error is certified.
-Motion solve_planned(const Scene& scene, const SolveOptions& options) {
+Motion solve_planned(const Scene& scene, const SolveOptions& options, const Pieces* pieces) {
+  if (pieces != nullptr) {
+    PiecesPlan made = plan_pieces(scene, *pieces, options);
+    if (made.plan.method == "exact") return solve_exact_pieces(scene, options, made.plan);
+    return solve_certified(scene, made.facts, options, made.plan);
+  }
   const Facts facts = compute_facts(scene);
   if (leaves_choice(options) || options.method == "exact") {
     if (std::optional<ClosedForm> form = find_closed_form(scene, facts)) {
@@ -145,13 +152,19 @@ Motion solve_planned(const Scene& scene, const SolveOptions& options) {
 
 Motion solve(const Scene& scene, const SolveOptions& options) {
   check_options(scene, options);
-  if (scene.torque_sum().acting > 0) {
+  std::optional<Pieces> pieces;
+  if (has_windows(scene)) {
+    pieces = cut(scene);
+    if (pieces->whole) return solve(drop_windows(scene), options);
+    require_finite_start(scene);
+  } else if (scene.torque_sum().acting > 0) {
     require_finite_start(scene);
     require_true_claims(scene);
   }
   const auto begin = std::chrono::steady_clock::now();
   const bool by_tolerance = options.rtol || options.atol || options.step;
-  Motion motion = by_tolerance ? solve_by_tolerance(scene, options) : solve_planned(scene, options);
+  const Pieces* cut_at = pieces ? &*pieces : nullptr;
+  Motion motion = by_tolerance ? solve_by_tolerance(scene, options, cut_at) : solve_planned(scene, options, cut_at);
   motion.stats.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return motion;
 }

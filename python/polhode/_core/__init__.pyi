@@ -657,7 +657,7 @@ class Answer:
     def omega(self) -> typing.Any:
         ...
     @property
-    def plan(self) -> tuple[str, str, str, float, bool, float, float, float]:
+    def plan(self) -> tuple[typing.Any, ...]:
         ...
     @property
     def stats(self) -> dict[str, typing.Any]:

@@ -225,3 +225,51 @@ class Custom:
     @property
     def traits(self) -> dict[str, typing.Any]:
         ...
+class During:
+    """
+    During(torque, windows)
+
+    Another torque within windows of time, and none outside: a thruster's firings, a brake that is let go.
+
+    The span is cut where windows begin and end. Each piece has the torques that act there: where that leaves a closed form
+    (a free body coasts between firings) it is evaluated, else it is stepped, and no step goes over a jump.
+
+    Parameters
+    ----------
+    torque : a torque of polhode.torques
+        Without windows of its own.
+    windows : array_like, shape (n, 2) or (2,)
+        A begin and a later end each [s], in any order; either may be infinite. Windows that touch are one.
+
+    Raises
+    ------
+    InvalidInput
+        For a window that is empty, reversed or not a number, for two that overlap, and for what is no torque.
+    """
+    def __eq__(self, arg0: typing.Any) -> bool:
+        ...
+    def __getstate__(self) -> tuple[typing.Any, ...]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, torque: typing.Any, windows: typing.Any) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
+        ...
+    @property
+    def torque(self) -> typing.Any:
+        """
+        The torque that acts.
+        """
+    @property
+    def traits(self) -> dict[str, typing.Any]:
+        """
+        dict: uses_time, uses_attitude, uses_rates, has_potential.
+        """
+    @property
+    def windows(self) -> tuple[typing.Any, ...]:
+        """
+        tuple of (begin, end) [s], in the order of time.
+        """

@@ -1,22 +1,19 @@
 #pragma once
 
-#include <array>
-#include <variant>
+#include <span>
 
-#include "polhode/torque/constant.hpp"
-#include "polhode/torque/custom.hpp"
-#include "polhode/torque/damping.hpp"
-#include "polhode/torque/gravity.hpp"
-#include "polhode/torque/gravity_gradient.hpp"
+#include "polhode/torque/during.hpp"
+#include "polhode/torque/list.hpp"
 
 namespace polhode {
 
-/// The list of torques. A new one is a file of its own and a name here; bindings, scene files, docs and tests follow.
-using AnyTorque = std::variant<torques::Constant,         //
-                               torques::Gravity,          //
-                               torques::GravityGradient,  //
-                               torques::Damping,          //
-                               torques::Custom>;
+namespace torques {
+template <class One, class... Torques>
+std::variant<Torques..., One> append(std::variant<Torques...>*);
+}  // namespace torques
+
+/// Any torque of the list, acting all the time or during windows of it.
+using AnyTorque = decltype(torques::append<torques::During>(static_cast<LastingTorque*>(nullptr)));
 
 /// What a set of torques acting together depends on and keeps.
 struct TorqueSum {

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <variant>
+
+#include "polhode/torque/constant.hpp"
+#include "polhode/torque/custom.hpp"
+#include "polhode/torque/damping.hpp"
+#include "polhode/torque/gravity.hpp"
+#include "polhode/torque/gravity_gradient.hpp"
+
+namespace polhode {
+
+/// The list of torques. A new one is a file of its own and a name here; bindings, scene files, docs and tests follow.
+using LastingTorque = std::variant<torques::Constant,         //
+                                   torques::Gravity,          //
+                                   torques::GravityGradient,  //
+                                   torques::Damping,          //
+                                   torques::Custom>;
+
+}  // namespace polhode

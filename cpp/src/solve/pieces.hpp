@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "polhode/solve/solve.hpp"
+
+// A span that is cut where torques begin or cease to act, each piece run by itself from where the last one ended.
+namespace polhode {
+
+/// A stretch of the span in which the same torques act; `end` is before `begin` where it is met backwards.
+struct Piece {
+  double begin, end;
+  std::vector<AnyTorque> torques;   ///< those that act, without their windows
+};
+
+/// In the order in which they are run from the scene's start.
+struct Pieces {
+  std::vector<Piece> backward, forward;
+  bool whole = true;                ///< no window's end lies within the span: nothing is cut
+  std::size_t size() const { return backward.size() + forward.size(); }
+};
+
+bool has_windows(const Scene& scene);
+
+Pieces cut(const Scene& scene);
+
+/// The scene of one piece: its torques, a start and times of its own.
+Scene make_piece_scene(const Scene& scene, const Piece& piece, const State& start, std::vector<double> times, const Wanted& want);
+
+/// The same scene without windows, where none ends within the span: each torque acts all the time or not at all.
+Scene drop_windows(const Scene& scene);
+
+/// "from t = 10 to 20 s"
+std::string describe_span(const Piece& piece);
+
+/// How one piece is run; `piece` has the torques that act there, unwindowed, and starts where the last piece ended.
+using RunPiece = std::function<Motion(const Scene& piece, const SolveOptions& options)>;
+
+/// All pieces one after another, joined: samples, events and dense output are those of one motion, `error` is the
+/// largest bound of a closed form. `shaken`: where one piece ends and the next begins the state is moved by a few units
+/// of rounding, for the run that a certificate compares with.
+Motion run_pieces(const Scene& scene, const Pieces& pieces, const SolveOptions& options, const RunPiece& run,
+                  bool shaken = false);
+
+}  // namespace polhode
