@@ -15,7 +15,7 @@ from polhode.charts.candidates import candidates
 from polhode.report import report, tables
 from polhode.report.curves import GROUPS, figure
 from polhode.report.atlas_part import part
-from polhode.report.page import _in_script, render
+from polhode.report.page import _in_script, picture, render
 
 pytest.importorskip("matplotlib")
 pytest.importorskip("plotly")
@@ -93,6 +93,22 @@ def test_tables_hold_every_scene_and_candidate(made):
     assert text == "| a | b |\n| --- | --- |\n| 1 | x\\|y |\n"
 
 
+def test_what_was_not_done_in_time_has_not_failed():
+    def cell(*runs):
+        points = [{"candidate": "rk45", "status": status, "why": why, "error": 1e-3} for status, why in runs]
+        return tables.best({"scenes": [{"name": "S1", "points": points}]})[1][0][1]
+
+    late, out = ("failed", "not done within 0.1 s"), ("left out", "would take about 9 s")
+    assert cell(late, out) == cell(out) == "too slow" and cell(late, ("failed", "crash")) == "failed"
+    assert cell(late, ("answered", "")) == "1e-3"
+
+
+def test_broad_pictures_are_known_by_their_width(tmp_path):
+    for name, width in (("narrow.svg", 518), ("broad.svg", 1036.8)):
+        (tmp_path / name).write_text(f'<svg height="300pt" width="{width}pt" xmlns="http://www.w3.org/2000/svg"/>')
+        assert picture(tmp_path / name, "").broad == (width > 1000)
+
+
 def test_failures_are_told_once_with_their_settings():
     def point(setting, status, why):
         return {"candidate": "rk45", "setting": setting, "status": status, "why": why}
@@ -162,6 +178,8 @@ def test_the_page_in_a_browser(made, width, phone):
         assert tab.run("[...document.images].every((i) => i.complete && i.naturalWidth > 100)")
         assert tab.run("document.querySelectorAll('.curves .main-svg').length") >= len(content["scenes"])
         assert tab.run("document.documentElement.scrollWidth <= window.innerWidth")   # nothing hangs over
+        shown = tab.run("document.querySelector('figure.broad img').offsetWidth")
+        assert shown > 600   # several panels side by side are large enough to read, and scroll on a phone
         curve = "document.querySelector('.curves').data.find((t) => t.name === 'rk45').visible !== false"
         press = "[...document.querySelector('.chips').querySelectorAll('button')].find((b) => b.textContent === '{}').click()"
         states = [tab.run(curve)]

@@ -17,6 +17,7 @@ LEVELS = ("holds", "degrades", "fails", "unknown", "none")
 LOST = 0.1   # rad: an attitude off by more is lost
 SURE = 1.2   # times the limit: what is foreseen to take longer is not tried
 CLEAR = 0.1  # seconds: from less no time is foreseen
+LATE = ("not done within", "the one before", "would take")   # reasons
 
 
 @dataclass
@@ -29,6 +30,11 @@ class Point:
     why: str = ""
     status: str = "answered"   # "failed" | "refused" | "left out"
     cpu: float = 0.0           # seconds it took, with everything around the answer
+
+    @property
+    def late(self) -> bool:
+        """Whether it is left out for want of time."""
+        return self.status == "left out" and self.why.startswith(LATE)
 
     def get(self, name: str) -> float:
         """A value; infinite where the run failed, NaN where it was not made."""
@@ -101,6 +107,7 @@ class Family:
     takes: Callable[[Entrant], str] = lambda entrant: "" if entrant.kind != "witness" else "only for the norm"
     also: tuple[tuple[str, str, tuple[float, float]], ...] = ()   # further panels: value, label, limits
     series: tuple[tuple[str, str], ...] = (("", ""),)   # (name, title of its panel)
+    x_labels: tuple[tuple[str, str], ...] = ()           # of series that have one of their own
     lines: tuple[tuple[float, str], ...] = ()            # thresholds to be drawn
     x_inverted: bool = False
     y_log: bool = True

@@ -27,7 +27,7 @@ def draw_family(result: FamilyResult, folder: pathlib.Path) -> list[pathlib.Path
         panels += [("", "", value, label, limits) for value, label, limits in family.also]
         columns = min(2, len(panels)) or 1
         rows = max(1, math.ceil(len(panels) / columns))
-        caption = _caption(family, columns)
+        caption = _caption(result, columns)
         head = 0.95 + 0.19 * (caption.count("\n") + 1)
         width, height = columns * (PANEL + MARGIN + LABELS), head + 0.55 + 3.4 * rows + 0.75 * (rows - 1)
         figure, grid = plt.subplots(rows, columns, figsize=(width, height), squeeze=False)
@@ -43,8 +43,11 @@ def draw_family(result: FamilyResult, folder: pathlib.Path) -> list[pathlib.Path
     return paths
 
 
-def _caption(family: Family, columns: int) -> str:
+def _caption(result: FamilyResult, columns: int) -> str:
+    family = result.family
     text = [f"swept: {family.sweeps}", f"holds: {family.holds}; degrades: {family.degrades}"]
+    if any(points[-1].late and points[0].status == "answered" for points in result.rows.values() if points):
+        text.append(f"where a curve ends early, its next run takes more than {result.limit:g} s of CPU")
     return "\n".join(line for part in text for line in textwrap.wrap(part, 165 if columns > 1 else 88))
 
 
@@ -93,12 +96,12 @@ def _panel(axes: Any, result: FamilyResult, series: str, title: str, y: str, lab
         if low <= value <= high:
             axes.axhline(value, color=style.QUIET, linewidth=1, linestyle=(0, (1, 1.5)), zorder=2)
             axes.annotate(word, (0, value), xycoords=("axes fraction", "data"), xytext=(3, 2),
-                          textcoords="offset points", fontsize=8, color=style.QUIET, zorder=9, bbox=style.HALO)
+                          textcoords="offset points", fontsize=8, color=style.QUIET, zorder=2.5, bbox=style.HALO)   # under points
     for axis, log in ((axes.xaxis, axes.get_xscale() == "log"), (axes.yaxis, family.y_log)):
         if log:   # plain text: powers set as formulas are slow to draw and small to read
             axis.set_major_formatter(lambda value, _: _tick(value))
             axis.set_minor_formatter(lambda value, _: "")
-    axes.set_xlabel(family.x_label)
+    axes.set_xlabel(dict(family.x_labels).get(series, family.x_label))
     axes.set_ylabel(label)
     if title:
         axes.set_title(title)
@@ -149,7 +152,7 @@ def _names(axes: Any, ends: list[tuple[float, str]], low: float, high: float, lo
                       textcoords="axes fraction", fontsize=7.8, va="center", ha="left", color=colour,
                       fontweight="bold" if {"solve", "exact"} >= set(names) else "normal", linespacing=1.0, zorder=9,
                       arrowprops={"arrowstyle": "-", "color": style.FLOOR, "linewidth": 0.6, "shrinkA": 0,
-                                  "shrinkB": 3})
+                                  "shrinkB": 3, "relpos": (0.0, 0.5)})   # to the text's edge, not across others
 
 
 def draw_matrix(results: list[FamilyResult], folder: pathlib.Path, name: str = "matrix") -> list[pathlib.Path]:
@@ -178,7 +181,7 @@ def draw_matrix(results: list[FamilyResult], folder: pathlib.Path, name: str = "
         y = head + 0.35
         for index, result in enumerate(results):
             axes.text(1.5 + cell * (index + 0.5), y, result.family.summary, fontsize=9,
-                      fontweight="bold", ha="center", va="bottom", linespacing=1.05)
+                      fontweight="bold", ha="center", va="baseline", linespacing=1.05)
         y += 0.02
         for group in groups:
             y += gap

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import pathlib
+import re
 from importlib import resources
 from typing import Any, NamedTuple
 
@@ -13,6 +14,7 @@ from ..charts.findings import to_time
 from . import curves, tables
 
 TYPES = {".svg": "image/svg+xml", ".png": "image/png"}
+BROAD = 600   # points
 
 
 class Picture(NamedTuple):
@@ -22,12 +24,19 @@ class Picture(NamedTuple):
     alt: str
     caption: str
     command: str
+    broad: bool   # of several panels side by side, which a phone shows a part of
 
 
 def picture(path: pathlib.Path, alt: str, caption: str = "", command: str = "") -> Picture:
     """Read a picture into a data address."""
-    data = base64.b64encode(path.read_bytes()).decode("ascii")
-    return Picture(f"data:{TYPES[path.suffix]};base64,{data}", alt, caption, command)
+    content = path.read_bytes()
+    if path.suffix == ".svg":
+        width = re.search(rb'<svg[^>]* width="([\d.]+)pt"', content)
+        points = float(width[1]) if width else 0.0
+    else:
+        points = int.from_bytes(content[16:20]) / 2   # of a PNG
+    data = base64.b64encode(content).decode("ascii")
+    return Picture(f"data:{TYPES[path.suffix]};base64,{data}", alt, caption, command, points > BROAD)
 
 
 def _text(name: str) -> str:
@@ -37,6 +46,11 @@ def _text(name: str) -> str:
 def _in_script(content: Any) -> str:
     """JSON that cannot end the script element it stands in."""
     return json.dumps(content, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
+
+
+def _kept_together(table: tuple[tables.Row, list[tables.Row]]) -> tuple[tables.Row, list[tables.Row]]:
+    """No line may end between a number and its unit."""
+    return table[0], [[re.sub(r" (?=[mµn]?s$)", "\u00a0", cell) for cell in row] for row in table[1]]
 
 
 def render(
@@ -80,14 +94,14 @@ def render(
     sections = [("speed", "Speed against accuracy"), ("scenes", "Scene by scene")]
     sections += [("atlas", "Where methods fail")] * bool(atlas) + [("motion", "The motions")] * bool(motions)
     sections += [("machine", "Machine and versions")]
-    count = sum(len(scene["points"]) for scene in content["scenes"])
-    lead = (f"{count} runs on {len(content['scenes'])} scenes, each held against a reference of more digits: "
+    count = sum(point["status"] == "answered" for scene in content["scenes"] for point in scene["points"])
+    lead = (f"{count} answers on {len(content['scenes'])} scenes, each held against a reference of more digits: "
             "the error of every sample beside the time it took, in one run on one machine.")
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     return environment.from_string(_text("page.html.j2")).render(
         title="polhode: speed, accuracy, and where methods fail" if atlas else "polhode: speed and accuracy", lead=lead,
         css=Markup(_text("page.css")), script=Markup(_text("page.js")), sections=sections, overview=overview,
-        winners=tables.winners(content), scenes=scenes, scene_table=tables.scenes(content), best=tables.best(content),
+        winners=_kept_together(tables.winners(content)), scenes=scenes, scene_table=tables.scenes(content), best=tables.best(content),
         failures=tables.failures(content), atlas=atlas, motions=motions, machine=tables.machine(content),
         startups=tables.startups(content), measure=content["measure"], took=to_time(seconds), command=command,
         figures=Markup(_in_script([curves.figure(scene) for scene in content["scenes"]])))

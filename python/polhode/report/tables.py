@@ -43,8 +43,9 @@ def best(content: dict[str, Any]) -> tuple[Row, list[Row]]:
         for scene in content["scenes"]:
             points = [p for p in scene["points"] if p["candidate"] == name]
             errors = [p["error"] for p in points if p["status"] == "answered"]
-            row.append(to_error(min(errors)) if errors else "failed" if any(p["status"] == "failed" for p in points)
-                       else "left out" if points else "–")
+            # One that was not done in its time has not failed.
+            failed = any(p["status"] == "failed" and not p["why"].startswith("not done") for p in points)
+            row.append(to_error(min(errors)) if errors else "failed" if failed else "too slow" if points else "–")
         rows.append(row)
     return ["smallest error", *(scene["name"] for scene in content["scenes"])], rows
 

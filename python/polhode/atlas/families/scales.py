@@ -96,7 +96,7 @@ FAMILY = Family(
     name="scales", title="Scales: the same motion in any units", summary="scales",
     sweeps="inertia, or rates and 1/time, times 1e-150 to 1e150, on ten turns of scenes S1 and S4",
     truth="the same method's answer without the factor (a power of two)",
-    holds="the same answer to 1e-12 at every scale", degrades="or an error that says so",
+    holds="the same answer to 1e-12 at every scale", degrades="or, at some scales, an error that says why",
     number="largest difference",
     about="Grams or tonnes, seconds or years: the same motion in other units must be the same motion. Factors "
           "are powers of two, so that a method which scales its work returns the very same bits.",
