@@ -16,7 +16,7 @@ from polhode.charts.candidate import Answer, Candidate, Failure, tolerances
 from polhode.charts.candidates import candidates
 from polhode.charts.findings import (
     dominated, front, headline, held_by_stability, stalls, time_ratios, time_to_reach, to_count, to_error, to_time,
-    without_answer,
+    under_headline, without_answer,
 )  # fmt: skip
 from polhode.charts.measure import Point, SceneResult, measure
 from polhode.charts.results import document
@@ -183,6 +183,8 @@ def test_crashes_nan_and_lateness_are_points_and_the_others_go_on():
     assert set(whys["late"][1:]) == {"a looser setting was not done in time"}
     assert whys["exact"] == [""] * 4 and all(p.repeats == 5 and p.error < 1e-12 for p in result.of("exact"))
     assert without_answer(result) == {name: whys[name][0] for name in ("crash", "nothing", "late")}
+    told = under_headline(result)
+    assert told.endswith(". Not done in time: late") and told.count("late") == 1 and "crash: " in told
 
 
 def test_what_does_not_fit_the_budget_is_left_out_and_says_so():

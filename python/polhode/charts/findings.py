@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import statistics
 
 from .measure import Point, SceneResult
@@ -187,6 +188,9 @@ def to_range(ratios: list[float]) -> str:
     return low if low == high else f"{low} to {high}"
 
 
+LONG = r"\d+\.\d{6,}"   # numbers with more digits than anybody reads
+
+
 def under_headline(result: SceneResult) -> str:
     """What was measured, each peer's time at equal error, and who never answered."""
     scene = result.scene
@@ -195,9 +199,12 @@ def under_headline(result: SceneResult) -> str:
     parts = [f"{program} {to_range(ratios)}" for program, ratios in program_ratios([result]).items()]
     if parts:
         text += f". Times as long as polhode's fastest stepper at equal error: {', '.join(parts)}"
-    for name, why in without_answer(result).items():
-        text += f". {name}: {why}"
-    return text
+    silent = without_answer(result)
+    late = [name for name, why in silent.items() if why.startswith("not done")]
+    for name, why in silent.items():
+        if name not in late:
+            text += f". {name}: {re.sub(LONG, lambda number: f'{float(number[0]):.4g}', why)}"
+    return f"{text}. Not done in time: {', '.join(late)}" if late else text
 
 
 def without_answer(result: SceneResult) -> dict[str, str]:
