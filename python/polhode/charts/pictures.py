@@ -98,7 +98,7 @@ def _floor(axes: Any, result: SceneResult, text: bool) -> None:
 
 
 def _obstacles(axes: Any) -> Floats:
-    """Points on all curves, in pixels, four pixels apart."""
+    """Points on all curves, stars and words, in pixels, four pixels apart."""
     found = [np.empty((0, 2))]
     for line in axes.get_lines():
         if line.get_zorder() < 2:   # floors and guides may be crossed
@@ -108,6 +108,12 @@ def _obstacles(axes: Any) -> Floats:
             count = int(np.hypot(*(end - start)) / 4) + 2
             found.append(start + np.linspace(0, 1, count)[:, None] * (end - start))
         found.append(corners)
+        if line.get_marker() == "*":
+            found += [corners + (dx, dy) for dx in (-7, 7) for dy in (-7, 0, 7)]
+    for text in axes.texts:
+        box = text.get_window_extent()
+        ups = np.arange(box.y0, box.y1, 4)
+        found += [np.column_stack([np.full(ups.size, x), ups]) for x in (box.x0, box.x1)]
     return np.vstack(found)
 
 
