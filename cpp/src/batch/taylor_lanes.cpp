@@ -44,7 +44,7 @@ class TaylorBody final : public LaneBody {
   }
 
   std::string describe_state() const override { return series_.describe_state(); }
-  void unpack(const double* y, double* omega, double* attitude) const override { series_.unpack(y, omega, attitude); }
+  void unpack(const double* y, double* omega, double* attitude) const override { series_.unpack(y, 1, omega, attitude); }
   std::unique_ptr<LaneTeam> make_team(const ode::Tolerances& tolerances) const override;
 
  private:

@@ -47,7 +47,7 @@ DriveResult drive(Stepper& stepper, std::span<const double> times, const Sink& s
 
   std::size_t next = 0;
   while (next < times.size() && times[next] == stepper.t()) {
-    sink(next, times[next], stepper.y());
+    sink(next, times.subspan(next, 1), stepper.y());
     ++next;
   }
   Heartbeat heartbeat(options.progress);
@@ -110,9 +110,8 @@ DriveResult drive(Stepper& stepper, std::span<const double> times, const Sink& s
     while (next < end) {
       const std::size_t count = std::min(end - next, most_at_once);
       stepper.interpolate_many(times.data() + next, count, rows.data());
-      for (std::size_t i = 0; i < count; ++i, ++next) {
-        sink(next, times[next], rows.data() + i * static_cast<std::size_t>(stepper.dimension()));
-      }
+      sink(next, times.subspan(next, count), rows.data());
+      next += count;
     }
     result.t = reached;
     if (result.ending == Ending::event) break;

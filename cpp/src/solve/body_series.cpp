@@ -160,26 +160,20 @@ std::string BodySeries::describe_state() const {
   return terms_.fixed_vectors == 1 ? state + ", vertical" : state;
 }
 
-void BodySeries::compute_rates(const double* r, double* w) const {
-  if (terms_.variables == RateVariables::plain) {
-    std::copy_n(r, 3, w);
-  } else {
-    w[0] = (r[1] - r[0]) * terms_.to_rates[0], w[1] = r[2], w[2] = (r[0] + r[1]) * 0.5;
+void BodySeries::unpack(const double* rows, std::size_t n, double* omega, double* attitude) const {
+  for (const double* y = rows; y != rows + dimension * n; y += dimension, omega += 3, attitude += 4) {
+    double w[3];
+    compute_rates(y, turned_ ? w : omega);
+    if (turned_) {
+      for (int i = 0; i < 3; ++i) omega[i] = R_BP_(i, 0) * w[0] + R_BP_(i, 1) * w[1] + R_BP_(i, 2) * w[2];
+    }
+    if (!attitude_) continue;
+    const double size = y[4] * y[4] + y[5] * y[5] + y[6] * y[6] + y[7] * y[7];
+    const double s = std::abs(size - 1.0) < 1e-8 ? 1.5 - 0.5 * size : 1.0 / std::sqrt(size);
+    Quat q{s * y[4], s * y[5], s * y[6], s * y[7]};
+    if (turned_) q = q * q_PB_;
+    attitude[0] = q.x, attitude[1] = q.y, attitude[2] = q.z, attitude[3] = q.w;
   }
-}
-
-void BodySeries::unpack(const double* y, double* omega, double* attitude) const {
-  double w[3];
-  compute_rates(y, turned_ ? w : omega);
-  if (turned_) {
-    for (int i = 0; i < 3; ++i) omega[i] = R_BP_(i, 0) * w[0] + R_BP_(i, 1) * w[1] + R_BP_(i, 2) * w[2];
-  }
-  if (!attitude_) return;
-  const double n = y[4] * y[4] + y[5] * y[5] + y[6] * y[6] + y[7] * y[7];
-  const double s = std::abs(n - 1.0) < 1e-8 ? 1.5 - 0.5 * n : 1.0 / std::sqrt(n);
-  Quat q{s * y[4], s * y[5], s * y[6], s * y[7]};
-  if (turned_) q = q * q_PB_;
-  attitude[0] = q.x, attitude[1] = q.y, attitude[2] = q.z, attitude[3] = q.w;
 }
 
 void BodySeries::compute_series(DD t, double unit, const double* y, const double*, int order, double* rows) const {
@@ -203,15 +197,6 @@ void BodySeries::compute_series(DD t, double unit, const double* y, const double
     std::copy_n(tangent.data(), 3, vectors + 4 * (n + 1));
   }
   kernel_(terms_, {y, vectors, unit}, order, rows);
-}
-
-void BodySeries::compute_sizes(const double* row, double* sizes) const {
-  double w[3];
-  compute_rates(row, w);
-  const auto largest = [](double a, double b, double c) { return std::max({std::abs(a), std::abs(b), std::abs(c)}); };
-  // A sum as well, since a comparison lets what is not a number pass.
-  sizes[0] = largest(w[0], w[1], w[2]) + 0.0 * (w[0] + w[1] + w[2]);
-  sizes[1] = std::max(largest(row[4], row[5], row[6]), std::abs(row[7])) + 0.0 * (row[4] + row[5] + row[6] + row[7]);
 }
 
 double BodySeries::compute_time_scale(DD, const double* y) const {

@@ -56,7 +56,7 @@ Motion run_with_events(const Scene& scene, const SolveOptions& options, const Cl
   double y0[7];
   const double zero = 0.0;
   form.at(&zero, 1, y0, y0 + 3);
-  return run(scene, without_dense, y0, &unpack, [&](const double* y, double) {
+  return run(scene, without_dense, y0, by_rows<7>(&unpack), [&](const double* y, double) {
     return std::make_unique<ClosedFormStepper>(form, scene.t0(), y);
   });
 }

@@ -49,7 +49,7 @@ State Motion::at(double time) const {
     return state;
   }
   (time < start.t ? dense_backward : dense_forward)(time, y);
-  unpack(y, state.omega.data(), q);
+  unpack(y, 1, state.omega.data(), q);
   state.attitude = {q[0], q[1], q[2], q[3]};
   return state;
 }

@@ -27,7 +27,7 @@ Motion run(const Scene& scene, const SolveOptions& options, const double* y0, co
     State state;
     double attitude[4] = {NAN, NAN, NAN, NAN};
     state.t = t;
-    unpack(y, state.omega.data(), attitude);
+    unpack(y, 1, state.omega.data(), attitude);
     state.attitude = {attitude[0], attitude[1], attitude[2], attitude[3]};
     return state;
   };
@@ -49,17 +49,22 @@ Motion run(const Scene& scene, const SolveOptions& options, const double* y0, co
     std::vector<double> sorted(order.size());
     for (std::size_t i = 0; i < order.size(); ++i) sorted[i] = times[order[i]];
     const std::unique_ptr<ode::Stepper> stepper = make_stepper(y0, sorted.back());
-    const auto sink = [&](std::size_t index, double t, const double* y) {
-      double omega[3], attitude[4];
-      const std::size_t row = order[index];
-      double* w = want.omega ? motion.omega.data() + 3 * row : omega;
-      double* q = want.attitude ? motion.attitude.data() + 4 * row : attitude;
-      unpack(y, w, q);
-      if (t == scene.t0()) {   // whatever variables the method carries: the start is as it was given
-        std::copy_n(scene.omega().data(), 3, w);
-        q[0] = scene.attitude().x, q[1] = scene.attitude().y, q[2] = scene.attitude().z, q[3] = scene.attitude().w;
+    std::vector<double> omega, attitude;
+    const auto sink = [&](std::size_t first, std::span<const double> at, const double* rows) {
+      const std::size_t count = at.size();
+      omega.resize(3 * count), attitude.resize(4 * count);
+      unpack(rows, count, omega.data(), attitude.data());
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t row = order[first + i];
+        double *w = omega.data() + 3 * i, *q = attitude.data() + 4 * i;
+        if (at[i] == scene.t0()) {   // whatever variables the method carries: the start is as it was given
+          std::copy_n(scene.omega().data(), 3, w);
+          q[0] = scene.attitude().x, q[1] = scene.attitude().y, q[2] = scene.attitude().z, q[3] = scene.attitude().w;
+        }
+        if (want.omega) std::copy_n(w, 3, motion.omega.data() + 3 * row);
+        if (want.attitude) std::copy_n(q, 4, motion.attitude.data() + 4 * row);
+        answered[row] = 1;
       }
-      answered[row] = 1;
     };
     ode::DriveResult result = ode::drive(
         *stepper, std::span<const double>(sorted), sink,

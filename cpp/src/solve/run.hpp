@@ -14,8 +14,15 @@ struct RunOptions {
   ode::Tolerances tolerances;
 };
 
-/// omega and the unit attitude of a state; outlives the run where the dense output is kept.
-using Unpack = std::function<void(const double* y, double* omega, double* attitude)>;
+/// omega and the unit attitude of n states, row by row; outlives the run where the dense output is kept.
+using Unpack = std::function<void(const double* rows, std::size_t n, double* omega, double* attitude)>;
+/// From a function of one state of `dimension` numbers.
+template <int dimension, class UnpackOne>
+Unpack by_rows(UnpackOne unpack_one) {
+  return [unpack_one](const double* rows, std::size_t n, double* omega, double* attitude) {
+    for (std::size_t i = 0; i < n; ++i) unpack_one(rows + dimension * i, omega + 3 * i, attitude + 4 * i);
+  };
+}
 /// A stepper from the start state towards t_end.
 using MakeStepper = std::function<std::unique_ptr<ode::Stepper>(const double* y0, double t_end)>;
 

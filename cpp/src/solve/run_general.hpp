@@ -13,7 +13,7 @@ template <class Method, class P>
 Motion run_problem(const Scene& scene, const P& problem, const RunOptions& options) {
   double y0[P::dimension];
   P::pack(scene.start(), y0);
-  return run(scene, options.asked, y0, &P::unpack, [&](const double* y, double t_end) {
+  return run(scene, options.asked, y0, by_rows<P::dimension>(&P::unpack), [&](const double* y, double t_end) {
     return std::make_unique<typename Method::template Stepper<P>>(problem, scene.t0(), y, t_end, options.tolerances);
   });
 }

@@ -151,6 +151,7 @@ Motion solve_planned(const Scene& scene, const SolveOptions& options, const Piec
 }  // namespace
 
 Motion solve(const Scene& scene, const SolveOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
   check_options(scene, options);
   std::optional<Pieces> pieces;
   if (has_windows(scene)) {
@@ -161,7 +162,6 @@ Motion solve(const Scene& scene, const SolveOptions& options) {
     require_finite_start(scene);
     require_true_claims(scene);
   }
-  const auto begin = std::chrono::steady_clock::now();
   const bool by_tolerance = options.rtol || options.atol || options.step;
   const Pieces* cut_at = pieces ? &*pieces : nullptr;
   Motion motion = by_tolerance ? solve_by_tolerance(scene, options, cut_at) : solve_planned(scene, options, cut_at);

@@ -89,7 +89,7 @@ TEST_CASE("a functor is stepped by any general method, with no call between") {
   problem.pack(scene.start(), y0);
   ode::Dop853::Stepper<EulerProblem<Thruster, true, true>> stepper(problem, 0.0, y0, 5.0, {.rtol = 1e-10});
   const double times[] = {5.0};
-  ode::drive(stepper, times, [&](std::size_t, double, const double* y) { std::copy_n(y, 7, end); }, {});
+  ode::drive(stepper, times, [&](std::size_t, std::span<const double> at, const double* rows) { std::copy_n(rows + 7 * (at.size() - 1), 7, end); }, {});
   const Motion built_in = solve(scene, {.method = "dop853", .rtol = 1e-10});
   for (std::size_t k = 0; k < 3; ++k) CHECK(end[k] == built_in.omega[k]);
 }

@@ -21,7 +21,8 @@ struct DriveOptions {
   std::function<bool(double reached, double last)> progress = {};
 };
 
-using Sink = std::function<void(std::size_t index, double t, const double* y)>;
+/// Takes the answers to some of the times, the first of them times[first]: rows of the stepper's dimension.
+using Sink = std::function<void(std::size_t first, std::span<const double> times, const double* rows)>;
 
 struct DriveResult {
   Ending ending = Ending::finished;
@@ -31,8 +32,8 @@ struct DriveResult {
   DenseOutput dense = {};
 };
 
-/// Runs a stepper over `times`, which are sorted along the integration and lie on one side of the start, and hands each
-/// sample to `sink`. Knows nothing of how a step is made. At equal times every sample is handed out.
+/// Runs a stepper over `times`, which are sorted along the integration and lie on one side of the start, and hands the
+/// samples to `sink` in their order. Knows nothing of how a step is made. At equal times every sample is handed out.
 DriveResult drive(Stepper& stepper, std::span<const double> times, const Sink& sink, const DriveOptions& options);
 
 }  // namespace polhode::ode

@@ -7,11 +7,25 @@
 
 namespace polhode::ode {
 
-/// log2(x) for 0 < x < infinity to 1e-3: the exponent is exact, the mantissa's logarithm a cubic.
+/// log2(x) for 0 < x < infinity to 1e-3, in parts: the exponent is exact, the mantissa's logarithm a cubic. A difference
+/// of two is the same in every unit that is a power of two.
+struct RoughLog2 {
+  int exponent;
+  double mantissa;
+
+  RoughLog2() = default;
+  explicit RoughLog2(double x) {
+    const auto bits = std::bit_cast<std::uint64_t>(x);
+    const double m = std::bit_cast<double>((bits & 0x000fffffffffffffu) | 0x3ff0000000000000u) - 1.0;
+    exponent = static_cast<int>(bits >> 52) - 1023;
+    mantissa = m * (1.4249 + m * (-0.5797 + m * 0.1548));
+  }
+  friend double operator-(RoughLog2 a, RoughLog2 b) { return (a.exponent - b.exponent) + (a.mantissa - b.mantissa); }
+};
+
 inline double rough_log2(double x) {
-  const auto bits = std::bit_cast<std::uint64_t>(x);
-  const double m = std::bit_cast<double>((bits & 0x000fffffffffffffu) | 0x3ff0000000000000u) - 1.0;
-  return static_cast<double>(static_cast<int>(bits >> 52) - 1023) + m * (1.4249 + m * (-0.5797 + m * 0.1548));
+  const RoughLog2 log(x);
+  return log.exponent + log.mantissa;
 }
 
 /// 2^x to 1e-3, for |x| <= 1000 and as there beyond.

@@ -54,10 +54,11 @@ struct Taylor {
   static constexpr int least_order = 4;
 
   /// The cheapest order is -ln(tolerance) where each row costs the same, half of it where the price of all grows as the
-  /// square of their number. In between at first; towards the rounding short steps, which round less, are worth more.
+  /// square of their number. Nearly the first at loose tolerances, where rows are few; towards the rounding short steps,
+  /// which round less, are worth more.
   static int choose_order(double tolerance) {
     const double digits = -std::log(tolerance), tight = std::clamp((digits - 18.0) / 18.0, 0.0, 1.0);
-    const int order = static_cast<int>(std::ceil(1.0 + (0.8 - 0.28 * tight) * digits));
+    const int order = static_cast<int>(std::ceil(1.0 + (1.0 - 0.46 * tight) * digits));
     return std::clamp(order, least_order, most_series_order - 2);
   }
 
@@ -76,6 +77,8 @@ class Taylor::Stepper final : public ode::Stepper {
         tolerances_(tolerances),
         order_(choose_order(tolerances.rtol + tolerances.atol)),
         time_(t0) {
+    part_ = compute_part(tolerances.rtol);
+    for (int i = 0; i < 4; ++i) inverse_[i] = 1.0 / (order_ - 3 + i);
     std::copy_n(y0, P::dimension, y_);
     problem.start_carry(carry_);
     unit_ = power_of_two(std::min(problem.compute_time_scale(time_, y_), std::abs(t_end - t0)));
@@ -97,8 +100,8 @@ class Taylor::Stepper final : public ode::Stepper {
 
     std::copy_n(y_, W, y_old_);
     std::copy_n(carry_, W, carry_old_);
-    double increment[W];
-    series_kernels().increments(rows_, order_, carry_, &s, 1, increment);
+    alignas(64) double increment[W];
+    series_kernels().evaluate(rows_, order_, zero, carry_, &s, 1, increment);
     for (int i = 0; i < W; ++i) {
       const math::DD sum = math::two_sum(y_[i], increment[i]);
       y_[i] = sum.hi, carry_[i] = sum.lo;
@@ -116,23 +119,23 @@ class Taylor::Stepper final : public ode::Stepper {
     return StepResult::accepted;
   }
 
-  void interpolate(double t, double* out) override {
-    const double s = ((t - time_old_.hi) - time_old_.lo) / unit_old_;
-    double increment[W];
-    series_kernels().increments(rows_, order_, carry_old_, &s, 1, increment);
-    for (int i = 0; i < P::dimension; ++i) out[i] = y_old_[i] + increment[i];
-  }
+  void interpolate(double t, double* out) override { interpolate_many(&t, 1, out); }
 
   void interpolate_many(const double* times, std::size_t n, double* out) override {
-    constexpr std::size_t most = 16;
+    constexpr std::size_t most = 64;
+    const double inverse = 1.0 / unit_old_;   // a power of two: nothing is rounded
     double s[most];
-    alignas(64) double increment[W * most];
+    alignas(64) double rows[P::dimension == W ? 1 : W * most];
     for (std::size_t begin = 0; begin < n; begin += most) {
       const std::size_t count = std::min(most, n - begin);
-      for (std::size_t i = 0; i < count; ++i) s[i] = ((times[begin + i] - time_old_.hi) - time_old_.lo) / unit_old_;
-      series_kernels().increments(rows_, order_, carry_old_, s, count, increment);
-      for (std::size_t i = 0; i < count; ++i)
-        for (int k = 0; k < P::dimension; ++k) *out++ = y_old_[k] + increment[W * i + static_cast<std::size_t>(k)];
+      for (std::size_t i = 0; i < count; ++i) s[i] = ((times[begin + i] - time_old_.hi) - time_old_.lo) * inverse;
+      if constexpr (P::dimension == W) {
+        series_kernels().evaluate(rows_, order_, y_old_, carry_old_, s, count, out);
+      } else {
+        series_kernels().evaluate(rows_, order_, y_old_, carry_old_, s, count, rows);
+        for (std::size_t i = 0; i < count; ++i) std::copy_n(rows + W * i, P::dimension, out + P::dimension * i);
+      }
+      out += P::dimension * count;
     }
   }
 
@@ -149,13 +152,14 @@ class Taylor::Stepper final : public ode::Stepper {
 
   static void evaluate_segment(const double* segment, double fraction, double* out) {
     const double s = fraction * segment[2] + segment[3];
-    double increment[W];
-    series_kernels().increments(segment + header, static_cast<int>(segment[0]), segment + W, &s, 1, increment);
-    for (int i = 0; i < static_cast<int>(segment[1]); ++i) out[i] = segment[header + i] + increment[i];
+    double y[W];
+    series_kernels().evaluate(segment + header, static_cast<int>(segment[0]), segment + header, segment + W, &s, 1, y);
+    std::copy_n(y, static_cast<int>(segment[1]), out);
   }
 
  private:
   static constexpr int header = 2 * W;
+  static constexpr double zero[W] = {};
 
   /// The power of two below; in this unit of time the coefficients neither overflow nor underflow.
   static double power_of_two(double t) { return math::power_of_two_below(std::clamp(t, 0x1p-900, 0x1p900)); }
@@ -165,40 +169,41 @@ class Taylor::Stepper final : public ode::Stepper {
   /// coefficients vanish, not a number when the series is none.
   double expand() {
     problem_.compute_series(time_, unit_, y_, carry_, order_, rows_);
-    double size[5][P::blocks];
+    double size[5][P::blocks], sum = 0.0;
     const int row[5] = {0, 1, 2, order_ - 1, order_};
-    bool finite = true;
     for (int k = 0; k < 5; ++k) {
       problem_.compute_sizes(rows_ + W * row[k], size[k]);
-      for (int b = 0; b < P::blocks; ++b) finite = finite && size[k][b] < std::numeric_limits<double>::infinity();
+      for (int b = 0; b < P::blocks; ++b) sum += size[k][b];
     }
-    if (!finite) return std::numeric_limits<double>::quiet_NaN();
+    if (!(sum < std::numeric_limits<double>::infinity())) return std::numeric_limits<double>::quiet_NaN();
     double least = std::numeric_limits<double>::infinity();
     for (int b = 0; b < P::blocks; ++b) {
-      double head[3], largest = 0.0;
-      for (int j = 0; j < P::heads[b]; ++j) largest = std::max(largest, size[j][b]);
-      if (!(largest > 0.0)) largest = std::max(size[3][b], size[4][b]);
-      const double scale = 1.0 / math::power_of_two_below(largest);   // logarithms of ratios: no unit has a say
-      for (int j = 0; j < P::heads[b]; ++j) head[j] = size[j][b] > 0.0 ? rough_log2(scale * size[j][b]) : -1e4;
+      RoughLog2 head[3];
+      for (int j = 0; j < P::heads[b]; ++j) {
+        head[j] = RoughLog2(size[j][b]);
+        head[j].exponent = size[j][b] > 0.0 ? head[j].exponent : -10'000;
+      }
       // rtol size + atol, as a part of the size
-      const double tolerance = tolerances_.atol == 0.0 || !(size[0][b] > 0.0) ? tolerances_.rtol
-                                                                              : tolerances_.rtol + tolerances_.atol / size[0][b];
-      const double part = (rough_log2(tolerance) - 1.01) / (order_ - 1);
-      for (int m = order_ - 1; m <= order_; ++m) {
-        const double tail = size[3 + m - (order_ - 1)][b];
-        if (!(tail > 0.0)) continue;
-        const double log_tail = rough_log2(scale * tail);
+      const double part = tolerances_.atol == 0.0 || !(size[0][b] > 0.0)
+                              ? part_
+                              : compute_part(tolerances_.rtol + tolerances_.atol / size[0][b]);
+      for (int m = 0; m < 2; ++m) {
+        const double tail = size[3 + m][b];
+        const RoughLog2 log_tail(tail);
         double radius = -std::numeric_limits<double>::infinity();
-        for (int j = 0; j < P::heads[b]; ++j) radius = std::max(radius, (head[j] - log_tail) / (m - j));
-        least = std::min(least, radius + std::min(part, 0.0));
+        for (int j = 0; j < P::heads[b]; ++j) radius = std::max(radius, (head[j] - log_tail) * inverse_[m + 2 - j]);
+        least = tail > 0.0 ? std::min(least, radius + part) : least;
       }
     }
     return least > 1000.0 ? std::numeric_limits<double>::infinity() : rough_exp2(least);
   }
 
+  double compute_part(double tolerance) const { return std::min((rough_log2(tolerance) - 1.01) / (order_ - 1), 0.0); }
+
   const P& problem_;
   Tolerances tolerances_;
   int order_;
+  double part_, inverse_[4];   ///< 1 / (order - 3), ..., 1 / order
   math::DD time_, time_old_;
   double unit_ = 1.0, unit_old_ = 1.0;
   alignas(64) double y_[W] = {}, carry_[W] = {}, y_old_[W] = {}, carry_old_[W] = {};

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -37,11 +39,18 @@ class BodySeries {
   const math::DD& kept(int i) const { return kept_[i]; }
   std::string describe_state() const;   ///< what is carried, for the plan
 
-  /// w_B and, where it is carried, q_WB.
-  void unpack(const double* y, double* omega, double* attitude) const;
+  /// w_B and, where it is carried, q_WB, of n states.
+  void unpack(const double* rows, std::size_t n, double* omega, double* attitude) const;
 
   void compute_series(math::DD t, double unit, const double* y, const double* carry, int order, double* rows) const;
-  void compute_sizes(const double* row, double* sizes) const;
+  void compute_sizes(const double* row, double* sizes) const {
+    double w[3];
+    compute_rates(row, w);
+    const auto largest = [](double a, double b, double c) { return std::max(std::max(std::abs(a), std::abs(b)), std::abs(c)); };
+    // A sum as well, since a comparison lets what is not a number pass.
+    sizes[0] = largest(w[0], w[1], w[2]) + 0.0 * (w[0] + w[1] + w[2]);
+    sizes[1] = std::max(largest(row[4], row[5], row[6]), std::abs(row[7])) + 0.0 * (row[4] + row[5] + row[6] + row[7]);
+  }
   double compute_time_scale(math::DD t, const double* y) const;
   void start_carry(double* carry) const;
   void correct(math::DD t, double* y, double* carry) const;
@@ -51,7 +60,12 @@ class BodySeries {
   void add_torques(const Scene& scene);
   void set_column(double* column, const Vector3d& torque_P) const;   ///< torque over inertia, in the rate variables
   void correct_rates(double* y, double* carry) const;
-  void compute_rates(const double* r, double* omega_P) const;
+  void compute_rates(const double* r, double* omega_P) const {
+    const bool plain = terms_.variables == RateVariables::plain;
+    const double w1 = plain ? r[0] : (r[1] - r[0]) * terms_.to_rates[0], w2 = plain ? r[1] : r[2];
+    omega_P[2] = plain ? r[2] : (r[0] + r[1]) * 0.5;
+    omega_P[0] = w1, omega_P[1] = w2;
+  }
 
   Matrix3d R_BP_ = Matrix3d::Identity();
   Quat q_PB_ = {};

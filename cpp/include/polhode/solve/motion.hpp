@@ -67,7 +67,8 @@ struct Motion {
   bool has_dense = false;
   std::shared_ptr<const ClosedForm> closed_form = nullptr;   ///< in place of dense output, where there is one
   std::vector<std::shared_ptr<const Motion>> pieces = {};    ///< in place of dense output, where the span is cut
-  std::function<void(const double* y, double* omega, double* attitude)> unpack;   ///< a dense state as omega and attitude
+  /// Dense states, n rows, as omega and attitude.
+  std::function<void(const double* rows, std::size_t n, double* omega, double* attitude)> unpack;
   State start;
   double t_reached = 0.0;
   double t_begin = 0.0;                  ///< of a closed form's span, or a piece's

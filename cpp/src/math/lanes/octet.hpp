@@ -74,6 +74,7 @@ POLHODE_INLINE Quad blend(Quad a, Quad b) {
 
 #if defined(__AVX512DQ__)
 
+constexpr int octets_at_once = 8;   ///< of which sums of products may be under way without leaving the registers
 struct Octet {
   __m512d v;
 };
@@ -94,6 +95,7 @@ POLHODE_INLINE Octet spread(Quad q) {
 
 #else
 
+constexpr int octets_at_once = 2;
 struct Octet {
   Quad a, b;
 };

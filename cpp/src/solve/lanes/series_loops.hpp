@@ -17,8 +17,9 @@ constexpr auto reciprocals = [] {
   return table;
 }();
 
-/// The products of the recurrences, sum_j left_j right_{n-j}, eight components each, all in one loop: a loop's end costs
-/// as much as several products. From `shared` on they have one right factor in common.
+/// The products of the recurrences, sum_j left_j right_{n-j}, eight components each. Two rows' sums are made in one pass,
+/// where every factor that was loaded serves both: loads bind here, not sums. From `shared` on the products have one
+/// right factor in common.
 template <int count, int shared>
 class Products {
  public:
@@ -28,22 +29,21 @@ class Products {
   POLHODE_INLINE void put_right(int p, int n, Octet row) { store8(right_[n][p], row); }
   POLHODE_INLINE void put(int p, int n, Octet left, Octet right) { put_left(p, n, left), put_right(p, n, right); }
 
-  /// The sum over 0 < j < n: all but the two terms with the newest row, for which nobody should have to wait here.
-  POLHODE_INLINE void sum_older(int n, Octet (&out)[count]) const {
-    Octet a[count], b[count];
-    const int middle = n / 2;
-    const bool even = n % 2 == 0 && n > 0;
+  /// The sums of row n over 0 < j < n, without the two terms that have row n itself: nobody should have to wait for the
+  /// newest row here. Of row n + 1 those terms, too, that are known before row n.
+  POLHODE_INLINE void sum_older(int n, Octet (&out)[count], Octet (&next)[count]) const {
+    for (int p = 0; p < count; ++p) out[p] = next[p] = all8(0.0);
+    if (n < 2) return;
+    sum_groups<0>(n, out, next);
+  }
+
+  /// What sum_older left out of the row after n, once row n is known.
+  POLHODE_INLINE void add_newer(int n, Octet (&next)[count]) const {
+    if (n == 0) return;
     for (int p = 0; p < count; ++p) {
-      a[p] = even ? load8(left_[middle][p]) * load8(right_[middle][right(p)]) : all8(0.0);
-      b[p] = all8(0.0);
+      next[p] = madd(load8(left_[1][p]), load8(right_[n][right(p)]), next[p]);
+      next[p] = madd(load8(left_[n][p]), load8(right_[1][right(p)]), next[p]);
     }
-    for (int i = middle + 1; i < n; ++i) {
-      for (int p = 0; p < count; ++p) {
-        a[p] = madd(load8(left_[i][p]), load8(right_[n - i][right(p)]), a[p]);
-        b[p] = madd(load8(left_[n - i][p]), load8(right_[i][right(p)]), b[p]);
-      }
-    }
-    for (int p = 0; p < count; ++p) out[p] = a[p] + b[p];
   }
 
   POLHODE_INLINE Octet sum_newest(int p, int n) const {
@@ -53,6 +53,31 @@ class Products {
 
  private:
   static constexpr int right(int p) { return p < rights ? p : rights - 1; }
+
+  /// As many products at once as the registers hold.
+  template <int begin>
+  POLHODE_INLINE void sum_groups(int n, Octet (&out)[count], Octet (&next)[count]) const {
+    constexpr int end = begin + octets_at_once < count ? begin + octets_at_once : count;
+    Octet above[end - begin];   // right_{n + 1 - i}
+    for (int p = begin; p < end; ++p) above[p - begin] = load8(right_[n - 1][right(p)]);
+    for (int i = 2; i < n - 1; ++i) {
+      for (int p = begin; p < end; ++p) {
+        const Octet left = load8(left_[i][p]), here = load8(right_[n - i][right(p)]);
+        out[p] = madd(left, here, out[p]);
+        next[p] = madd(left, above[p - begin], next[p]);
+        above[p - begin] = here;
+      }
+    }
+    for (int p = begin; p < end; ++p) {
+      const Octet newest = load8(left_[n - 1][p]), first = load8(right_[1][right(p)]);
+      out[p] = madd(newest, first, out[p]);
+      if (n == 2) continue;
+      out[p] = madd(load8(left_[1][p]), load8(right_[n - 1][right(p)]), out[p]);
+      next[p] = madd(newest, above[p - begin], next[p]);
+    }
+    if constexpr (end < count) sum_groups<end>(n, out, next);
+  }
+
   alignas(64) double left_[ode::most_series_order + 1][count][W], right_[ode::most_series_order + 1][rights][W];
 };
 
@@ -61,9 +86,9 @@ POLHODE_INLINE Quad broadcast(Quad a) {
   return permute<i, i, i, i>(a);
 }
 
-/// m[0] a_0 + m[1] a_1 + m[2] a_2 + rest
+/// m[0] a_0 + m[1] a_1 + m[2] a_2 + rest, in two halves that do not wait for one another.
 POLHODE_INLINE Quad apply(const Quad (&m)[3], Quad a, Quad rest) {
-  return madd(broadcast<2>(a), m[2], madd(broadcast<1>(a), m[1], madd(broadcast<0>(a), m[0], rest)));
+  return madd(broadcast<0>(a), m[0], rest) + madd(broadcast<2>(a), m[2], broadcast<1>(a) * m[1]);
 }
 
 /// v x w = front(v) front(w) - back(v) back(w)
@@ -98,8 +123,8 @@ class Expansion {
     for (int i = 0; i < vectors; ++i) v_[i] = load4(start.vectors + 4 * i);
     torque_ = load4(c.torque) * HH;
     put(0, products);
-    front_w_ = front(w_), back_w_ = back(w_);
-    for (int i = 0; i < vectors; ++i) front_v_[i] = front(v_[i]), back_v_[i] = back(v_[i]);
+    minus_front_w_ = negative(front(w_)), back_w_ = back(w_);
+    for (int i = 0; i < vectors; ++i) front_v_[i] = front(v_[i]), minus_back_v_[i] = negative(back(v_[i]));
     if constexpr (separatrix) {
       // of (u w2, v w2, (v - u)(v + u)): the last is 2 (v_0 v_n - u_0 u_n)
       newest_[0] = blend<1>(all4(0.0), broadcast<2>(r_)) + blend<4>(all4(0.0), broadcast<0>(r_) * all4(-2.0));
@@ -111,6 +136,7 @@ class Expansion {
       newest_[1] = blend<1>(all4(0.0), broadcast<2>(r_)) + blend<4>(all4(0.0), broadcast<0>(r_));
       newest_[2] = blend<1>(all4(0.0), broadcast<1>(r_)) + blend<2>(all4(0.0), broadcast<0>(r_));
     }
+    for (int j = 0; j < 3; ++j) times_r_[j] = newest_[j] * product_;
     if constexpr (attitude) {
       times_q_[0] = permute<3, 2, 1, 0>(q_) ^ signs(0), times_q_[1] = permute<2, 3, 0, 1>(q_) ^ signs(1);
       times_q_[2] = permute<1, 0, 3, 2>(q_) ^ signs(2);
@@ -118,13 +144,28 @@ class Expansion {
     }
   }
 
+  /// Rows n + 1 and n + 2, of even n.
+  template <bool early>
+  POLHODE_INLINE void advance_pair(int n, Rows& products) {
+    Octet older[count], next[count];
+    products.sum_older(n, older, next);
+    advance<early>(n, products, older);
+    products.add_newer(n, next);
+    advance<early>(n + 1, products, next);
+  }
+
+  /// Row n + 1 alone.
+  POLHODE_INLINE void advance_last(int n, Rows& products) {
+    Octet older[count], next[count];
+    products.sum_older(n, older, next);
+    advance<false>(n, products, older);
+  }
+
   /// Row n + 1 from the rows before. `early`: what the first coefficients lose to a rounded constant is lost at every
   /// step alike, and adds up: there the constants keep their low parts.
   template <bool early>
-  POLHODE_INLINE void advance(int n, Rows& products) {
+  POLHODE_INLINE void advance(int n, Rows& products, const Octet (&older)[count]) {
     const Quad inverse = all4(reciprocals.of[n + 1]);
-    Octet older[count];
-    products.sum_older(n, older);
     Quad tau = n == 0 ? torque_ : all4(0.0);
     if (damped_) tau = apply(damping_, w_, tau);
     for (int i = 0; i < fixed; ++i) tau = apply(pull_[i], v_[i], tau);
@@ -135,19 +176,19 @@ class Expansion {
     }
     Quad next_v[kept];
     for (int i = 0; i < vectors; ++i) {
-      Quad x = low(older[carried + i]) + high(older[carried + i]);
-      if (n > 0) x = madd(front_v_[i], back(w_), madd(negative(back_v_[i]), front(w_), x));
-      next_v[i] = madd(front(v_[i]), back_w_, madd(negative(back(v_[i])), front_w_, x));
+      const Quad x = low(older[carried + i]) + high(older[carried + i]);
+      Quad sum = madd(back(v_[i]), minus_front_w_, madd(front(v_[i]), back_w_, x));
+      if (n > 0) sum = sum + madd(minus_back_v_[i], front(w_), front_v_[i] * back(w_));
+      next_v[i] = sum;
     }
     if constexpr (gradient) {
       next_v[fixed] = madd(orbit_, v_[fixed + 1], next_v[fixed]);
       next_v[fixed + 1] = next_v[fixed + 1] - orbit_ * v_[fixed];
     }
-    for (int i = 0; i < vectors; ++i) next_v[i] = next_v[i] * inverse;
 
     if constexpr (attitude) advance_attitude<early>(n, low(older[turn]) + high(older[turn]) + low(older[mixed]), inverse);
     advance_rates<early>(n, high(older[mixed]), tau, inverse);
-    for (int i = 0; i < vectors; ++i) v_[i] = next_v[i];
+    for (int i = 0; i < vectors; ++i) v_[i] = next_v[i] * inverse;
     put(n + 1, products);
   }
 
@@ -165,10 +206,7 @@ class Expansion {
       const Quad c = product_ / step, c_low = (remainder(c, step, product_) + product_low_) * inverse;
       r_ = madd(sum, c, madd(sum, c_low, tau / step));
     } else {
-      const Quad c = product_ * inverse;
-      Quad m[3];
-      for (int j = 0; j < 3; ++j) m[j] = newest_[j] * c;
-      r_ = apply(m, r_, older * c) + tau * inverse;
+      r_ = (apply(times_r_, r_, older * product_) + tau) * inverse;
     }
   }
 
@@ -189,13 +227,13 @@ class Expansion {
   template <bool early>
   POLHODE_INLINE void advance_attitude(int n, Quad older, Quad inverse) {
     const Quad i = permute<3, 2, 1, 0>(q_), j = permute<2, 3, 0, 1>(q_), k = permute<1, 0, 3, 2>(q_), half = all4(0.5);
-    if (n > 0) older = apply(times_q_, w_, older);
     if constexpr (early) {
+      if (n > 0) older = apply(times_q_, w_, older);
       const Quad sum = madd(i, times_w_[0], madd(j, times_w_[1], madd(k, times_w_[2], older)));
       q_ = half * sum / all4(n + 1.0);
     } else {
-      const Quad h = half * inverse;
-      q_ = madd(i, times_w_[0] * h, madd(j, times_w_[1] * h, madd(k, times_w_[2] * h, older * h)));
+      const Quad known = apply(times_q_, w_, older);
+      q_ = (madd(i, times_w_[0], known) + madd(k, times_w_[2], j * times_w_[1])) * (half * inverse);
     }
   }
 
@@ -235,7 +273,7 @@ class Expansion {
   Octet unscale_;
   Quad product_, product_low_, to_rates_, orbit_, torque_, damping_[3], pull_[fixed > 0 ? fixed : 1][3], tidal_[2];
   Quad r_, w_, q_, v_[kept], left_, right_;
-  Quad front_w_, back_w_, front_v_[kept], back_v_[kept], newest_[3], times_q_[3], times_w_[3];
+  Quad minus_front_w_, back_w_, front_v_[kept], minus_back_v_[kept], newest_[3], times_r_[3], times_q_[3], times_w_[3];
 };
 
 template <bool separatrix, bool attitude, int fixed, bool gradient>
@@ -243,9 +281,11 @@ void expand(const SeriesTerms& terms, const SeriesStart& start, int order, doubl
   using This = Expansion<separatrix, attitude, fixed, gradient>;
   typename This::Rows products;   // apart from the newest coefficients, which should stay in registers
   This expansion(terms, start, products, rows);
-  int n = 0;
-  for (; n < 4 && n < order; ++n) expansion.template advance<true>(n, products);
-  for (; n < order; ++n) expansion.template advance<false>(n, products);
+  expansion.template advance_pair<true>(0, products);
+  expansion.template advance_pair<true>(2, products);
+  int n = 4;
+  for (; n + 1 < order; n += 2) expansion.template advance_pair<false>(n, products);
+  if (n < order) expansion.template advance_last(n, products);
 }
 
 template <bool separatrix>

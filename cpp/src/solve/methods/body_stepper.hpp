@@ -196,7 +196,7 @@ Motion solve_with(const Scene& scene, const RunOptions& options) {
   using Pack = EulerProblem<NoTorque, true, true>;
   double y0[7];
   Pack::pack(scene.start(), y0);
-  Motion motion = run(scene, options.asked, y0, &Pack::unpack, [&](const double* y, double) {
+  Motion motion = run(scene, options.asked, y0, by_rows<Pack::dimension>(&Pack::unpack), [&](const double* y, double) {
     return std::make_unique<BodyStepper<Step>>(scene, scene.t0(), y, options.tolerances);
   });
   motion.plan = {"euler", "", "angular momentum, attitude"};

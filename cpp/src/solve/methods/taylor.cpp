@@ -11,7 +11,9 @@ namespace {
 Motion solve_taylor(const Scene& scene, const RunOptions& options) {
   // Shared with the motion, whose dense output needs it to be read.
   const auto series = std::make_shared<const BodySeries>(scene, scene.want().attitude || !options.asked.events.empty());
-  const Unpack unpack = [series](const double* y, double* omega, double* attitude) { series->unpack(y, omega, attitude); };
+  const Unpack unpack = [series](const double* rows, std::size_t n, double* omega, double* attitude) {
+    series->unpack(rows, n, omega, attitude);
+  };
   Motion motion = run(scene, options.asked, series->start(), unpack, [&](const double* y, double t_end) {
     return std::make_unique<ode::Taylor::Stepper<BodySeries>>(*series, scene.t0(), y, t_end, options.tolerances);
   });
