@@ -80,7 +80,17 @@ BodySeries::BodySeries(const Scene& scene, bool attitude) {
     const double size = std::abs(kept_[1].hi);
     free_ = size > 1e-240 && size < 1e240;
   }
+  find_invariants(scene);
   kernel_ = find_series_kernel(terms_, attitude_);
+}
+
+void BodySeries::find_invariants(const Scene& scene) {
+  using Sees = SeriesInvariants::Sees;
+  vertical_ = !attitude_ && moment_P_ != Vector3d::Zero();
+  const Sees sees = attitude_ ? Sees::attitude : vertical_ ? Sees::vertical : Sees::nothing;
+  const DD half_over_k = terms_.variables == RateVariables::separatrix ? Separatrix(I_).half_over_k() : DD(0.0);
+  invariants_ = SeriesInvariants(scene, terms_, I_, moment_P_, gradients_, orbit_phase_, half_over_k, sees);
+  invariants_.start(scene.t0(), start_, start_carry_);
 }
 
 void BodySeries::choose_variables(const Vector3d& w) {
@@ -106,7 +116,6 @@ void BodySeries::set_column(double* column, const Vector3d& torque_P) const {
 void BodySeries::add_torques(const Scene& scene) {
   const Matrix3d R_PB = R_BP_.transpose();
   Vector3d moment = Vector3d::Zero(), space = Vector3d::Zero();
-  int gradients = 0;
   for (const AnyTorque& torque : scene.torques()) {
     if (const auto* constant = std::get_if<torques::Constant>(&torque)) {
       if (constant->frame() == torques::Constant::Frame::space) {
@@ -121,15 +130,15 @@ void BodySeries::add_torques(const Scene& scene) {
       for (int j = 0; j < 3; ++j) set_column(terms_.damping[j], -C_P.col(j));
       terms_.damped = true;
     } else if (const auto* gradient = std::get_if<torques::GravityGradient>(&torque)) {
-      ++gradients;
+      ++gradients_;
       orbit_rate_ = gradient->mean_motion(), orbit_phase_ = gradient->phase();
     }
   }
   // Gravity pulls with -moment x (R^T e_z), a space torque with R^T tau: linear in one vector each.
-  const Vector3d moment_P = R_PB * moment;
-  if (moment_P != Vector3d::Zero()) {
+  moment_P_ = R_PB * moment;
+  if (moment_P_ != Vector3d::Zero()) {
     space_[terms_.fixed_vectors] = {0, 0, 1};
-    for (int j = 0; j < 3; ++j) set_column(terms_.pull[terms_.fixed_vectors][j], -moment_P.cross(Vector3d::Unit(j)));
+    for (int j = 0; j < 3; ++j) set_column(terms_.pull[terms_.fixed_vectors][j], -moment_P_.cross(Vector3d::Unit(j)));
     ++terms_.fixed_vectors;
   }
   if (const double size = space.cwiseAbs().maxCoeff(); size > 0.0) {
@@ -137,11 +146,11 @@ void BodySeries::add_torques(const Scene& scene) {
     for (int j = 0; j < 3; ++j) set_column(terms_.pull[terms_.fixed_vectors][j], size * Vector3d::Unit(j));
     ++terms_.fixed_vectors;
   }
-  if (gradients > 0) {
+  if (gradients_ > 0) {
     if (terms_.fixed_vectors == 1) terms_.fixed_vectors = 2;   // beside an orbit the kernels know none or two
     terms_.gradient = true;
     terms_.orbit_rate = orbit_rate_;
-    const double strength = 3.0 * gradients * orbit_rate_ * orbit_rate_;
+    const double strength = 3.0 * gradients_ * orbit_rate_ * orbit_rate_;
     double a[3];
     for (int i = 0; i < 3; ++i) a[i] = strength * ((I_[(i + 2) % 3] - I_[(i + 1) % 3]) / I_[i]);
     double *first = terms_.tidal[0], *second = terms_.tidal[1];
@@ -237,10 +246,15 @@ void BodySeries::correct_rates(double* y, double* carry) const {
   }
 }
 
-void BodySeries::correct(DD, double* y, double* carry) const {
+void BodySeries::correct(DD t, long step, double* y, double* carry) const {
   if (free_) correct_rates(y, carry);
-  if (!attitude_) return;
-  // |q| = 1. The carry keeps no more than rounding: it is not turned along with q, and what is larger would grow.
+  if (attitude_ || vertical_) keep_unit(y, carry);
+  // What a few steps leave is small, and the way back costs a fifth of a step.
+  if (invariants_.any() && step % 8 == 7) invariants_.restore(t, y, carry);
+}
+
+void BodySeries::keep_unit(double* y, double* carry) {
+  // |q| = 1, or the vertical's. The carry keeps no more than rounding: it is not turned along with q, and what is larger would grow.
   double norm = 0.0, cross = 0.0;
   for (int i = 4; i < 8; ++i) norm += y[i] * y[i], cross += y[i] * carry[i];
   const double lack = 0.5 * (1.0 - norm) - cross;

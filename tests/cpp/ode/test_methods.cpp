@@ -37,7 +37,7 @@ struct WithSeries {
   }
   double compute_time_scale(math::DD, const double*) const { return 1.0; }
   void start_carry(double*) const {}
-  void correct(math::DD, double*, double*) const {}
+  void correct(math::DD, long, double*, double*) const {}
 };
 
 /// y'' = -y with y(0) = (1, 0), or y' = y^2 when it should blow up.

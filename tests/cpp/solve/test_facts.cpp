@@ -99,7 +99,7 @@ TEST_CASE("facts: a thruster may spin a body up, gravity and damping do not") {
   CHECK(up.may_spin_up);
   CHECK(up.turns > (std::sqrt(0.14) * 10) / turn);
   // Turns of the scene S9 carried on, integrated by SciPy's DOP853 at 1e-10.
-  for (const auto [span, truth] : {std::pair{10.0, 0.938487}, {100.0, 49.3240}, {1000.0, 4621.87}}) {
+  for (const auto& [span, truth] : {std::pair{10.0, 0.938487}, {100.0, 49.3240}, {1000.0, 4621.87}}) {
     SceneParts parts = block({0.1, 0.2, 0.3}, {thruster});
     parts.times = {span};
     CHECK(compute_facts(Scene(parts)).turns == doctest::Approx(truth).epsilon(0.1));

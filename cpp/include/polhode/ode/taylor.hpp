@@ -17,7 +17,7 @@ namespace polhode::ode {
 /// y' = f(t, y) whose solution's Taylor coefficients are known by recurrences. A state is `dimension` <= series_width
 /// numbers y and what rounding took from them, `carry`.
 template <class P>
-concept SeriesProblem = requires(const P& problem, math::DD t, double unit, const double* y, int order, double* out) {
+concept SeriesProblem = requires(const P& problem, math::DD t, double unit, const double* y, int order, long step, double* out) {
   { P::dimension } -> std::convertible_to<int>;
   /// Rows 0..order of series_width numbers: the coefficients of y(t + unit s) in powers of s.
   problem.compute_series(t, unit, y, y, order, out);
@@ -29,8 +29,8 @@ concept SeriesProblem = requires(const P& problem, math::DD t, double unit, cons
   /// A time in which the solution changes; only its order of magnitude counts.
   { problem.compute_time_scale(t, y) } -> std::convertible_to<double>;
   problem.start_carry(out);
-  /// Brings state and carry back to what is known to hold; called after each step.
-  problem.correct(t, out, out);
+  /// Brings state and carry back to what is known to hold; called after each step, which are numbered from 0.
+  problem.correct(t, step, out, out);
 };
 
 /// The Taylor series of the solution itself. Order and step after Jorba & Zou 2005, Experimental Mathematics 14, 99,
@@ -109,7 +109,7 @@ class Taylor::Stepper final : public ode::Stepper {
     time_old_ = time_;
     unit_old_ = unit_;
     time_ = last ? math::DD(t_end) : time_ + h;
-    problem_.correct(time_, y_, carry_);
+    problem_.correct(time_, counts_.steps, y_, carry_);
     t_old_ = time_old_.hi;
     t_ = time_.hi;
     // A step cut short by the end says little about the next one.
@@ -198,7 +198,7 @@ class Taylor::Stepper final : public ode::Stepper {
     return least > 1000.0 ? std::numeric_limits<double>::infinity() : rough_exp2(least);
   }
 
-  double compute_part(double tolerance) const { return std::min((rough_log2(tolerance) - 1.01) / (order_ - 1), 0.0); }
+  double compute_part(double tolerance) const { return std::min((rough_log2(tolerance) - 2.0) / (order_ - 1), 0.0); }
 
   const P& problem_;
   Tolerances tolerances_;

@@ -7,6 +7,7 @@
 
 #include "polhode/math/double_double.hpp"
 #include "polhode/scene/scene.hpp"
+#include "polhode/solve/series_invariants.hpp"
 #include "polhode/solve/series_terms.hpp"
 
 namespace polhode {
@@ -53,13 +54,15 @@ class BodySeries {
   }
   double compute_time_scale(math::DD t, const double* y) const;
   void start_carry(double* carry) const;
-  void correct(math::DD t, double* y, double* carry) const;
+  void correct(math::DD t, long step, double* y, double* carry) const;
 
  private:
   void choose_variables(const Vector3d& omega_P);
   void add_torques(const Scene& scene);
+  void find_invariants(const Scene& scene);
   void set_column(double* column, const Vector3d& torque_P) const;   ///< torque over inertia, in the rate variables
   void correct_rates(double* y, double* carry) const;
+  static void keep_unit(double* y, double* carry);
   void compute_rates(const double* r, double* omega_P) const {
     const bool plain = terms_.variables == RateVariables::plain;
     const double w1 = plain ? r[0] : (r[1] - r[0]) * terms_.to_rates[0], w2 = plain ? r[1] : r[2];
@@ -76,6 +79,10 @@ class BodySeries {
   double balance_ = 0.0;
   math::DD kept_[2];
   SeriesTerms terms_;
+  Vector3d moment_P_ = Vector3d::Zero();   ///< weight times arm
+  int gradients_ = 0;
+  bool vertical_ = false;                  ///< carried beside the rates, without the attitude
+  SeriesInvariants invariants_;
   double start_[8] = {}, start_carry_[8] = {};
   Vector3d space_[2] = {Vector3d::Zero(), Vector3d::Zero()};   ///< the fixed vectors, space axes
   double orbit_rate_ = 0.0, orbit_phase_ = 0.0;

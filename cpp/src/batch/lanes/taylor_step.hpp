@@ -44,7 +44,7 @@ POLHODE_INLINE Wide log_step(const Wide (&size)[5], Wide tolerance, int order) {
   const Wide scale = power_of_two(-exponent_of_power(power_of_two_below(largest)));
   Wide head[heads];
   for (int j = 0; j < heads; ++j) head[j] = select(size[j] > zero, rough_log2(size[j] * scale), Wide(-1e4));
-  const Wide part = (rough_log2(tolerance) - Wide(1.01)) * Wide(1.0 / (order - 1));
+  const Wide part = (rough_log2(tolerance) - Wide(2.0)) * Wide(1.0 / (order - 1));
   Wide least = none;
   for (int m = order - 1; m <= order; ++m) {
     const Wide tail = size[3 + m - (order - 1)], log_tail = rough_log2(tail * scale);

@@ -11,7 +11,7 @@ struct SeriesStart {
   double unit;
 };
 
-/// Rows 0..order of eight numbers: the Taylor coefficients of y in powers of t / unit.
+/// Rows 0..order, which is at least 4, of eight numbers: the Taylor coefficients of y in powers of t / unit.
 using SeriesKernel = void (*)(const SeriesTerms& terms, const SeriesStart& start, int order, double* rows);
 
 /// `attitude`: the quaternion is carried; else nothing but the rates, or one fixed vector beside them.

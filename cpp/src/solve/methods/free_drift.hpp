@@ -100,7 +100,8 @@ class FreeDrift {
     const double rest[8] = {state[3], state[4], state[5], 0.0, state[6], state[7], state[8], state[9]};
     alignas(64) double rows[ode::series_width * (most + 1)], change[8];
     kernel_(terms_, {y, nullptr, 1.0}, order, rows);
-    ode::series_kernels().increments(rows, order, rest, &h, 1, change);
+    constexpr double zero[8] = {};
+    ode::series_kernels().evaluate(rows, order, zero, rest, &h, 1, change);
     for (int i = 0; i < 3; ++i) add(change[i], state[i], state[3 + i]);
     double norm = 0.0, cross = 0.0;
     for (int i = 0; i < 4; ++i) {

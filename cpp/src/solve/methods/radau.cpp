@@ -284,7 +284,7 @@ Motion solve_radau(const Scene& scene, const RunOptions& options) {
   const bool with_attitude =
       scene.want().attitude || scene.torque_sum().uses_attitude || !options.asked.events.empty();
   const auto body = std::make_shared<const radau::Body>(scene);   // the motion's dense output needs it to be read
-  const Unpack unpack = by_rows<radau::N>(
+  const Unpack unpack = by_rows<radau::Body::N>(
       [body](const double* y, double* omega, double* attitude) { body->unpack(y, omega, attitude); });
   Motion motion = run(scene, options.asked, body->start(), unpack, [&](const double* y, double t_end) {
     return std::make_unique<RadauStepper>(*body, scene, with_attitude, y, t_end, options.tolerances);
