@@ -14,18 +14,30 @@ struct SeriesInvariants::Values {
   double moving;   ///< twice the kinetic energy in the frame where the first is an energy
 };
 
-SeriesInvariants::SeriesInvariants(const Scene& scene, const SeriesTerms& terms, const Vector3d& I_P, const Vector3d& moment_P,
-                                   int gradients, double orbit_phase, const DD& half_over_k, Sees sees)
-    : separatrix_(terms.variables == RateVariables::separatrix), sees_(sees), orbit_phase_(orbit_phase), half_over_k_(half_over_k) {
+SeriesInvariants::SeriesInvariants(const Scene& scene, const SeriesTerms& terms, const Vector3d& I_P,
+                                   const Vector3d& moment_P, int gradients, double orbit_phase, const DD& half_over_k,
+                                   Sees sees)
+    : separatrix_(terms.variables == RateVariables::separatrix),
+      sees_(sees),
+      orbit_phase_(orbit_phase),
+      half_over_k_(half_over_k) {
   const TorqueSum& sum = scene.torque_sum();
   if (sum.acting == 0 || sees == Sees::nothing) return;
   const bool jacobi = sum.has_potential && !sum.keeps_energy && sum.keeps_jacobi && sees == Sees::attitude;
   first_ = (sum.has_potential && sum.keeps_energy) || jacobi;
   second_ = sum.keeps_vertical && sum.pattern_rate == 0.0;
-  if (jacobi) orbit_rate_ = terms.orbit_rate, tidal_ = 1.5 * gradients * orbit_rate_ * orbit_rate_;
+  if (jacobi) orbit_rate_ = terms.orbit_rate;
+  // In units of its own, by powers of two: squares of 1e160 rad/s have no room.
+  const double light = 1.0 / math::power_of_two_below(I_P.maxCoeff());
+  const double fall = std::sqrt(light * moment_P.cwiseAbs().maxCoeff());
+  const double rate = std::max({scene.omega().cwiseAbs().maxCoeff(), fall, std::abs(orbit_rate_)});
+  if (!(rate > 0.0)) first_ = second_ = false;
+  slow_ = 1.0 / math::power_of_two_below(rate);
+  orbit_ = orbit_rate_ * slow_, tidal_ = 1.5 * gradients * orbit_ * orbit_;
   for (int i = 0; i < 3; ++i) {
-    I_[i] = I_P[i], moment_[i] = moment_P[i];
-    alone_[i] = !separatrix_ && !terms.damped && terms.product[i] == 0.0 && terms.torque[i] == 0.0 && terms.tidal[0][i] == 0.0;
+    I_[i] = light * I_P[i], moment_[i] = light * moment_P[i] * slow_ * slow_;
+    alone_[i] = !separatrix_ && !terms.damped && terms.product[i] == 0.0 && terms.torque[i] == 0.0;
+    alone_[i] = alone_[i] && terms.tidal[0][i] == 0.0;
     for (const auto& vector : terms.pull)
       for (const auto& column : vector) alone_[i] = alone_[i] && column[i] == 0.0;
   }
@@ -35,15 +47,13 @@ void SeriesInvariants::start(double t0, const double* y, const double* carry) {
   if (!any()) return;
   const Values now = compute(t0, y, carry);
   kept_[0] = now.kept[0], kept_[1] = now.kept[1];
-  // The energies that are exchanged; squares of 1e-160 and 1e160 rad/s have no room.
-  size_ = std::max({std::abs(moment_[0]), std::abs(moment_[1]), std::abs(moment_[2]), tidal_ * std::max({I_[0], I_[1], I_[2]})});
-  const double all = size_ + now.moving;
-  if (!(all > 1e-240 && all < 1e240)) first_ = second_ = false;
+  const double heaviest = std::max({std::abs(moment_[0]), std::abs(moment_[1]), std::abs(moment_[2])});
+  exchanged_ = std::max(heaviest, tidal_ * std::max({I_[0], I_[1], I_[2]}));
 }
 
 SeriesInvariants::Values SeriesInvariants::compute(DD t, const double* y, const double* carry) const {
   DD w[3];
-  for (int i = 0; i < 3; ++i) w[i] = DD(y[i], carry[i]);
+  for (int i = 0; i < 3; ++i) w[i] = DD(slow_ * y[i], slow_ * carry[i]);
   if (separatrix_) {
     const DD u = w[0], v = w[1];
     w[1] = w[2], w[0] = (v - u) * half_over_k_, w[2] = (u + v) * DD(0.5);
@@ -75,11 +85,11 @@ SeriesInvariants::Values SeriesInvariants::compute(DD t, const double* y, const 
     const DD L = w[i] * DD(I_[i]);
     values.kept[0] = values.kept[0] + L * w[i] * DD(0.5) + g[i] * DD(moment_[i]);
     values.kept[1] = values.kept[1] + L * g[i];
-    const double relative = w[i].hi - orbit_rate_ * g[i].hi;
+    const double relative = w[i].hi - orbit_ * g[i].hi;
     values.slope[0][i] = I_[i] * relative, values.slope[1][i] = I_[i] * g[i].hi;
     values.moving += I_[i] * relative * relative;
   }
-  if (orbit_rate_ != 0.0) values.kept[0] = values.kept[0] - values.kept[1] * DD(orbit_rate_);
+  if (orbit_ != 0.0) values.kept[0] = values.kept[0] - values.kept[1] * DD(orbit_);
   return values;
 }
 
@@ -95,12 +105,17 @@ void SeriesInvariants::restore(DD t, double* y, double* carry) const {
       std::copy_n(s, 3, slope[k]);
     }
   }
-  for (int i = 0; i < 3; ++i) metric[i] = separatrix_ ? y[i] * y[i] : alone_[i] ? 0.0 : 1.0 / I_[i];
-  const auto product = [&](const double* a, const double* b) { return a[0] * b[0] * metric[0] + a[1] * b[1] * metric[1] + a[2] * b[2] * metric[2]; };
+  for (int i = 0; i < 3; ++i) {
+    const double r = slow_ * y[i];
+    metric[i] = separatrix_ ? r * r : alone_[i] ? 0.0 : 1.0 / I_[i];
+  }
+  const auto product = [&](const double* a, const double* b) {
+    return a[0] * b[0] * metric[0] + a[1] * b[1] * metric[1] + a[2] * b[2] * metric[2];
+  };
   const double aa = product(slope[0], slope[0]), ab = product(slope[0], slope[1]), bb = product(slope[1], slope[1]);
   const double da = (kept_[0] - now.kept[0]).hi, db = (kept_[1] - now.kept[1]).hi;
   // A body that hardly moves shows what its energy lacks in its attitude, not in its rates.
-  const bool first = first_ && now.moving > 0.05 * size_ && aa > 0.0, second = second_ && bb > 0.0;
+  const bool first = first_ && now.moving > 0.05 * exchanged_ && aa > 0.0, second = second_ && bb > 0.0;
   double along = 0.0, across = 0.0;
   if (const double det = aa * bb - ab * ab; first && second && det > 1e-3 * aa * bb) {
     along = (da * bb - db * ab) / det, across = (aa * db - ab * da) / det;
@@ -111,7 +126,7 @@ void SeriesInvariants::restore(DD t, double* y, double* carry) const {
   }
   double change[3], largest = 0.0, size = 0.0;
   for (int i = 0; i < 3; ++i) {
-    change[i] = metric[i] * (along * slope[0][i] + across * slope[1][i]);
+    change[i] = metric[i] * (along * slope[0][i] + across * slope[1][i]) / slow_;
     largest = std::max(largest, std::abs(change[i])), size = std::max(size, std::abs(y[i]));
   }
   if (!(largest < 0.1 * size)) return;

@@ -21,8 +21,8 @@ class SeriesInvariants {
   SeriesInvariants() = default;   ///< keeps nothing
   /// @param I_P, moment_P  principal moments; weight times arm, all bodies' weights together
   /// @param half_over_k    w1 = (v - u) / 2k of separatrix variables
-  SeriesInvariants(const Scene& scene, const SeriesTerms& terms, const Vector3d& I_P, const Vector3d& moment_P, int gradients,
-                   double orbit_phase, const math::DD& half_over_k, Sees sees);
+  SeriesInvariants(const Scene& scene, const SeriesTerms& terms, const Vector3d& I_P, const Vector3d& moment_P,
+                   int gradients, double orbit_phase, const math::DD& half_over_k, Sees sees);
 
   /// The values that are to be kept are those of this state.
   void start(double t0, const double* y, const double* carry);
@@ -37,7 +37,10 @@ class SeriesInvariants {
   bool first_ = false, second_ = false;   ///< energy or Jacobi's integral; L_z
   bool separatrix_ = false, alone_[3] = {};   ///< a rate that nothing changes
   Sees sees_ = Sees::nothing;
-  double I_[3] = {}, moment_[3] = {}, tidal_ = 0.0, orbit_rate_ = 0.0, orbit_phase_ = 0.0, size_ = 0.0;
+  /// In units of the body's own inertia and rate.
+  double I_[3] = {}, moment_[3] = {}, tidal_ = 0.0, orbit_rate_ = 0.0, orbit_phase_ = 0.0;
+  double slow_ = 1.0, orbit_ = 0.0;       ///< rates times this are near 1; orbit_rate_ among them
+  double exchanged_ = 0.0;                ///< size of the potential energy
   math::DD half_over_k_, kept_[2];
 };
 
