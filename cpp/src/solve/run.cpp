@@ -49,20 +49,31 @@ Motion run(const Scene& scene, const SolveOptions& options, const double* y0, co
     std::vector<double> sorted(order.size());
     for (std::size_t i = 0; i < order.size(); ++i) sorted[i] = times[order[i]];
     const std::unique_ptr<ode::Stepper> stepper = make_stepper(y0, sorted.back());
+    bool straight = true;   // the answers stand where they are wanted
+    for (std::size_t i = 0; i < order.size(); ++i) straight = straight && order[i] == order[0] + i;
     std::vector<double> omega, attitude;
     const auto sink = [&](std::size_t first, std::span<const double> at, const double* rows) {
       const std::size_t count = at.size();
-      omega.resize(3 * count), attitude.resize(4 * count);
-      unpack(rows, count, omega.data(), attitude.data());
+      const bool omega_here = straight && want.omega, attitude_here = straight && want.attitude;
+      if (!omega_here) omega.resize(3 * count);
+      if (!attitude_here) attitude.resize(4 * count);
+      double* w = omega_here ? motion.omega.data() + 3 * order[first] : omega.data();
+      double* q = attitude_here ? motion.attitude.data() + 4 * order[first] : attitude.data();
+      unpack(rows, count, w, q);
+      for (std::size_t i = 0; i < count && at[i] == scene.t0(); ++i) {
+        // Whatever variables the method carries: the start is as it was given.
+        const Quat& start = scene.attitude();
+        std::copy_n(scene.omega().data(), 3, w + 3 * i);
+        q[4 * i] = start.x, q[4 * i + 1] = start.y, q[4 * i + 2] = start.z, q[4 * i + 3] = start.w;
+      }
+      if (straight) {
+        std::fill_n(answered.begin() + static_cast<std::ptrdiff_t>(order[first]), count, 1);
+        return;
+      }
       for (std::size_t i = 0; i < count; ++i) {
         const std::size_t row = order[first + i];
-        double *w = omega.data() + 3 * i, *q = attitude.data() + 4 * i;
-        if (at[i] == scene.t0()) {   // whatever variables the method carries: the start is as it was given
-          std::copy_n(scene.omega().data(), 3, w);
-          q[0] = scene.attitude().x, q[1] = scene.attitude().y, q[2] = scene.attitude().z, q[3] = scene.attitude().w;
-        }
-        if (want.omega) std::copy_n(w, 3, motion.omega.data() + 3 * row);
-        if (want.attitude) std::copy_n(q, 4, motion.attitude.data() + 4 * row);
+        if (want.omega) std::copy_n(w + 3 * i, 3, motion.omega.data() + 3 * row);
+        if (want.attitude) std::copy_n(q + 4 * i, 4, motion.attitude.data() + 4 * row);
         answered[row] = 1;
       }
     };
@@ -112,6 +123,10 @@ Motion run(const Scene& scene, const SolveOptions& options, const double* y0, co
   const Itinerary itinerary(times, scene.t0());
   if (one_way(itinerary.backward, motion.dense_backward)) one_way(itinerary.forward, motion.dense_forward);
 
+  if (std::find(answered.begin(), answered.end(), 0) == answered.end()) {
+    motion.t = times;
+    return motion;
+  }
   // Rows that were not reached are left out.
   std::size_t kept = 0;
   for (std::size_t i = 0; i < n; ++i) {
