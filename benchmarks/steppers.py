@@ -82,23 +82,36 @@ def least(function, repeats=9):
 
 
 def show_calls():
-    """dop853 with the same torque built in, compiled and in Python: the difference for each right-hand side."""
-    def per_call(torque):
-        one = ph.Scene(inertia=(0.2, 0.4, 0.52), omega=(1, 2, 3), torques=[torque], times=[0.0, 100.0])
-        seconds, motion = least(lambda: ph.solve(one, method="dop853", rtol=1e-12))
-        return seconds / motion.stats["derivatives"]
+    """The same torque built in, compiled and in Python: the difference for each right-hand side, and what is the callable's."""
+    values, methods = (0.01, -0.02, 0.03), {"dop853": 1e-12, "rk45": 1e-9}
+    built_in = ph.torques.Constant(values)
 
-    values = (0.01, -0.02, 0.03)
+    def extra(torque, repeats=25):
+        """Seconds a right-hand side beyond the torque that is built in, by method; interleaved."""
+        one, other = (ph.Scene(inertia=(0.2, 0.4, 0.52), omega=(1, 2, 3), torques=[t], times=[0.0, 100.0]) for t in (torque, built_in))
+        best = {}
+        for method, rtol in methods.items():
+            cost = [np.inf, np.inf]
+            for _ in range(repeats):
+                for k, scene in enumerate((one, other)):
+                    begin = time.thread_time()
+                    motion = ph.solve(scene, method=method, rtol=rtol)
+                    cost[k] = min(cost[k], (time.thread_time() - begin) / motion.stats["derivatives"])
+            best[method] = cost[0] - cost[1]
+            print(f"  built in, {method}: {1e9 * cost[1]:.1f} ns a right-hand side")
+        return best
 
     def python(t, omega, attitude):
         return values
 
+    def show(name, torque, own):
+        for method, seconds in extra(torque).items():
+            print(f"{name}, {method}: {1e9 * seconds:.1f} ns a call, {1e9 * own:.1f} of them its own, {1e9 * (seconds - own):.1f} ours")
+
     own = least(lambda: [python(0.0, None, None) for _ in range(100_000)])[0] / 1e5
-    built_in = per_call(ph.torques.Constant(values))
-    print(f"built in {1e9 * built_in:.0f} ns a right-hand side; Python's own time {1e9 * own:.0f} ns")
-    print(f"Python callable: {1e9 * (per_call(ph.torques.Custom(python)) - built_in - own):.0f} ns a call more")
+    show("Python callable", ph.torques.Custom(python), own)
     try:
-        from numba import cfunc, types
+        from numba import cfunc, njit, types
     except ImportError:
         print("compiled: numba is not installed")
         return
@@ -108,7 +121,17 @@ def show_calls():
     def compiled(t, omega, attitude, torque, data):
         torque[0], torque[1], torque[2] = 0.01, -0.02, 0.03
 
-    print(f"compiled (numba): {1e9 * (per_call(ph.torques.Custom(compiled)) - built_in):.1f} ns a call, its own time included")
+    called = compiled.ctypes
+
+    @njit
+    def call_many(n, omega, torque):
+        for _ in range(n):
+            called(0.0, omega.ctypes, omega.ctypes, torque.ctypes, omega.ctypes)
+        return torque[0]
+
+    numbers, count = np.ones(4), 1_000_000
+    call_many(1, numbers, numbers)
+    show("compiled (numba)", ph.torques.Custom(compiled), least(lambda: call_many(count, numbers, numbers))[0] / count)
 
 
 def main():

@@ -54,7 +54,9 @@ class Custom {
     double unit[4], torque[3] = {NAN, NAN, NAN};
     normalise(in.attitude, unit);
     function_(in.t, in.omega, unit, torque, data_);
-    for (int i = 0; i < 3; ++i) tau_B[i] += torque[i];
+    // One by one, as it writes them: a wider read would have to wait until the stores have left the core.
+    const volatile double* written = torque;
+    for (int i = 0; i < 3; ++i) tau_B[i] += written[i];
   }
   double compute_potential(const TorqueInput& in) const;
 
