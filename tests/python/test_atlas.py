@@ -15,7 +15,7 @@ from polhode.atlas.entrants import entrants
 from polhode.atlas.families import step
 from polhode.atlas.family import LEVELS, Point, from_json, measure_cases, to_json, too_long
 from polhode.atlas.jobs import Job, find_families, rows_of
-from polhode.atlas.page import page
+from polhode.atlas.page import costs, page
 from polhode.atlas.results import FamilyResult, read_family, write_family
 from polhode.atlas.run import Failed, Refused, run
 from polhode.atlas.work import work
@@ -158,6 +158,17 @@ def test_an_atlas_is_written_whole(made):
     assert content["matrix"]["rk4 plain"]["norm"]["level"] == "fails"
     done = [s for s in steps if ": " in s[2] and not s[2].startswith("picture")]
     assert done[-1][0] == done[-1][1] == sum(len(rows_of(r.family)) for r in results)
+
+
+def test_what_every_row_cost_is_written_down(made):
+    folder, results, content, _ = made
+    for result in results:
+        spent = content["families"][result.family.name]["cpu_seconds"]
+        assert set(spent) == set(result.rows) and list(spent.values()) == sorted(spent.values(), reverse=True)
+        assert json.loads((folder / f"{result.family.name}.json").read_text())["cpu_seconds"] == spent
+        assert all(p.cpu > 0 for points in result.rows.values() for p in points)
+    assert content["cpu_seconds"] == pytest.approx(sum(sum(r.cpu.values()) for r in results), abs=0.1)
+    assert costs({"slow": 12.4, "fast": 0.3}) == "13 s of CPU, of them slow 12 s" and costs({"fast": 0.3}) == "0 s of CPU"
 
 
 def test_pictures_name_everyone_and_every_level(made):

@@ -69,6 +69,11 @@ def test_what_a_plan_foresees_grows_as_the_work_of_a_spin_up_does(span):
     assert 0.5 < price(scenes.spin_up(span)) / price(scenes.spin_up(1e2)) < 2
 
 
+def test_what_a_plan_foresaw_stands_beside_what_a_spin_up_took():
+    for point in BY_NAME["spin-up"].measure(WHO["solve"], True, LIMIT):
+        assert point.values["foreseen"] > 0 and point.values["took"] > 0
+
+
 @pytest.mark.parametrize("accuracy", [0.1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-9, 1e-12])
 def test_past_the_horizon_of_float64_solve_says_how_far_it_holds(accuracy):
     scene, rows = scenes.chaos(), stored("chaos")
