@@ -58,22 +58,29 @@ class Products {
   template <int begin>
   POLHODE_INLINE void sum_groups(int n, Octet (&out)[count], Octet (&next)[count]) const {
     constexpr int end = begin + octets_at_once < count ? begin + octets_at_once : count;
-    Octet above[end - begin];   // right_{n + 1 - i}
-    for (int p = begin; p < end; ++p) above[p - begin] = load8(right_[n - 1][right(p)]);
-    for (int i = 2; i < n - 1; ++i) {
+    // Nothing here waits for row n - 1, the last but one: it comes at the end.
+    if (n > 2) {
+      Octet above[end - begin];   // right_{n + 1 - i}
       for (int p = begin; p < end; ++p) {
-        const Octet left = load8(left_[i][p]), here = load8(right_[n - i][right(p)]);
-        out[p] = madd(left, here, out[p]);
-        next[p] = madd(left, above[p - begin], next[p]);
-        above[p - begin] = here;
+        above[p - begin] = load8(right_[n - 2][right(p)]);
+        out[p] = load8(left_[2][p]) * above[p - begin];
+      }
+      for (int i = 3; i < n - 1; ++i) {
+        for (int p = begin; p < end; ++p) {
+          const Octet left = load8(left_[i][p]), here = load8(right_[n - i][right(p)]);
+          out[p] = madd(left, here, out[p]);
+          next[p] = madd(left, above[p - begin], next[p]);
+          above[p - begin] = here;
+        }
       }
     }
     for (int p = begin; p < end; ++p) {
-      const Octet newest = load8(left_[n - 1][p]), first = load8(right_[1][right(p)]);
-      out[p] = madd(newest, first, out[p]);
+      const Octet newest_left = load8(left_[n - 1][p]), newest_right = load8(right_[n - 1][right(p)]);
+      out[p] = madd(newest_left, load8(right_[1][right(p)]), out[p]);
       if (n == 2) continue;
-      out[p] = madd(load8(left_[1][p]), load8(right_[n - 1][right(p)]), out[p]);
-      next[p] = madd(newest, above[p - begin], next[p]);
+      out[p] = madd(load8(left_[1][p]), newest_right, out[p]);
+      next[p] = madd(newest_left, load8(right_[2][right(p)]), next[p]);
+      next[p] = madd(load8(left_[2][p]), newest_right, next[p]);
     }
     if constexpr (end < count) sum_groups<end>(n, out, next);
   }
