@@ -71,7 +71,7 @@ class Certifier {
 
  private:
   Motion run(const Scene& scene, const SolveOptions& options, double rtol, bool moved = false) {
-    const RunOptions how{options, {rtol, options.atol.value_or(0.0)}};
+    const RunOptions how{options, {rtol, options.atol.value_or(find_atol(method_.record, scene_, rtol))}};
     Motion motion = plan_.pieces.empty() ? method_.solve(scene, how) : run_by_plan(scene, how, plan_, moved);
     stats_.steps += motion.stats.steps;
     stats_.rejected += motion.stats.rejected;

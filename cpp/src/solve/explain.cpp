@@ -4,9 +4,9 @@
 #include <numbers>
 
 #include "polhode/solve/closed_form.hpp"
+#include "solve/handover.hpp"
 #include "solve/measure.hpp"
 #include "solve/perturb.hpp"
-#include "solve/planned_pieces.hpp"
 #include "solve/planning.hpp"
 
 namespace polhode {
@@ -100,7 +100,11 @@ void explain_steps(const Scene& scene, const Facts& facts, const SolveOptions& o
                                             : "The torque does not look at the attitude, so the rates are solved alone.");
   }
   const ode::MethodRecord& record = find_method(plan.method);
-  if (facts.stiffness > 100) {
+  if (plan.pieces.size() == 2) {
+    reasons.push_back(format("Damping decays at up to %.3g /s over %.3g s. At first it spins so fast that accuracy bounds the steps, later "
+                             "stability would: taylor hands the state to radau at t = %.3g s, as a loose run foresees.",
+                             facts.decay, facts.span(), plan.pieces[1].begin));
+  } else if (facts.stiffness > 100) {
     reasons.push_back(format("Damping decays at up to %.3g /s over %.3g s (their product is %.0e): ", facts.decay, facts.span(), facts.stiffness) +
                       (record.implicit ? "stiff, which an implicit method steps over."
                                        : "explicit steps are short for stability's sake, and still cheaper than an implicit method."));
@@ -116,7 +120,7 @@ void explain_steps(const Scene& scene, const Facts& facts, const SolveOptions& o
   for (const Candidate& one : report.candidates) others += !one.exact && one.why_not.empty() && one.name != plan.method;
   if (options.method) {
     reasons.push_back(plan.method + " was asked for.");
-  } else if (others > 0) {
+  } else if (others > 0 && plan.pieces.empty()) {
     reasons.push_back(format("%s is the cheapest of %d methods at this accuracy over %.3g turns.", plan.method.c_str(), others + 1, facts.turns));
   }
   reasons.push_back(plan.certify ? "Its error is certified by a second, coarser run with every input moved by two units in the last place."
@@ -158,11 +162,16 @@ PlanReport explain_plan(const Scene& scene, const SolveOptions& options) {
   report.facts = compute_facts(scene);
   const Facts& facts = report.facts;
   report.plan = make_plan(scene, facts, options);
+  if (report.plan.method != "exact") {
+    if (const std::optional<PiecesPlan> damped = plan_damped(scene, facts, options)) report.facts = damped->facts;
+  }
   const bool exact = report.plan.method == "exact";
   const std::optional<ClosedForm> form = find_closed_form(scene, facts);
   judge_exact(scene, facts, options, form, report);
   for (const ode::MethodRecord& record : methods()) {
-    if (record.adaptive) report.candidates.push_back(judge_method(scene, facts, options, record));
+    if (!record.adaptive) continue;
+    report.candidates.push_back(judge_method(scene, facts, options, record));
+    if (record.name == report.plan.method && report.plan.pieces.empty()) report.candidates.back().predicted_seconds = report.plan.predicted_seconds;
   }
   if (exact) {
     explain_exact(scene, facts, *form, report);

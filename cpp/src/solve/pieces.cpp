@@ -191,10 +191,10 @@ bool has_windows(const Scene& scene) {
                      [](const AnyTorque& torque) { return std::holds_alternative<During>(torque); });
 }
 
-Pieces cut(const Scene& scene) {
+Pieces cut(const Scene& scene, std::vector<double> more) {
   const auto [first, last] = find_span(scene);
   const double t0 = scene.t0();
-  std::vector<double> edges;
+  std::vector<double> edges = std::move(more);
   for (const AnyTorque& torque : scene.torques()) {
     const During* during = find_windows(torque);
     if (during == nullptr) continue;

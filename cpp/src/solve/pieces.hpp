@@ -25,7 +25,8 @@ struct Pieces {
 
 bool has_windows(const Scene& scene);
 
-Pieces cut(const Scene& scene);
+/// @param more  other times at which to cut
+Pieces cut(const Scene& scene, std::vector<double> more = {});
 
 /// The scene of one piece: its torques, a start and times of its own.
 Scene make_piece_scene(const Scene& scene, const Piece& piece, const State& start, std::vector<double> times, const Wanted& want);

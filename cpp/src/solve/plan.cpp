@@ -6,8 +6,8 @@
 
 #include "polhode/core/error.hpp"
 #include "polhode/solve/closed_form.hpp"
+#include "solve/handover.hpp"
 #include "solve/methods/body_method.hpp"
-#include "solve/planned_pieces.hpp"
 #include "solve/planning.hpp"
 
 namespace polhode {
@@ -71,6 +71,14 @@ Candidate judge_closed_form(const Scene& scene, const ClosedForm& form, const Fa
   one.predicted_error = compute_closed_form_error(scene, facts, form);
   one.predicted_seconds = predict_closed_form(one.name, static_cast<double>(scene.times().size()), options.cost_factors);
   return one;
+}
+
+double find_atol(const ode::MethodRecord& record, const Scene& scene, double rtol) {
+  if (!record.implicit) return 0.0;
+  double span = 0.0;
+  for (const double t : scene.times()) span = std::max(span, std::abs(t - scene.t0()));
+  // At most 1: the same number is allowed in the quaternion's components.
+  return rtol * std::min({1.0, scene.omega().norm(), 1.0 / span});
 }
 
 double predict_closed_form(std::string_view model, double samples, const CostFactors* factors) {
@@ -139,7 +147,8 @@ Plan make_plan(const Scene& scene, const Facts& facts, const SolveOptions& optio
     if (form) return make_exact_plan(scene, *form, facts, options);
     if (options.method) throw_no_closed_form(scene, facts);
   }
-  return make_method_plan(scene, facts, options);
+  const std::optional<PiecesPlan> damped = plan_damped(scene, facts, options);
+  return damped ? damped->plan : make_method_plan(scene, facts, options);
 }
 
 void throw_no_closed_form(const Scene& scene, const Facts& facts) {

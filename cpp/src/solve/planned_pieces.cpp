@@ -227,7 +227,11 @@ PiecesPlan plan_pieces(const Scene& scene, const Pieces& pieces, const SolveOpti
 }
 
 Motion run_by_plan(const Scene& scene, const RunOptions& options, const Plan& plan, bool shaken) {
-  return run_pieces(scene, cut(scene), options.asked, [&](const Scene& piece, const SolveOptions& asked) {
+  std::vector<double> handovers;
+  for (const PiecePlan& one : plan.pieces) {
+    if (one.handed_over) handovers.push_back(one.begin);
+  }
+  return run_pieces(scene, cut(scene, std::move(handovers)), options.asked, [&](const Scene& piece, const SolveOptions& asked) {
     const PiecePlan& one = find_plan(plan, piece);
     std::string name = one.method;
     if (one.method == "exact") {
@@ -240,7 +244,7 @@ Motion run_by_plan(const Scene& scene, const RunOptions& options, const Plan& pl
     }
     const BodyMethod& method = find_body_method(name);
     const double rtol = std::max(options.tolerances.rtol * one.rtol_scale, method.record.least_rtol);
-    return method.solve(piece, RunOptions{asked, {rtol, options.tolerances.atol}});
+    return method.solve(piece, RunOptions{asked, {rtol, find_atol(method.record, scene, rtol)}});
   }, shaken);
 }
 

@@ -8,8 +8,8 @@
 #include "solve/certify.hpp"
 #include "solve/checked_options.hpp"
 #include "solve/exact_run.hpp"
+#include "solve/handover.hpp"
 #include "solve/methods/body_method.hpp"
-#include "solve/planned_pieces.hpp"
 #include "solve/planning.hpp"
 #include "solve/spot_check.hpp"
 
@@ -144,6 +144,9 @@ Motion solve_planned(const Scene& scene, const SolveOptions& options, const Piec
       return solve_exactly(scene, facts, options, *std::move(form), plan);
     }
     if (options.method) throw_no_closed_form(scene, facts);
+  }
+  if (const std::optional<PiecesPlan> damped = plan_damped(scene, facts, options)) {
+    return solve_certified(scene, damped->facts, options, damped->plan);
   }
   return solve_certified(scene, facts, options, make_method_plan(scene, facts, options));
 }
