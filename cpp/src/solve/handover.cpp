@@ -28,7 +28,7 @@ std::optional<Story> scout(const Scene& scene, const Facts& facts, const SolveOp
   for (int i = 1; i <= 24; ++i) times.push_back(scene.t0() + facts.after * i / 24);
   std::sort(times.begin(), times.end());
   const Scene loose(SceneParts{.inertia_B = scene.inertia_B(), .omega = scene.omega(), .attitude = scene.attitude(),
-                               .torques = scene.torques(), .times = std::move(times), .want = {true, false}, .t0 = scene.t0()});
+                               .torques = scene.torques(), .times = std::move(times), .want = {true, carries_attitude(scene, facts, options)}, .t0 = scene.t0()});
   SolveOptions quiet;
   quiet.max_steps = most_steps;
   quiet.progress = options.progress;
@@ -59,7 +59,7 @@ std::optional<PiecesPlan> plan_damped(const Scene& scene, const Facts& facts, co
   if (!compute_refusal("taylor", scene).empty()) return std::nullopt;
   const ode::MethodRecord &first = taylor_method.record, &second = radau_method.record;
   const ode::Forecast &explicitly = first.forecast, &implicitly = second.forecast;
-  const std::optional<Story> story = scout(scene, facts, options, static_cast<long>(0.25 * facts.stiffness / explicitly.stability));
+  const std::optional<Story> story = scout(scene, facts, options, static_cast<long>(0.2 * facts.stiffness / explicitly.stability));
   if (!story || story->t.empty()) return std::nullopt;
 
   const double accuracy = get_accuracy(options), turns = story->turned / (2 * std::numbers::pi);
