@@ -79,9 +79,10 @@ def solve_many(
 ) -> Motions:
     """Solve many scenes, or one scene from many starts.
 
-    With ``method="taylor"`` and ``rtol`` or ``atol`` eight bodies are stepped side by side in the lanes of registers, each
-    with its own time, step and error: the series that `solve` has, to the same tolerance but not to the same bits.
-    Everything else is done with each body as `solve` does it.
+    With ``rtol`` or ``atol`` and ``method="rk45"``, which is the default then, or ``"taylor"``, eight bodies are stepped side
+    by side in the lanes of registers, each with its own time, step and error: rk45 to the bits that `solve` has, taylor
+    to the same tolerance but not to the same bits. Everything else, and a body with a torque of its user's own
+    (`Custom`), is done as `solve` does it.
 
     Parameters
     ----------

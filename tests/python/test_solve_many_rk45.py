@@ -73,6 +73,14 @@ def test_each_body_is_what_solve_makes_of_it_to_the_bit(torques, want, skew):
         require_same(many, scenes, method="rk45", rtol=rtol, atol=atol)
 
 
+def test_each_body_has_torques_of_its_own():
+    # next to each other: orbit angles that the polynomials take, that the library takes, and that pass from one to the other
+    scenes = [one.replace(torques=[T.GravityGradient(0.2 + 0.01 * i, (0.5, 3e5, 1e5 - 1)[i % 3]), T.Gravity(0.1 * i, (0, 0.1, -0.02 * i))])
+              for i, one in enumerate(make_scenes([]))]
+    many = ph.solve_many(scenes, method="rk45", rtol=1e-6)
+    require_same(many, scenes, method="rk45", rtol=1e-6)
+
+
 @pytest.mark.parametrize(("rtol", "bound"), [(1e-4, 2e-2), (1e-8, 1e-6), (1e-12, 1e-10)])
 def test_the_tolerance_is_kept_against_the_closed_form(rtol, bound):
     many = ph.solve_many(make_scenes([]), rtol=rtol)   # rk45 is what solve() takes where only a tolerance is given

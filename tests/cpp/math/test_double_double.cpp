@@ -6,6 +6,7 @@
 #include "polhode/math/double_double.hpp"
 #include "polhode/math/phase.hpp"
 #include "polhode/math/sincos.hpp"
+#include "polhode/math/sincos_unfused.hpp"
 
 using namespace polhode::math;
 
@@ -68,4 +69,25 @@ TEST_CASE("sincos of cycles is right to an ulp in every quadrant") {
   CHECK(c == -1.0);
   sincos_cycles(-0.25, s, c);
   CHECK(s == -1.0);
+}
+
+TEST_CASE("sincos without fused operations is right in every quadrant, up to the largest angle that it takes") {
+  double worst = 0.0;
+  const auto check = [&](double x) {
+    double s = 0, c = 0;
+    sincos_unfused(x, s, c);
+    const SinCos exact = sincos(DD(x));
+    worst = std::max({worst, std::abs((DD(s) - exact.sin).hi), std::abs((DD(c) - exact.cos).hi)});
+  };
+  for (int i = -4096; i <= 4096; ++i) {
+    check(i / 512.0 + 1e-7 * (i % 7));
+    check(i * (most_unfused_angle / 4096));
+    check(i * 1.5707963267948966);   // next to a multiple of a quarter turn
+  }
+  CHECK(worst < 1.4e-16);
+  CHECK(worst > 4e-17);
+  double s = 1, c = 0;
+  sincos_unfused(0.0, s, c);
+  CHECK(s == 0.0);
+  CHECK(c == 1.0);
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "polhode/math/sincos_unfused.hpp"
 #include "polhode/torque/formulas.hpp"
 #include "polhode/torque/record.hpp"
 
@@ -52,7 +53,13 @@ class GravityGradient {
  private:
   void compute_radial(const TorqueInput& in, double* u_B) const {
     const double angle = mean_motion_ * in.t + phase_;
-    polhode::compute_radial(std::cos(angle), std::sin(angle), in.attitude, u_B);
+    double sine, cosine;
+    if (std::abs(angle) <= math::most_unfused_angle) {
+      math::sincos_unfused(angle, sine, cosine);   // the same bits for bodies in lanes
+    } else {
+      sine = std::sin(angle), cosine = std::cos(angle);
+    }
+    polhode::compute_radial(cosine, sine, in.attitude, u_B);
   }
 
   double mean_motion_;

@@ -4,6 +4,7 @@
 
 #include "batch/lanes/pass.hpp"
 #include "batch/lanes/rk45_block.hpp"
+#include "polhode/math/sincos_unfused.hpp"
 #include "polhode/ode/step_control.hpp"
 #include "polhode/ode/tableaus/dormand_prince54.hpp"
 #include "polhode/solve/euler_formulas.hpp"
@@ -16,6 +17,17 @@ namespace polhode::POLHODE_ISA {
 using Mask = math::Mask<Wide>;
 
 POLHODE_INLINE bool any(Mask mask) { return bits(mask) != 0; }
+
+/// As GravityGradient has them: beyond what the polynomials take they are the library's, lane by lane.
+POLHODE_INLINE void sincos_lanes(Wide angle, Wide& sine, Wide& cosine) {
+  math::sincos_unfused(angle, sine, cosine);
+  const Mask within = abs(angle) <= Wide(math::most_unfused_angle);
+  if (bits(within) == (1u << Wide::width) - 1) return;
+  alignas(64) double a[Wide::width], s[Wide::width], c[Wide::width];
+  angle.store(a);
+  for (int i = 0; i < Wide::width; ++i) s[i] = __builtin_sin(a[i]), c[i] = __builtin_cos(a[i]);
+  sine = select(within, sine, Wide::load(s)), cosine = select(within, cosine, Wide::load(c));
+}
 
 /// The torques' sum for eight bodies.
 template <bool diagonal>
@@ -39,12 +51,9 @@ POLHODE_INLINE void add_torques(const Rk45Block& b, Pass pass, Wide t, const Wid
       }
       case LaneTorque::Kind::weight: add_weight(v, q, tau); break;
       case LaneTorque::Kind::gradient: {
-        // v: mean motion, phase, strength. Sine and cosine are the library's, lane by lane: the bits of solve().
-        alignas(64) double angle[Wide::width], sine[Wide::width], cosine[Wide::width];
-        (v[0] * t + v[1]).store(angle);
-        for (int i = 0; i < Wide::width; ++i) cosine[i] = __builtin_cos(angle[i]), sine[i] = __builtin_sin(angle[i]);
-        Wide u[3], I[9];
-        compute_radial(Wide::load(cosine), Wide::load(sine), q, u);
+        Wide u[3], I[9], sine, cosine;   // v: mean motion, phase, strength
+        sincos_lanes(v[0] * t + v[1], sine, cosine);
+        compute_radial(cosine, sine, q, u);
         for (int i = 0; i < 9; ++i) I[i] = pass.load(b.inertia[i]);
         add_gradient<diagonal>(v[2], I, u, tau);
         break;
