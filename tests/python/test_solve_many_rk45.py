@@ -177,13 +177,14 @@ def test_units_make_no_difference(scale):
         assert np.abs(other.attitude - plain.attitude).max() < 1e-6
 
 
-def test_a_callable_goes_by_itself_beside_the_lanes():
+def test_callables_and_windows_go_by_themselves_beside_the_lanes():
     scenes = make_scenes(TORQUES["gravity"], times=(0.5, 1.0))[:9]
     for i in (2, 7):
         scenes[i] = scenes[i].replace(torques=[T.Custom(lambda t, w, q: (0.1 * t, 0, -w[2]))])
+    scenes[4] = scenes[4].replace(torques=[T.During(T.Constant((0.1, 0, 0.2)), [(0.25, 0.75)])])
     for threads in (1, 3):
         many = ph.solve_many(scenes, method="rk45", rtol=1e-8, threads=threads)
-        assert many.lanes.tolist() == [i not in (2, 7) for i in range(9)]
+        assert many.lanes.tolist() == [i not in (2, 4, 7) for i in range(9)]
         for i, one in enumerate(scenes):
             alone = ph.solve(one, method="rk45", rtol=1e-8)
             assert np.array_equal(many.omega[i], alone.omega) and np.array_equal(many.attitude[i], alone.attitude)

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -27,8 +28,8 @@ void put(Row* rows, int lane, const double* values, int n) {
   for (int i = 0; i < n; ++i) rows[i][lane] = values[i];
 }
 
-/// A torque as the lanes have it: its kind, and its numbers when `values` is given.
-LaneTorque::Kind describe(const AnyTorque& torque, double* values = nullptr) {
+/// A torque as the lanes have it, if they do: its kind, and its numbers when `values` is given.
+std::optional<LaneTorque::Kind> describe(const AnyTorque& torque, double* values = nullptr) {
   using Kind = LaneTorque::Kind;
   const auto give = [values](const double* numbers, int n) {
     if (values != nullptr) std::copy_n(numbers, n, values);
@@ -46,8 +47,11 @@ LaneTorque::Kind describe(const AnyTorque& torque, double* values = nullptr) {
     give(numbers, 3);
     return Kind::gradient;
   }
-  give(std::get<torques::Damping>(torque).matrix().data(), 9);
-  return Kind::damping;
+  if (const auto* one = std::get_if<torques::Damping>(&torque)) {
+    give(one->matrix().data(), 9);
+    return Kind::damping;
+  }
+  return std::nullopt;
 }
 
 /// Euler's equations, as run_euler() has them.
@@ -62,7 +66,7 @@ class EulerBody final : public LaneBody {
 
   std::string kind() const override {
     std::string kind = {static_cast<char>(diagonal_), static_cast<char>(attitude_)};
-    for (const AnyTorque& torque : scene_.torques()) kind += static_cast<char>(describe(torque));
+    for (const AnyTorque& torque : scene_.torques()) kind += static_cast<char>(*describe(torque));
     return kind;
   }
 
@@ -85,7 +89,7 @@ class Rk45Team final : public LaneTeam {
   Rk45Team(const EulerBody& first, const ode::Tolerances& tolerances)
       : kernels_(find_kernels(first.diagonal(), first.attitude())), tolerances_(tolerances), torques_(first.scene().torques().size()) {
     b_.rtol = tolerances.rtol, b_.atol = tolerances.atol;
-    for (std::size_t i = 0; i < torques_.size(); ++i) torques_[i].kind = describe(first.scene().torques()[i]);
+    for (std::size_t i = 0; i < torques_.size(); ++i) torques_[i].kind = *describe(first.scene().torques()[i]);
     b_.torques = torques_.data(), b_.torque_count = static_cast<int>(torques_.size());
   }
 
@@ -144,14 +148,14 @@ std::unique_ptr<LaneTeam> EulerBody::make_team(const ode::Tolerances& tolerances
   return std::make_unique<Rk45Team>(*this, tolerances);
 }
 
-/// A callable serves one body at a time.
-bool is_built_in(const Scene& scene) {
-  return std::ranges::none_of(scene.torques(), [](const AnyTorque& t) { return std::holds_alternative<torques::Custom>(t); });
+/// A callable serves one body at a time, and windows of time cut a span into pieces.
+bool takes_all(const Scene& scene) {
+  return std::ranges::all_of(scene.torques(), [](const AnyTorque& torque) { return describe(torque).has_value(); });
 }
 
 }  // namespace
 
-const LaneMethod rk45_lanes{ode::Rk45::record, &is_built_in,
+const LaneMethod rk45_lanes{ode::Rk45::record, &takes_all,
                             [](const Scene& scene) -> std::unique_ptr<LaneBody> { return std::make_unique<EulerBody>(scene); }};
 
 }  // namespace polhode
