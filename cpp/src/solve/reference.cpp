@@ -33,10 +33,12 @@ Real evaluate(const Series& a, Real s) {
 class BodySeries {
  public:
   BodySeries(const Scene& scene, int order) : scene_(&scene), order_(order) {
-    for (Vector* v : {&w_, &L_, &row_x_, &row_y_, &row_z_, &u_, &Iu_})
+    for (Vector* v : {&w_, &L_, &row_x_, &row_y_, &row_z_})
       for (Series& s : *v) s.assign(static_cast<std::size_t>(order) + 1, 0);
     for (Series& s : q_) s.assign(static_cast<std::size_t>(order) + 1, 0);
-    cos_ = sin_ = q_[0];
+    for (const AnyTorque& torque : scene.torques()) {
+      if (std::holds_alternative<torques::GravityGradient>(torque)) orbits_.push_back({q_[0], q_[0], w_, w_});
+    }
     const Matrix3d& I = scene.inertia_B().matrix();
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) I_[i][j] = I(i, j);
@@ -59,6 +61,7 @@ class BodySeries {
         tau[i] = multiply(L_[j], w_[k], n) - multiply(L_[k], w_[j], n);
       }
       if (scene_->torque_sum().uses_attitude) expand_rows(n);
+      orbit_ = orbits_.begin();
       for (const AnyTorque& torque : scene_->torques())
         std::visit([&](const auto& one) { add(one, t, n, tau); }, torque);
       for (int i = 0; i < 3; ++i)
@@ -155,20 +158,21 @@ class BodySeries {
   void add(const torques::GravityGradient& torque, Real t, int n, Real* tau) {
     const Real rate = torque.mean_motion();
     const auto at = index(n);
+    auto& [cos, sin, u, Iu] = *orbit_++;
     if (n == 0) {
-      cos_[0] = std::cos(rate * t + torque.phase());
-      sin_[0] = std::sin(rate * t + torque.phase());
+      cos[0] = std::cos(rate * t + torque.phase());
+      sin[0] = std::sin(rate * t + torque.phase());
     } else {
-      cos_[at] = -rate * sin_[at - 1] / n;
-      sin_[at] = rate * cos_[at - 1] / n;
+      cos[at] = -rate * sin[at - 1] / n;
+      sin[at] = rate * cos[at - 1] / n;
     }
     for (int i = 0; i < 3; ++i) {
-      u_[index(i)][at] = multiply(cos_, row_x_[index(i)], n) + multiply(sin_, row_y_[index(i)], n);
+      u[index(i)][at] = multiply(cos, row_x_[index(i)], n) + multiply(sin, row_y_[index(i)], n);
     }
-    for (int i = 0; i < 3; ++i) Iu_[index(i)][at] = apply(I_, i, u_, n);
+    for (int i = 0; i < 3; ++i) Iu[index(i)][at] = apply(I_, i, u, n);
     for (int i = 0; i < 3; ++i) {
       const auto j = index((i + 1) % 3), k = index((i + 2) % 3);
-      tau[i] += 3 * rate * rate * (multiply(u_[j], Iu_[k], n) - multiply(u_[k], Iu_[j], n));
+      tau[i] += 3 * rate * rate * (multiply(u[j], Iu[k], n) - multiply(u[k], Iu[j], n));
     }
   }
 
@@ -185,9 +189,14 @@ class BodySeries {
   const Scene* scene_;
   int order_;
   Square I_{}, inverse_{};
-  Vector w_, L_, row_x_, row_y_, row_z_, u_, Iu_;
+  Vector w_, L_, row_x_, row_y_, row_z_;
   std::array<Series, 4> q_;
-  Series cos_, sin_;
+  struct Orbit {
+    Series cos, sin;
+    Vector u, Iu;
+  };
+  std::vector<Orbit> orbits_;   // one for each gravity gradient, in the order of the torques
+  std::vector<Orbit>::iterator orbit_;
 };
 
 /// Goes from t0 through times in the order of `visit`, all on one side of it, and from piece to piece where windows end.
