@@ -349,3 +349,18 @@ def test_what_a_method_refuses_is_refused_with_its_piece():
         ph.solve(gradients, method="taylor", rtol=1e-9)
     apart = scene(During(GravityGradient(1e-3), [(0, 10)]), During(GravityGradient(2e-3), [(10, 30)]))
     assert ph.solve(apart, method="taylor", rtol=1e-9).status == "finished"
+
+
+def test_a_torque_that_acts_on_a_body_that_has_come_to_rest():
+    """Braked to nothing, then let go under its weight: the first step is not chosen by rates that are no longer there."""
+    braked = scene(During(Damping((1, 1, 1)), [(0, 40)]), During(Gravity(0.3, (0.1, 0.2, 0.3)), [(38, 60)]), attitude=TILTED)
+    motion = ph.solve(braked, accuracy=1e-6)
+    assert motion.success, motion.message
+    assert distance(motion, ph._core.reference(braked, 26, 1e-21, 100_000)[:2]) <= motion.error
+
+
+def test_the_reference_keeps_two_orbits_apart():
+    """It gave neither when both shared their series: seen by windowed scenes drawn at random."""
+    two = scene(During(GravityGradient(0.3), [(5, 40)]), During(GravityGradient(0.1, 0.7), [(20, 60)]))
+    omega, attitude, _ = ph._core.reference(two, 24, 1e-20, 10_000)
+    assert distance(ph.solve(two, method="dop853", rtol=1e-13), (omega, attitude)) < 1e-10

@@ -220,6 +220,17 @@ const PiecePlan& find_plan(const Plan& plan, const Scene& piece) {
   return plan.pieces.back();
 }
 
+/// A piece that begins with rates of which no sample tells begins at rest: a torque that acts anew would take its first
+/// step by their own size, far below the spacing of the times.
+std::optional<Scene> stop(const Scene& piece, const Scene& whole, double rtol) {
+  double span = 0.0;
+  for (const double t : whole.times()) span = std::max(span, std::abs(t - whole.t0()));
+  const double rate = piece.omega().norm();
+  if (piece.t0() == whole.t0() || rate == 0.0 || !(rate < 0.01 * rtol * std::min(whole.omega().norm(), 1 / span))) return std::nullopt;
+  return Scene(SceneParts{.inertia_B = piece.inertia_B(), .attitude = piece.attitude(), .torques = piece.torques(),
+                          .times = piece.times(), .want = piece.want(), .t0 = piece.t0(), .name = piece.name()});
+}
+
 }  // namespace
 
 PiecesPlan plan_pieces(const Scene& scene, const Pieces& pieces, const SolveOptions& options) {
@@ -244,7 +255,12 @@ Motion run_by_plan(const Scene& scene, const RunOptions& options, const Plan& pl
     }
     const BodyMethod& method = find_body_method(name);
     const double rtol = std::max(options.tolerances.rtol * one.rtol_scale, method.record.least_rtol);
-    return method.solve(piece, RunOptions{asked, {rtol, find_atol(method.record, scene, rtol)}});
+    const std::optional<Scene> stopped = stop(piece, scene, rtol);
+    const Scene& begun = stopped ? *stopped : piece;
+    Motion motion = method.solve(begun, RunOptions{asked, {rtol, find_atol(method.record, scene, rtol)}});
+    const bool stuck = motion.status == Status::failed && motion.stats.steps == 0;   // its first step was below the times' spacing
+    if (!stuck || name == "taylor" || !compute_refusal("taylor", begun).empty()) return motion;
+    return taylor_method.solve(begun, RunOptions{asked, {std::max(options.tolerances.rtol, taylor_method.record.least_rtol)}});
   }, shaken);
 }
 
