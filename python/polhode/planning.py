@@ -271,7 +271,7 @@ def plan(scene: Scene, accuracy: float | None = None, *, method: str | None = No
     method : str, optional
         One that is to be taken, whatever it costs: "exact" or a name of `methods()`.
     certify : bool
-        Bound the error by a second run; else it is only expected.
+        Bound the error; else it is only expected.
     formulation : {"euler", "lagrangian"}
         As in `solve`.
 

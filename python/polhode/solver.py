@@ -92,8 +92,8 @@ def solve(
     method : str, optional
         A name of `methods()`, or "exact" for the closed form alone; without it the plan's choice.
     certify : bool
-        Bound the error of a stepped motion by a second, coarser run. False saves that run: `motion.error` is then what is
-        expected, and `motion.error_kind` says so.
+        Bound the error of a stepped motion: carried along by the run itself, or by a second, coarser run. False saves that:
+        `motion.error` is then what is expected, and `motion.error_kind` says so.
     rtol, atol : float, optional
         Tolerances of a step, for those who want to choose: the error is then not estimated. Rates are measured against their own size, the quaternion against 1; atol is added, in
         rad/s and in quaternion components.

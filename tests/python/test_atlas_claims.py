@@ -85,7 +85,7 @@ def test_past_the_horizon_of_float64_solve_says_how_far_it_holds(accuracy):
     assert errors[motion.t <= said].max() <= accuracy   # and what it returns is that good for so long
     assert motion.t[errors > accuracy][0] - said <= 70
     if accuracy == 0.1:   # doubles at their best are lost at 219 to 260 s, by luck; at 246 s before any method was tuned
-        assert 246 - 30 <= said <= 246
+        assert 246 - 36 <= said <= 246   # a certificate is on the safe side of it
 
 
 @pytest.mark.parametrize(("name", "family", "text"), [("euler", "long", "burst"), ("leapfrog", "gimbal", "burst"),

@@ -19,7 +19,8 @@ from polhode import calibration
 def test_the_error_is_within_what_is_reported_and_that_within_what_is_asked(name, accuracy):
     motion = ph.solve(scene(name), accuracy)
     found = error(motion.omega, motion.attitude, truth(name))
-    assert motion.success and motion.error_kind == "bounded" and motion.stats["runs"] >= 2
+    assert motion.success and motion.error_kind == "bounded"
+    assert motion.stats["runs"] == 1 if motion.plan.method == "taylor" else motion.stats["runs"] >= 2   # it carries its error along
     assert found <= motion.error <= accuracy
     assert motion.error <= 1000 * found
     assert "certified" in motion.message
@@ -50,7 +51,8 @@ def test_what_float64_cannot_give_is_said():
 def test_without_certificate_the_error_is_expected():
     motion = ph.solve(scene("S5"), 1e-8, certify=False)
     assert motion.error_kind == "expected" and motion.stats["runs"] == 1 and "not certified" in motion.message
-    assert motion.stats["steps"] < ph.solve(scene("S5"), 1e-8).stats["steps"]
+    loose = {"certify": False, "method": "dop853"}
+    assert ph.solve(scene("S5"), 1e-8, **loose).stats["steps"] < ph.solve(scene("S5"), 1e-8, method="dop853").stats["steps"]
     assert 0 < motion.error <= 1e-8 and error(motion.omega, motion.attitude, truth("S5")) < 1e-8
 
 

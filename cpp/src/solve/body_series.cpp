@@ -185,6 +185,43 @@ void BodySeries::unpack(const double* rows, std::size_t n, double* omega, double
   }
 }
 
+BodySeries BodySeries::moved(double part) const {
+  BodySeries other = *this;
+  bool up = false;
+  const auto move = [&](double& x, double size) {
+    up = !up;
+    x += up ? part * size : -part * size;
+  };
+  SeriesTerms& terms = other.terms_;
+  const bool rounded = turned_ && R_BP_.cwiseAbs().maxCoeff() < 1.0;
+  for (int i = 0; i < 3; ++i) {
+    move(terms.product[i], rounded ? std::max(std::abs(terms.product[i]), I_.maxCoeff() / I_[i]) : terms.product[i]);
+  }
+  const auto move_column = [&](double* column) {
+    for (int i = 0; i < 3; ++i) move(column[i], column[i]);
+    up = !up;
+  };
+  move_column(terms.torque);
+  for (auto& column : terms.damping) move_column(column);
+  for (auto& vector : terms.pull)
+    for (auto& column : vector) move_column(column);
+  for (auto& column : terms.tidal) move_column(column);
+  move(terms.orbit_rate, terms.orbit_rate);
+  move(other.orbit_rate_, other.orbit_rate_);
+  move(other.orbit_phase_, other.orbit_phase_);
+  return other;
+}
+
+void BodySeries::measure_error(const double* y, const double* error, double* out) const {
+  double w[3], e[3];
+  compute_rates(y, w);
+  compute_rates(error, e);
+  out[0] = std::sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+  out[1] = std::sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
+  const double* q = error + 4;
+  out[2] = attitude_ ? 2 * std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]) : 0.0;
+}
+
 void BodySeries::compute_series(DD t, double unit, const double* y, const double*, int order, double* rows) const {
   alignas(64) double vectors[16] = {};
   int n = 0;

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "polhode/core/error.hpp"
+#include "polhode/ode/tracked_taylor.hpp"
 #include "solve/measure.hpp"
 #include "solve/methods/body_method.hpp"
 #include "solve/perturb.hpp"
@@ -19,6 +20,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t least_samples = 8;   // fewer differences may be small by chance
 constexpr int pieces = 48;                 // of the span, to count its turns
+constexpr double hopeless = 30.0;          // times the accuracy: a run that has lost as much is not worth its end
 
 Scene with_times(const Scene& scene, std::vector<double> times, const Wanted& want) {
   return Scene(SceneParts{.inertia_B = scene.inertia_B(), .omega = scene.omega(), .attitude = scene.attitude(),
@@ -39,7 +41,11 @@ class Certifier {
   Certifier(const Scene& scene, const Facts& facts, const SolveOptions& options, const Plan& plan)
       : scene_(scene), facts_(facts), options_(options), plan_(plan), method_(find_body_method(plan.method)) {
     // Rounding is as large as accuracies beyond this one, and differences of two runs are less faithful.
-    if (plan.accuracy <= 2e-12) safety_ = 5.0, ratio_ = 3 * pair_ratio;
+    if (plan.accuracy <= 2e-12) {
+      safety_ = carries() ? 4.0 : 5.0, ratio_ = 3 * pair_ratio;
+    } else if (plan.accuracy <= 1e-10) {
+      safety_ = 2.0;
+    }
     quiet_ = options;
     quiet_.dense = false;
     quiet_.events.clear();
@@ -51,27 +57,31 @@ class Certifier {
     double coarse = forecast.known() ? forecast.find_rtol(plan_.accuracy, turns) : plan_.accuracy / 10;
     coarse = std::clamp(coarse, ratio_ * least, 1e-2);
     if (!plan_.certify) return expect(coarse / ratio_, turns);
+    if (carries()) return track(coarse / ratio_);
     prepare();
     int stalled = 0;
     for (int round = 0;; ++round) {
       Motion motion = run_pair(coarse, std::max(coarse / ratio_, least));
       const double error = motion.error;
       const bool ended = !arrived(motion), done = ended || error <= plan_.accuracy;
-      // Where all is lost by the end, its size says nothing: then the run counts that is good for longest.
-      const bool lost = round > 0 && error > 0.5 && best_.error > 0.5, lasts = parting_ > kept_parting_;
-      stalled = round == 0 || error < 0.5 * best_.error || (lost && lasts) ? 0 : stalled + 1;
-      if (round == 0 || (lost ? lasts : error < best_.error) || motion.status == Status::stopped) {
+      const bool lost = error > 0.5 && best_.error > 0.5;
+      stalled = round == 0 || error < 0.5 * best_.error || (lost && is_better(error)) ? 0 : stalled + 1;
+      if (round == 0 || is_better(error) || motion.status == Status::stopped) {
         best_ = std::move(motion);
         kept_parting_ = parting_;
       }
       if (done || stalled >= 2 || coarse <= ratio_ * least) return conclude();
-      coarse = std::max(coarse / std::clamp(2 * error / plan_.accuracy, 3.0, 1e4), ratio_ * least);
+      // Errors fall more slowly than tolerances do, and a third try costs more than a finer second one.
+      coarse = std::max(coarse / std::clamp(std::pow(2 * error / plan_.accuracy, 1.2), 3.0, 1e4), ratio_ * least);
     }
   }
 
  private:
-  Motion run(const Scene& scene, const SolveOptions& options, double rtol, bool moved = false) {
-    const RunOptions how{options, {rtol, options.atol.value_or(find_atol(method_.record, scene_, rtol))}};
+  /// A motion in pieces has its whole chain run twice.
+  bool carries() const { return method_.carries_error && plan_.pieces.empty(); }
+
+  Motion run(const Scene& scene, const SolveOptions& options, double rtol, bool moved = false, ode::ErrorTrace* trace = nullptr) {
+    const RunOptions how{options, {rtol, options.atol.value_or(find_atol(method_.record, scene_, rtol))}, trace};
     Motion motion = plan_.pieces.empty() ? method_.solve(scene, how) : run_by_plan(scene, how, plan_, moved);
     stats_.steps += motion.stats.steps;
     stats_.rejected += motion.stats.rejected;
@@ -107,6 +117,54 @@ class Certifier {
       longer_ = with_times(scene_, std::move(times), scene_.want());
     }
     moved_ = perturb(longer_ ? *longer_ : scene_);
+  }
+
+  /// Where all is lost by the end, its size says nothing: then the run counts that is good for longest.
+  bool is_better(double error) const {
+    return error > 0.5 && best_.error > 0.5 ? parting_ > kept_parting_ : error < best_.error;
+  }
+
+  /// Runs that carry their error along. It is proportional to the tolerance until it is rounding, so that the second run
+  /// is at the right one; and where much more than asked is lost on the way, the run need not be ended to know.
+  Motion track(double rtol) {
+    const double least = method_.record.least_rtol;
+    for (bool first = true;; first = false) {
+      const bool last = rtol <= least;
+      ode::ErrorTrace trace{.asked = plan_.accuracy / safety_, .most = last ? infinity : hopeless,
+                            .all_terms = facts_.is_stiff_for_series()};
+      Motion motion = run_tracked(rtol, trace);
+      if (trace.given_up > 0) {
+        // What grew so much in a part of the span may grow as much again in each other part of its length.
+        const double parts = std::min(facts_.span() / trace.given_up, 4.0);
+        rtol = std::max(rtol / std::pow(10 * hopeless, parts), least);
+        continue;
+      }
+      const double error = motion.error;
+      const bool ended = !arrived(motion), stalled = !first && error > 0.5 * best_.error;
+      if (best_.t.empty() || is_better(error) || ended) {
+        best_ = std::move(motion);
+        kept_parting_ = parting_;
+      }
+      if (ended || error <= plan_.accuracy || last) return conclude();
+      rtol = stalled ? least : std::max(rtol / std::clamp(2 * error / plan_.accuracy, 10.0, 1e8), least);
+    }
+  }
+
+  Motion run_tracked(double rtol, ode::ErrorTrace& trace) {
+    Motion motion = run(scene_, options_, rtol, false, &trace);
+    motion.plan.rtol = rtol;
+    motion.error = infinity;
+    if (!arrived(motion) || motion.t.empty()) return motion;
+    double size = 0.0;
+    for (std::size_t i = 0; i + 2 < motion.omega.size(); i += 3) {
+      size = std::max(size, std::hypot(motion.omega[i], motion.omega[i + 1], motion.omega[i + 2]));
+    }
+    const double rates = motion.omega.empty() || trace.moved == 0.0 ? 0.0 : trace.moved / size;
+    const double error = std::max(rates, motion.attitude.empty() ? 0.0 : trace.turned);
+    // What is carried along grows without end; two attitudes are no farther apart than half a turn.
+    motion.error = safety_ * std::min(error, 3.141592653589793);
+    parting_ = motion.error <= plan_.accuracy ? infinity : trace.parting;
+    return motion;
   }
 
   Motion run_pair(double coarse, double fine) {
@@ -161,7 +219,9 @@ class Certifier {
     }
     if (best_.error <= plan_.accuracy) {
       best_.error_kind = "bounded";
-      note("certified: with the inputs moved by two units in the last place, a coarser run stays within the bound");
+      note(carries()
+               ? "certified: what each step loses and what rounding takes, carried along to the end, stays within the bound"
+               : "certified: with the inputs moved by two units in the last place, a coarser run stays within the bound");
     } else {
       best_.error_kind = "limit";
       note(describe_limit());

@@ -6,6 +6,7 @@
 #include "polhode/solve/closed_form.hpp"
 #include "solve/handover.hpp"
 #include "solve/measure.hpp"
+#include "solve/methods/body_method.hpp"
 #include "solve/perturb.hpp"
 #include "solve/planning.hpp"
 
@@ -123,8 +124,13 @@ void explain_steps(const Scene& scene, const Facts& facts, const SolveOptions& o
   } else if (others > 0 && plan.pieces.empty()) {
     reasons.push_back(format("%s is the cheapest of %d methods at this accuracy over %.3g turns.", plan.method.c_str(), others + 1, facts.turns));
   }
-  reasons.push_back(plan.certify ? "Its error is certified by a second, coarser run with every input moved by two units in the last place."
-                                 : "Its error is only expected: no certificate was wanted.");
+  if (!plan.certify) {
+    reasons.push_back("Its error is only expected: no certificate was wanted.");
+  } else if (find_body_method(plan.method).carries_error && plan.pieces.empty()) {
+    reasons.push_back("Its error is certified in the same run: what each step loses is carried along to the end.");
+  } else {
+    reasons.push_back("Its error is certified by a second, coarser run with every input moved by two units in the last place.");
+  }
   if (plan.predicted_error > forecast_slack * plan.accuracy) {
     reasons.push_back(format("Rounding over so many turns is expected to leave %.0e: the result may say \"limit\".", plan.predicted_error));
   }

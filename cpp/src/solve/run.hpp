@@ -8,10 +8,15 @@
 
 namespace polhode {
 
+namespace ode {
+struct ErrorTrace;
+}
+
 /// What remains of the options once they have been checked.
 struct RunOptions {
   const SolveOptions& asked;
   ode::Tolerances tolerances;
+  ode::ErrorTrace* trace = nullptr;   ///< where the method carries its error along (BodyMethod::carries_error)
 };
 
 /// omega and the unit attitude of n states, row by row; outlives the run where the dense output is kept.

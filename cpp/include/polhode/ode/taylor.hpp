@@ -67,7 +67,7 @@ struct Taylor {
 };
 
 template <SeriesProblem P>
-class Taylor::Stepper final : public ode::Stepper {
+class Taylor::Stepper : public ode::Stepper {
   static constexpr int W = series_width;
 
  public:
@@ -157,10 +157,10 @@ class Taylor::Stepper final : public ode::Stepper {
     std::copy_n(y, static_cast<int>(segment[1]), out);
   }
 
- private:
   static constexpr int header = 2 * W;
   static constexpr double zero[W] = {};
 
+ private:
   /// The power of two below; in this unit of time the coefficients neither overflow nor underflow.
   static double power_of_two(double t) { return math::power_of_two_below(std::clamp(t, 0x1p-900, 0x1p900)); }
 
@@ -200,6 +200,7 @@ class Taylor::Stepper final : public ode::Stepper {
 
   double compute_part(double tolerance) const { return std::min((rough_log2(tolerance) - 2.0) / (order_ - 1), 0.0); }
 
+ protected:
   const P& problem_;
   Tolerances tolerances_;
   int order_;
@@ -208,6 +209,8 @@ class Taylor::Stepper final : public ode::Stepper {
   double unit_ = 1.0, unit_old_ = 1.0;
   alignas(64) double y_[W] = {}, carry_[W] = {}, y_old_[W] = {}, carry_old_[W] = {};
   alignas(64) double rows_[W * (most_series_order + 1)] = {};
+
+ private:
   std::array<double, header + W * (most_series_order + 1)> segment_ = {};
 };
 

@@ -43,6 +43,12 @@ class BodySeries {
   /// w_B and, where it is carried, q_WB, of n states.
   void unpack(const double* rows, std::size_t n, double* omega, double* attitude) const;
 
+  /// All constants moved by this part of each, up or down by a fixed rule; those of a full tensor, whose principal axes
+  /// are rounded, by this part of the largest moment.
+  BodySeries moved(double part) const;
+  /// Of a state and a small error of it: |w|, the error of w, and that of the attitude as an angle.
+  void measure_error(const double* y, const double* error, double* out) const;
+
   void compute_series(math::DD t, double unit, const double* y, const double* carry, int order, double* rows) const;
   void compute_sizes(const double* row, double* sizes) const {
     double w[3];

@@ -21,6 +21,8 @@ struct Facts {
 
   double span() const { return before + after; }
   bool is_free() const { return torques.acting == 0; }
+  /// A step of a Taylor series, an eighth of a turn or so, is then short for stability's sake.
+  bool is_stiff_for_series() const { return stiffness > 2 * turns; }
 };
 
 /// All of them.

@@ -13,6 +13,7 @@ struct BodyMethod {
   Motion (*solve)(const Scene& scene, const RunOptions& options);
   std::string (*refuse)(const Scene& scene) = nullptr;   ///< "" when it takes the scene; null: it takes any
   bool of_bodies = true;                                 ///< steps the body itself and no other formulation
+  bool carries_error = false;                            ///< fills RunOptions::trace
 };
 
 /// @throws InvalidInput for an unknown name, with the names there are.

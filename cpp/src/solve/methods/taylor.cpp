@@ -1,6 +1,7 @@
-#include "polhode/ode/taylor.hpp"
+#include "polhode/ode/tracked_taylor.hpp"
 
 #include <memory>
+#include <optional>
 
 #include "polhode/solve/body_series.hpp"
 #include "solve/methods/body_method.hpp"
@@ -14,15 +15,22 @@ Motion solve_taylor(const Scene& scene, const RunOptions& options) {
   const Unpack unpack = [series](const double* rows, std::size_t n, double* omega, double* attitude) {
     series->unpack(rows, n, omega, attitude);
   };
-  Motion motion = run(scene, options.asked, series->start(), unpack, [&](const double* y, double t_end) {
+  std::optional<BodySeries> moved;
+  if (options.trace != nullptr) moved = series->moved(ode::TrackedTaylor<BodySeries>::compute_move(*options.trace));
+  const auto make = [&](const double* y, double t_end) -> std::unique_ptr<ode::Stepper> {
+    if (moved) {
+      return std::make_unique<ode::TrackedTaylor<BodySeries>>(*series, *moved, scene.t0(), y, t_end, options.tolerances,
+                                                              *options.trace);
+    }
     return std::make_unique<ode::Taylor::Stepper<BodySeries>>(*series, scene.t0(), y, t_end, options.tolerances);
-  });
+  };
+  Motion motion = run(scene, options.asked, series->start(), unpack, make);
   motion.plan = {"euler", "", series->describe_state()};
   return motion;
 }
 
 }  // namespace
 
-const BodyMethod taylor_method{ode::Taylor::record, &solve_taylor, &compute_series_refusal};
+const BodyMethod taylor_method{ode::Taylor::record, &solve_taylor, &compute_series_refusal, true, true};
 
 }  // namespace polhode
