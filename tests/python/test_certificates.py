@@ -93,3 +93,9 @@ def test_only_the_samples_count():
     many = ph.solve(ph.Scene(inertia=BLOCK, omega=(1, 2, 3), torques=torques, times=np.linspace(0, 60, 121), want="omega"), 1e-9, method="taylor")
     assert end.success and many.success and len(end) == 1
     assert np.linalg.norm(end.omega[0] - many.omega[-1]) <= (end.error + many.error) * np.linalg.norm(end.omega[0]) * 500
+
+
+def test_a_pair_does_not_share_its_inputs():
+    """Both runs have a sphere's rates to the last bit: what is left is what two units in the last place of them do."""
+    sphere = ph.Scene(inertia=(2, 2, 2), omega=(1, 2, 3), times=TIMES, want="omega")
+    assert 1e-16 < ph.solve(sphere, 1e-9, method="rk45").error < 1e-12
