@@ -25,7 +25,8 @@ struct Body {
       const double g[3] = {2 * (q[0] * q[2] - q[3] * q[1]), 2 * (q[1] * q[2] + q[3] * q[0]),
                            q[2] * q[2] + q[3] * q[3] - q[0] * q[0] - q[1] * q[1]};
       const double m[3] = {p[0] * p[1], p[0] * p[2], p[0] * p[3]};
-      tau[0] = -(m[1] * g[2] - m[2] * g[1]), tau[1] = -(m[2] * g[0] - m[0] * g[2]), tau[2] = -(m[0] * g[1] - m[1] * g[0]);
+      tau[0] = -(m[1] * g[2] - m[2] * g[1]), tau[1] = -(m[2] * g[0] - m[0] * g[2]),
+      tau[2] = -(m[0] * g[1] - m[1] * g[0]);
     } else if constexpr (kind == gradient) {
       const double n = p[0], c = std::cos(n * t), s = std::sin(n * t);
       const double u[3] = {
@@ -33,7 +34,8 @@ struct Body {
           c * 2 * (q[0] * q[1] - q[3] * q[2]) + s * (1 - 2 * (q[0] * q[0] + q[2] * q[2])),
           c * 2 * (q[0] * q[2] + q[3] * q[1]) + s * 2 * (q[1] * q[2] - q[3] * q[0])};
       const double k = 3 * n * n;
-      tau[0] = k * (I[2] - I[1]) * u[1] * u[2], tau[1] = k * (I[0] - I[2]) * u[2] * u[0], tau[2] = k * (I[1] - I[0]) * u[0] * u[1];
+      tau[0] = k * (I[2] - I[1]) * u[1] * u[2], tau[1] = k * (I[0] - I[2]) * u[2] * u[0],
+      tau[2] = k * (I[1] - I[0]) * u[0] * u[1];
     } else if constexpr (kind == damped) {
       for (int i = 0; i < 3; ++i) tau[i] = -p[i] * w[i];
     } else if constexpr (kind == thruster) {
@@ -56,12 +58,13 @@ void solve(const double* I, const double* p, const double* y0, const double* tim
   std::copy_n(y0, 7, y.begin());
   long row = 0;
   auto stepper = odeint::make_dense_output(0.0, rtol, odeint::runge_kutta_dopri5<State>());
-  odeint::integrate_times(stepper, body, y, times, times + n, 1e-3 * (times[n - 1] - times[0]) / n, [&](const State& s, double) {
-    const double norm = std::sqrt(s[3] * s[3] + s[4] * s[4] + s[5] * s[5] + s[6] * s[6]);
-    double* o = out + 7 * row++;
-    for (int i = 0; i < 3; ++i) o[i] = s[static_cast<std::size_t>(i)];
-    for (int i = 3; i < 7; ++i) o[i] = s[static_cast<std::size_t>(i)] / norm;
-  });
+  odeint::integrate_times(stepper, body, y, times, times + n, 1e-3 * (times[n - 1] - times[0]) / n,
+                          [&](const State& s, double) {
+                            const double norm = std::sqrt(s[3] * s[3] + s[4] * s[4] + s[5] * s[5] + s[6] * s[6]);
+                            double* o = out + 7 * row++;
+                            for (int i = 0; i < 3; ++i) o[i] = s[static_cast<std::size_t>(i)];
+                            for (int i = 3; i < 7; ++i) o[i] = s[static_cast<std::size_t>(i)] / norm;
+                          });
 }
 
 double cpu_seconds() {

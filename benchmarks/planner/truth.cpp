@@ -1,5 +1,5 @@
-// Truth for random scenes: Taylor series of (omega, quaternion) in the x87's 64-bit mantissa, order 24, tolerance 2e-20,
-// as a shared library for benchmarks/planner/truth.py. Independent of the library: it includes nothing of it.
+// Truth for random scenes: Taylor series of (omega, quaternion) in the x87's 64-bit mantissa, order 24, tolerance
+// 2e-20, as a shared library for benchmarks/planner/truth.py. Independent of the library: it includes nothing of it.
 // Products of series by Cauchy's rule; the step after Jorba & Zou 2005, Experimental Mathematics 14, 99.
 #include <cmath>
 #include <cstring>
@@ -148,7 +148,9 @@ extern "C" double polhode_truth(const double* problem, long n, const double* tim
     Real a[7], b[7];
     series.evaluate(0, a);
     series.evaluate(h, b);
-    turned += h * (std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) + std::sqrt(b[0] * b[0] + b[1] * b[1] + b[2] * b[2])) / 2;
+    turned +=
+        h * (std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) + std::sqrt(b[0] * b[0] + b[1] * b[1] + b[2] * b[2])) /
+        2;
     series.advance(h);
     t += h;
   }

@@ -78,17 +78,21 @@ void bind_during(py::module_& m) {
            py::arg("torque"), py::arg("windows"))
       .def_property_readonly("torque", &get_torque, "The torque that acts.")
       .def_property_readonly("windows", &from_windows, "tuple of (begin, end) [s], in the order of time.")
-      .def_property_readonly("traits", [](const During& torque) { return describe_traits(torque.traits()); },
-                             "dict: uses_time, uses_attitude, uses_rates, has_potential.")
-      .def("__repr__", [](const During& torque) {
-        return "polhode.torques.During(" + std::string(py::repr(get_torque(torque))) +
-               ", windows=" + std::string(py::repr(from_windows(torque))) + ")";
-      })
-      .def("__eq__", [](const During& a, const py::object& b) {
-        return py::isinstance<During>(b) && get_state(a).equal(get_state(b.cast<const During&>()));
-      })
+      .def_property_readonly(
+          "traits", [](const During& torque) { return describe_traits(torque.traits()); },
+          "dict: uses_time, uses_attitude, uses_rates, has_potential.")
+      .def("__repr__",
+           [](const During& torque) {
+             return "polhode.torques.During(" + std::string(py::repr(get_torque(torque))) +
+                    ", windows=" + std::string(py::repr(from_windows(torque))) + ")";
+           })
+      .def("__eq__",
+           [](const During& a, const py::object& b) {
+             return py::isinstance<During>(b) && get_state(a).equal(get_state(b.cast<const During&>()));
+           })
       .def("__hash__", [](const During& torque) { return py::hash(get_state(torque)); })
-      .def(py::pickle(&get_state, [](const py::tuple& state) { return During(to_lasting(state[0]), to_windows(state[1])); }));
+      .def(py::pickle(&get_state,
+                      [](const py::tuple& state) { return During(to_lasting(state[0]), to_windows(state[1])); }));
 }
 
 }  // namespace polhode::python

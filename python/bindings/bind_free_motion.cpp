@@ -125,21 +125,24 @@ Returns
 ndarray, shape (n,)
     Ascending times at which omega's component along the intermediate axis passes through zero. Empty unless the three
     moments differ and the motion is not steady.)")
-      .def_property_readonly("kind", [](const FreeMotion& f) { return to_text(f.kind()); },
-                             "'rest', 'spherical', 'steady', 'oblate', 'prolate', 'about_least', 'about_greatest' (the\n"
-                             "principal axis that omega encircles) or 'separatrix'.")
+      .def_property_readonly(
+          "kind", [](const FreeMotion& f) { return to_text(f.kind()); },
+          "'rest', 'spherical', 'steady', 'oblate', 'prolate', 'about_least', 'about_greatest' (the\n"
+          "principal axis that omega encircles) or 'separatrix'.")
       .def_property_readonly("period", &FreeMotion::period,
                              "Period of omega [s]: infinite on the separatrix, 0 where omega is constant.")
       .def_property_readonly("precession_rate", &FreeMotion::precession_rate,
                              "Mean rate of precession about the angular momentum [rad/s].")
       .def_property_readonly("energy", &FreeMotion::energy, "Kinetic energy [J].")
-      .def_property_readonly("angular_momentum", [](const FreeMotion& f) { return from_vector3(f.angular_momentum()); },
-                             "(3,) in space axes, constant [kg m^2/s].")
+      .def_property_readonly(
+          "angular_momentum", [](const FreeMotion& f) { return from_vector3(f.angular_momentum()); },
+          "(3,) in space axes, constant [kg m^2/s].")
       .def_property_readonly("inertia", &FreeMotion::inertia, "The InertiaTensor.")
-      .def_property_readonly("omega", [](const FreeMotion& f) { return from_vector3(f.omega()); },
-                             "(3,) omega at t = 0, in body axes [rad/s].")
-      .def_property_readonly("attitude", [](const FreeMotion& f) { return from_quat(f.attitude()); },
-                             "(4,) attitude at t = 0.")
+      .def_property_readonly(
+          "omega", [](const FreeMotion& f) { return from_vector3(f.omega()); },
+          "(3,) omega at t = 0, in body axes [rad/s].")
+      .def_property_readonly(
+          "attitude", [](const FreeMotion& f) { return from_quat(f.attitude()); }, "(4,) attitude at t = 0.")
       .def(py::self == py::self)
       .def("__hash__",
            [](const FreeMotion& f) { return py::hash(py::make_tuple(f.omega()[0], f.omega()[1], f.omega()[2])); })
@@ -148,8 +151,9 @@ ndarray, shape (n,)
         return "FreeMotion(" + py::cast<std::string>(py::repr(py::cast(f.inertia()))) +
                ", omega=" + text(from_vector3(f.omega())) + ", attitude=" + text(from_quat(f.attitude())) + ")";
       });
-  cls.def(py::pickle([](const FreeMotion& f) { return py::make_tuple(f.inertia(), from_vector3(f.omega()), from_quat(f.attitude())); },
-                     [](const py::tuple& s) { return make(s[0], s[1], s[2]); }));
+  cls.def(py::pickle(
+      [](const FreeMotion& f) { return py::make_tuple(f.inertia(), from_vector3(f.omega()), from_quat(f.attitude())); },
+      [](const py::tuple& s) { return make(s[0], s[1], s[2]); }));
 }
 
 }  // namespace polhode::python

@@ -320,7 +320,8 @@ void bind_shapes(py::module_& m) {
       "shape_volume",
       [](const std::string& name, const py::sequence& values) {
         const shapes::Record& record = shapes::find(name);
-        if (record.volume == nullptr) throw InvalidInput("shape", "one with a volume", name, "a thin body: give its mass");
+        if (record.volume == nullptr)
+          throw InvalidInput("shape", "one with a volume", name, "a thin body: give its mass");
         const std::vector<double> numbers = shape_numbers(record, values);
         record.make(numbers.data());  // refuses what is no body
         return static_cast<double>(record.volume(numbers.data() + 1));

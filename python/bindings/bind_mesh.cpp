@@ -131,7 +131,8 @@ MassProperties properties_of(const Triangles& triangles, const Options& options)
     }
     if (report->embedded > 0) {
       warn("faces: " + std::to_string(report->embedded) +
-           " surfaces inside a solid are wound outward as it is: their volume counts twice (cavities wound the wrong way?)");
+           " surfaces inside a solid are wound outward as it is: their volume counts twice (cavities wound the wrong "
+           "way?)");
     }
   }
   if (integrals.flipped) warn("faces: wound inward, all of them: turned over");

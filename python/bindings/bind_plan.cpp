@@ -41,7 +41,8 @@ py::dict make_report(const Scene& scene, const py::object& accuracy, const py::o
   const PlanReport report = explain_plan(scene, options);
   py::list candidates;
   for (const Candidate& one : report.candidates) {
-    candidates.append(py::make_tuple(one.name, one.exact, one.why_not, one.predicted_error, one.predicted_seconds, one.rtol));
+    candidates.append(
+        py::make_tuple(one.name, one.exact, one.why_not, one.predicted_error, one.predicted_seconds, one.rtol));
   }
   py::dict all;
   all["plan"] = describe_plan(report.plan);
@@ -57,10 +58,11 @@ py::dict make_report(const Scene& scene, const py::object& accuracy, const py::o
 py::tuple describe_plan(const Plan& plan) {
   py::list pieces;
   for (const PiecePlan& one : plan.pieces) {
-    pieces.append(py::make_tuple(one.begin, one.end, py::tuple(py::cast(one.torques)), one.model, one.method, one.turns, one.predicted_seconds));
+    pieces.append(py::make_tuple(one.begin, one.end, py::tuple(py::cast(one.torques)), one.model, one.method, one.turns,
+                                 one.predicted_seconds));
   }
-  return py::make_tuple(plan.model, plan.method, plan.state, plan.accuracy, plan.certify, plan.rtol, plan.predicted_error,
-                        plan.predicted_seconds, py::tuple(pieces));
+  return py::make_tuple(plan.model, plan.method, plan.state, plan.accuracy, plan.certify, plan.rtol,
+                        plan.predicted_error, plan.predicted_seconds, py::tuple(pieces));
 }
 
 std::optional<double> to_optional(const py::object& value, const char* name) {
@@ -68,7 +70,8 @@ std::optional<double> to_optional(const py::object& value, const char* name) {
   return to_real(value, name);
 }
 
-SolveOptions to_wishes(const py::object& accuracy, const py::object& method, bool certify, const std::string& formulation) {
+SolveOptions to_wishes(const py::object& accuracy, const py::object& method, bool certify,
+                       const std::string& formulation) {
   SolveOptions options;
   options.accuracy = to_optional(accuracy, "accuracy");
   if (!method.is_none()) options.method = std::string(py::str(method));

@@ -21,6 +21,7 @@ struct Factors {
 py::tuple describe_plan(const Plan& plan);
 
 /// What a plan is made of, from Python.
-SolveOptions to_wishes(const py::object& accuracy, const py::object& method, bool certify, const std::string& formulation);
+SolveOptions to_wishes(const py::object& accuracy, const py::object& method, bool certify,
+                       const std::string& formulation);
 
 }  // namespace polhode::python

@@ -11,14 +11,16 @@ namespace {
 
 std::vector<double> to_times(py::handle value) {
   const Array array = to_array(value, "scene.times");
-  if (array.ndim() != 1) throw InvalidInput("scene.times", "a one-dimensional array", std::to_string(array.ndim()) + " dimensions");
+  if (array.ndim() != 1)
+    throw InvalidInput("scene.times", "a one-dimensional array", std::to_string(array.ndim()) + " dimensions");
   return {array.data(), array.data() + array.size()};
 }
 
 Wanted to_wanted(py::handle value) {
   Wanted want{false, false};
   const auto take = [&](const std::string& name) {
-    if (name != "omega" && name != "attitude") throw InvalidInput("scene.want", "'omega', 'attitude' or both", "'" + name + "'");
+    if (name != "omega" && name != "attitude")
+      throw InvalidInput("scene.want", "'omega', 'attitude' or both", "'" + name + "'");
     (name == "omega" ? want.omega : want.attitude) = true;
   };
   if (py::isinstance<py::str>(value)) {
@@ -53,7 +55,8 @@ void bind_scene(py::module_& m) {
                        py::handle times, py::handle want, py::handle t0, const py::object& name) {
              if (!py::isinstance<py::str>(name)) throw InvalidInput("scene.name", "text", std::string(py::repr(name)));
              std::vector<AnyTorque> list;
-             for (const py::handle one : torques) list.push_back(to_torque(one, "scene.torques[" + std::to_string(list.size()) + "]"));
+             for (const py::handle one : torques)
+               list.push_back(to_torque(one, "scene.torques[" + std::to_string(list.size()) + "]"));
              return Scene(SceneParts{to_inertia(inertia, "scene.inertia"), to_vector3(omega, "scene.omega"),
                                      to_attitude(attitude, "scene.attitude"), std::move(list), to_times(times),
                                      to_wanted(want), to_real(t0, "scene.t0"), name.cast<std::string>()});
@@ -63,18 +66,21 @@ void bind_scene(py::module_& m) {
       .def_property_readonly("inertia", &Scene::inertia_B)
       .def_property_readonly("omega", [](const Scene& scene) { return from_vector3(scene.omega()); })
       .def_property_readonly("attitude", [](const Scene& scene) { return from_quat(scene.attitude()); })
-      .def_property_readonly("torques", [](const Scene& scene) {
-        py::list list;
-        for (const AnyTorque& torque : scene.torques()) list.append(from_torque(torque));
-        return py::tuple(list);
-      })
-      .def_property_readonly("times", [](const py::object& self) { return view(self.cast<const Scene&>().times(), self); })
-      .def_property_readonly("want", [](const Scene& scene) {
-        py::list list;
-        if (scene.want().omega) list.append("omega");
-        if (scene.want().attitude) list.append("attitude");
-        return py::tuple(list);
-      })
+      .def_property_readonly("torques",
+                             [](const Scene& scene) {
+                               py::list list;
+                               for (const AnyTorque& torque : scene.torques()) list.append(from_torque(torque));
+                               return py::tuple(list);
+                             })
+      .def_property_readonly("times",
+                             [](const py::object& self) { return view(self.cast<const Scene&>().times(), self); })
+      .def_property_readonly("want",
+                             [](const Scene& scene) {
+                               py::list list;
+                               if (scene.want().omega) list.append("omega");
+                               if (scene.want().attitude) list.append("attitude");
+                               return py::tuple(list);
+                             })
       .def_property_readonly("t0", &Scene::t0)
       .def_property_readonly("name", &Scene::name);
 }

@@ -36,7 +36,8 @@ SceneEvent to_event(const py::object& function, int direction, bool terminal) {
   PyObject* pointer = function.ptr();
   return {[pointer](const State& state) {
             py::gil_scoped_acquire gil;
-            return to_real(py::reinterpret_borrow<py::object>(pointer)(state.t, from_vector3(state.omega), from_quat(state.attitude)),
+            return to_real(py::reinterpret_borrow<py::object>(pointer)(state.t, from_vector3(state.omega),
+                                                                       from_quat(state.attitude)),
                            "the event's function");
           },
           direction, terminal};
@@ -104,15 +105,18 @@ std::size_t rows(const Array& array) { return static_cast<std::size_t>(array.siz
 void bind_solve(py::module_& m) {
   bind_plan(m);
   py::class_<Answer>(m, "Answer")
-      .def_property_readonly("t", [](const py::object& self) { return view(self, self.cast<const Answer&>().motion.t, 1); })
-      .def_property_readonly("omega", [](const py::object& self) {
-        const Answer& answer = self.cast<const Answer&>();
-        return view(self, answer.motion.omega, 3, answer.want.omega);
-      })
-      .def_property_readonly("attitude", [](const py::object& self) {
-        const Answer& answer = self.cast<const Answer&>();
-        return view(self, answer.motion.attitude, 4, answer.want.attitude);
-      })
+      .def_property_readonly("t",
+                             [](const py::object& self) { return view(self, self.cast<const Answer&>().motion.t, 1); })
+      .def_property_readonly("omega",
+                             [](const py::object& self) {
+                               const Answer& answer = self.cast<const Answer&>();
+                               return view(self, answer.motion.omega, 3, answer.want.omega);
+                             })
+      .def_property_readonly("attitude",
+                             [](const py::object& self) {
+                               const Answer& answer = self.cast<const Answer&>();
+                               return view(self, answer.motion.attitude, 4, answer.want.attitude);
+                             })
       .def_property_readonly("status", [](const Answer& answer) { return std::string(to_text(answer.motion.status)); })
       .def_property_readonly("message", [](const Answer& answer) { return answer.motion.message; })
       .def_property_readonly("stats", [](const Answer& answer) { return describe_stats(answer.motion); })
@@ -152,7 +156,8 @@ void bind_solve(py::module_& m) {
   m.def("energy", [](const Scene& scene, const Array& t, const Array& omega, const py::object& attitude) {
     Array energy(t.size());
     const Array q = attitude.is_none() ? Array(py::array::ShapeContainer{0}) : attitude.cast<Array>();
-    compute_energy(scene, rows(t), t.data(), omega.data(), attitude.is_none() ? nullptr : q.data(), energy.mutable_data());
+    compute_energy(scene, rows(t), t.data(), omega.data(), attitude.is_none() ? nullptr : q.data(),
+                   energy.mutable_data());
     return energy;
   });
   m.def("angular_momentum", [](const Scene& scene, const Array& omega, const Array& attitude) {
@@ -181,8 +186,8 @@ void bind_solve(py::module_& m) {
       found = compute_reference(scene, options);
     }
     const auto n = static_cast<py::ssize_t>(scene.times().size());
-    return py::make_tuple(Array({n, py::ssize_t{3}}, found.omega.data()), Array({n, py::ssize_t{4}}, found.attitude.data()),
-                          found.steps);
+    return py::make_tuple(Array({n, py::ssize_t{3}}, found.omega.data()),
+                          Array({n, py::ssize_t{4}}, found.attitude.data()), found.steps);
   }, py::arg("scene"), py::arg("order"), py::arg("tolerance"), py::arg("max_steps"),
      "omega, attitude and steps of a scene by Taylor series in long double: what to hold others against.");
   m.def("generalised_forces", [](py::handle torque, py::handle angles) {

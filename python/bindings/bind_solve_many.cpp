@@ -52,10 +52,11 @@ void run_interruptibly(const Work& work) {
   if (failure) std::rethrow_exception(failure);
 }
 
-py::tuple solve_batch(const py::list& scenes, const py::object& moments, const py::object& omega, const py::object& attitude,
-                      std::size_t bodies, std::size_t times, const py::object& omega_out, const py::object& attitude_out,
-                      const py::object& accuracy, const py::object& method, const py::object& rtol, const py::object& atol,
-                      const py::object& step, long max_steps, int threads) {
+py::tuple solve_batch(const py::list& scenes, const py::object& moments, const py::object& omega,
+                      const py::object& attitude, std::size_t bodies, std::size_t times, const py::object& omega_out,
+                      const py::object& attitude_out, const py::object& accuracy, const py::object& method,
+                      const py::object& rtol, const py::object& atol, const py::object& step, long max_steps,
+                      int threads) {
   SolveOptions options;
   const auto real = [](const py::object& value, const char* name) {
     return value.is_none() ? std::nullopt : std::optional<double>(to_real(value, name));
@@ -77,7 +78,8 @@ py::tuple solve_batch(const py::list& scenes, const py::object& moments, const p
     const Scene& common = *list[0];
     const double *a = rates + 3 * body, *b = turns + 4 * body;
     InertiaTensor inertia = common.inertia_B();
-    if (moment != nullptr) inertia = InertiaTensor::from_moments({moment[3 * body], moment[3 * body + 1], moment[3 * body + 2]});
+    if (moment != nullptr)
+      inertia = InertiaTensor::from_moments({moment[3 * body], moment[3 * body + 1], moment[3 * body + 2]});
     return Scene(SceneParts{inertia, {a[0], a[1], a[2]}, {b[0], b[1], b[2], b[3]}, common.torques(), common.times(),
                             common.want(), common.t0(), ""});
   };

@@ -8,7 +8,8 @@
 #include "custom_torque.hpp"
 #include "polhode/core/error.hpp"
 
-// Every torque of the list gets its Python class from its record: constructor, properties, repr, equality, hash, pickle.
+// Every torque of the list gets its Python class from its record: constructor, properties, repr, equality, hash,
+// pickle.
 namespace polhode::python {
 namespace {
 
@@ -71,7 +72,8 @@ std::string call_signature(const TorqueRecord& record) {
 }
 
 std::string docstring(const TorqueRecord& record) {
-  static constexpr const char* shapes[] = {"float", "array_like, shape (3,)", "array_like, shape (3, 3) or (3,)", "str"};
+  static constexpr const char* shapes[] = {"float", "array_like, shape (3,)", "array_like, shape (3, 3) or (3,)",
+                                           "str"};
   std::string text = call_signature(record) + "\n\n" + std::string(record.doc) + "\n\nParameters\n----------\n";
   for (const TorqueParameter& parameter : record.parameters) {
     text += std::string(parameter.name) + " : " + shapes[static_cast<int>(parameter.kind)] + "\n    ";
@@ -112,8 +114,10 @@ TorqueValues parse(const TorqueRecord& record, const py::args& args, const py::k
   if (used != kwargs.size()) {
     for (const auto& item : kwargs) {
       bool known = false;
-      for (const TorqueParameter& parameter : record.parameters) known |= parameter.name == item.first.cast<std::string>();
-      if (!known) throw InvalidInput(name, "called as " + call_signature(record), "'" + item.first.cast<std::string>() + "'");
+      for (const TorqueParameter& parameter : record.parameters)
+        known |= parameter.name == item.first.cast<std::string>();
+      if (!known)
+        throw InvalidInput(name, "called as " + call_signature(record), "'" + item.first.cast<std::string>() + "'");
     }
   }
   return values;
@@ -161,8 +165,9 @@ void bind_one(py::module_& m) {
     return py::isinstance<T>(b) && to_tuple(a.values()).equal(to_tuple(b.cast<const T&>().values()));
   });
   type.def("__hash__", [](const T& torque) { return py::hash(py::str(py::repr(to_tuple(torque.values())))); });
-  type.def(py::pickle([](const T& torque) { return to_tuple(torque.values()); },
-                      [&record](const py::tuple& state) { return T::from_values(parse(record, state, py::kwargs())); }));
+  type.def(
+      py::pickle([](const T& torque) { return to_tuple(torque.values()); },
+                 [&record](const py::tuple& state) { return T::from_values(parse(record, state, py::kwargs())); }));
 }
 
 template <>

@@ -103,7 +103,8 @@ Matrix3d to_matrix3(py::handle value, const char* name) {
 }
 
 Quat to_attitude(py::handle value, const char* name) {
-  const py::object quat = py::hasattr(value, "as_quat") ? value.attr("as_quat")() : py::reinterpret_borrow<py::object>(value);
+  const py::object quat =
+      py::hasattr(value, "as_quat") ? value.attr("as_quat")() : py::reinterpret_borrow<py::object>(value);
   const Array array = exact_shape(quat, name, {4});
   const double* d = array.data();
   return make_attitude({d[0], d[1], d[2], d[3]});

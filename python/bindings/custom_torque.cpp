@@ -81,8 +81,9 @@ void call_python(double t, const double* omega, const double* attitude, double* 
   if (!read_plainly(result, torque)) {
     const Array tau = to_array(result, "the torque's function");
     if (tau.ndim() != 1 || tau.shape(0) != 3) {
-      throw InvalidInput("the torque's function", "one that returns three numbers",
-                         "shape " + std::string(py::str(result.attr("__class__"))) + " of size " + std::to_string(tau.size()));
+      throw InvalidInput(
+          "the torque's function", "one that returns three numbers",
+          "shape " + std::string(py::str(result.attr("__class__"))) + " of size " + std::to_string(tau.size()));
     }
     std::copy_n(tau.data(), 3, torque);
   }
@@ -98,7 +99,8 @@ double call_python_potential(double t, const double* attitude, void* data) {
   return to_real(owner.potential(t, q), "the torque's potential");
 }
 
-/// The address of a compiled function: numba's cfunc has `.address`, ctypes' function types are cast; 0 for anything else.
+/// The address of a compiled function: numba's cfunc has `.address`, ctypes' function types are cast; 0 for anything
+/// else.
 std::uintptr_t find_address(py::handle function) {
   if (py::isinstance<py::capsule>(function)) {
     const py::capsule capsule = py::reinterpret_borrow<py::capsule>(function);
@@ -144,7 +146,8 @@ Custom make_custom(const py::object& function, bool uses_time, bool uses_attitud
                        std::string(py::str(py::type::of(function))));
   }
   if (!potential.is_none() && !PyCallable_Check(potential.ptr())) {
-    throw InvalidInput("Custom.potential", "callable as potential(t, attitude)", std::string(py::str(py::type::of(potential))));
+    throw InvalidInput("Custom.potential", "callable as potential(t, attitude)",
+                       std::string(py::str(py::type::of(potential))));
   }
   if (!data.is_none()) {
     throw InvalidInput("Custom.data", "left out for a Python callable", std::string(py::repr(data)),

@@ -29,13 +29,14 @@ double check_body(const FreeMotionBatch& b, std::size_t body) {
   }
   const double deficit = 2.0 * largest - (I[0] + I[1] + I[2]);
   if (deficit > InertiaTensor::tolerance * largest) {
-    throw InvalidInput(row_name("inertia", body), "within the triangle inequality: no moment above the sum of the two others",
+    throw InvalidInput(row_name("inertia", body),
+                       "within the triangle inequality: no moment above the sum of the two others",
                        "(" + to_text(I[0]) + ", " + to_text(I[1]) + ", " + to_text(I[2]) + ")");
   }
   const double norm2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   if (!(std::abs(norm2 - 1.0) <= 2e-6)) {
-    throw InvalidInput(row_name("attitude", body), "a unit quaternion (x, y, z, w)", "norm " + to_text(std::sqrt(norm2)),
-                       "normalise it first, if it is meant to be an attitude");
+    throw InvalidInput(row_name("attitude", body), "a unit quaternion (x, y, z, w)",
+                       "norm " + to_text(std::sqrt(norm2)), "normalise it first, if it is meant to be an attitude");
   }
   return std::max({std::abs(w[0]), std::abs(w[1]), std::abs(w[2])});
 }
@@ -43,7 +44,8 @@ double check_body(const FreeMotionBatch& b, std::size_t body) {
 void check_times(const double* t, std::size_t n, double reach, double speed, std::size_t body) {
   if (reach * speed <= 1e25) return;
   double longest = 0.0;
-  for (std::size_t i = 0; i < n; ++i) longest = std::abs(t[i]) > longest && !std::isinf(t[i]) ? std::abs(t[i]) : longest;
+  for (std::size_t i = 0; i < n; ++i)
+    longest = std::abs(t[i]) > longest && !std::isinf(t[i]) ? std::abs(t[i]) : longest;
   if (longest * speed > 1e25) {
     throw InvalidInput(row_name("t", body), "such that |omega t| <= 1e25 rad", to_text(longest) + " s",
                        "beyond that no digit worth having is left of the phase");
@@ -54,12 +56,16 @@ void check_times(const double* t, std::size_t n, double reach, double speed, std
 class Run {
  public:
   Run(const FreeMotionBatch& batch, const exact::TimeGrid& shared, double reach, double* omega, double* attitude)
-      : b_(batch), rows_{batch.t, batch.times, batch.own_times ? nullptr : &shared, !batch.own_times && std::isfinite(reach), omega, attitude}, reach_(reach) {}
+      : b_(batch),
+        rows_{batch.t, batch.times, batch.own_times ? nullptr : &shared, !batch.own_times && std::isfinite(reach),
+              omega,   attitude},
+        reach_(reach) {}
 
   /// Bodies [first, last); returns how many rows are poisoned.
   std::size_t operator()(std::size_t first, std::size_t last) {
     std::size_t poisoned = 0;
-    for (std::size_t begin = first; begin < last; begin += block) poisoned += do_block(begin, std::min(last, begin + block));
+    for (std::size_t begin = first; begin < last; begin += block)
+      poisoned += do_block(begin, std::min(last, begin + block));
     return poisoned;
   }
 
@@ -70,7 +76,8 @@ class Run {
     bool sound[block];
     for (std::size_t i = 0; i < n; ++i) {
       const std::size_t body = begin + i;
-      sound[i] = finite(b_.moments + 3 * body, 3) && finite(b_.omega + 3 * body, 3) && finite(b_.attitude + 4 * body, 4);
+      sound[i] =
+          finite(b_.moments + 3 * body, 3) && finite(b_.omega + 3 * body, 3) && finite(b_.attitude + 4 * body, 4);
       if (!sound[i]) continue;
       const double* t = rows_.times_of(body);
       check_times(t, b_.times, b_.own_times ? kernels.times.reach(t, b_.times) : reach_, check_body(b_, body), body);

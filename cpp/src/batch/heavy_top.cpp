@@ -30,7 +30,8 @@ std::size_t run(const HeavyTopBatch& b, const Rows& rows, std::size_t first, std
       continue;
     }
     const HeavyTop top = make_top(b, body);
-    poisoned += rows.each_run(body, [&](const exact::TimeGrid& t, double* omega, double* attitude) { top.at(t, omega, attitude); });
+    poisoned += rows.each_run(
+        body, [&](const exact::TimeGrid& t, double* omega, double* attitude) { top.at(t, omega, attitude); });
   }
   return poisoned;
 }
@@ -47,12 +48,17 @@ std::size_t heavy_top(const HeavyTopBatch& given, double* omega, double* attitud
   const bool finite = !batch.own_times && std::isfinite(shared.reach);
   if (batch.bodies == 1 && batch.times > 4096) {
     // One top: its times are cut, at blocks of the grid.
-    parallel_for(batch.times, thread_count(threads, batch.times, 20000), 8 * exact::TimeGrid::block, [&](std::size_t begin, std::size_t end) {
-      const exact::TimeGrid piece = shared.grid.piece(begin, end - begin);
-      const Rows rows{batch.t + begin, end - begin, &piece, finite, omega ? omega + 3 * begin : nullptr,
-                      attitude ? attitude + 4 * begin : nullptr};
-      poisoned += run(batch, rows, 0, 1);
-    });
+    parallel_for(batch.times, thread_count(threads, batch.times, 20000), 8 * exact::TimeGrid::block,
+                 [&](std::size_t begin, std::size_t end) {
+                   const exact::TimeGrid piece = shared.grid.piece(begin, end - begin);
+                   const Rows rows{batch.t + begin,
+                                   end - begin,
+                                   &piece,
+                                   finite,
+                                   omega ? omega + 3 * begin : nullptr,
+                                   attitude ? attitude + 4 * begin : nullptr};
+                   poisoned += run(batch, rows, 0, 1);
+                 });
     return poisoned;
   }
   const Rows rows{batch.t, batch.times, batch.own_times ? nullptr : &shared.grid, finite, omega, attitude};

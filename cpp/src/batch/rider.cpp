@@ -9,7 +9,10 @@
 namespace polhode {
 
 Rider::Rider(Scene scene, const LaneMethod& method)
-    : scene_(std::move(scene)), body_(method.make_body(scene_)), kind_(body_->kind()), itinerary_(scene_.times(), scene_.t0()),
+    : scene_(std::move(scene)),
+      body_(method.make_body(scene_)),
+      kind_(body_->kind()),
+      itinerary_(scene_.times(), scene_.t0()),
       answered_(scene_.times().size(), 0) {
   const std::size_t n = scene_.times().size();
   if (scene_.want().omega) motion_.omega.resize(3 * n);
@@ -65,7 +68,8 @@ bool Rider::go_on(const LaneClock& clock, int lane) {
   if (outcome == lane_stepped && clock.steps[lane] < clock.most_steps) return true;
   count(clock, lane);
   if (outcome == lane_stepped) {
-    fail(Status::max_steps, "gave up after max_steps = " + std::to_string(static_cast<long>(clock.most_steps)) + " steps");
+    fail(Status::max_steps,
+         "gave up after max_steps = " + std::to_string(static_cast<long>(clock.most_steps)) + " steps");
   } else if (outcome == lane_not_finite) {
     fail(Status::failed, "the derivative is not finite", " just beyond t = ");
   } else if (outcome == lane_underflow) {

@@ -58,7 +58,9 @@ std::optional<LaneTorque::Kind> describe(const AnyTorque& torque, double* values
 class EulerBody final : public LaneBody {
  public:
   explicit EulerBody(const Scene& scene)
-      : scene_(scene), diagonal_(scene.inertia_B().is_diagonal()), attitude_(scene.want().attitude || scene.torque_sum().uses_attitude) {}
+      : scene_(scene),
+        diagonal_(scene.inertia_B().is_diagonal()),
+        attitude_(scene.want().attitude || scene.torque_sum().uses_attitude) {}
 
   const Scene& scene() const { return scene_; }
   bool diagonal() const { return diagonal_; }
@@ -87,7 +89,9 @@ class EulerBody final : public LaneBody {
 class Rk45Team final : public LaneTeam {
  public:
   Rk45Team(const EulerBody& first, const ode::Tolerances& tolerances)
-      : kernels_(find_kernels(first.diagonal(), first.attitude())), tolerances_(tolerances), torques_(first.scene().torques().size()) {
+      : kernels_(find_kernels(first.diagonal(), first.attitude())),
+        tolerances_(tolerances),
+        torques_(first.scene().torques().size()) {
     b_.rtol = tolerances.rtol, b_.atol = tolerances.atol;
     for (std::size_t i = 0; i < torques_.size(); ++i) torques_[i].kind = *describe(first.scene().torques()[i]);
     b_.torques = torques_.data(), b_.torque_count = static_cast<int>(torques_.size());
@@ -155,7 +159,8 @@ bool takes_all(const Scene& scene) {
 
 }  // namespace
 
-const LaneMethod rk45_lanes{ode::Rk45::record, &takes_all,
-                            [](const Scene& scene) -> std::unique_ptr<LaneBody> { return std::make_unique<EulerBody>(scene); }};
+const LaneMethod rk45_lanes{ode::Rk45::record, &takes_all, [](const Scene& scene) -> std::unique_ptr<LaneBody> {
+                              return std::make_unique<EulerBody>(scene);
+                            }};
 
 }  // namespace polhode

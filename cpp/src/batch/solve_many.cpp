@@ -26,8 +26,10 @@ void place(const Scene& scene, const Motion& motion, double* omega, double* atti
   std::size_t row = 0;
   for (std::size_t i = 0; i < times.size(); ++i) {
     const bool there = row < motion.t.size() && motion.t[row] == times[i];
-    for (std::size_t k = 0; omega != nullptr && k < 3; ++k) omega[3 * i + k] = there ? motion.omega[3 * row + k] : nothing;
-    for (std::size_t k = 0; attitude != nullptr && k < 4; ++k) attitude[4 * i + k] = there ? motion.attitude[4 * row + k] : nothing;
+    for (std::size_t k = 0; omega != nullptr && k < 3; ++k)
+      omega[3 * i + k] = there ? motion.omega[3 * row + k] : nothing;
+    for (std::size_t k = 0; attitude != nullptr && k < 4; ++k)
+      attitude[4 * i + k] = there ? motion.attitude[4 * row + k] : nothing;
     row += there;
   }
 }
@@ -43,8 +45,8 @@ const LaneMethod* find_lane_method(const SolveOptions& options) {
 
 }  // namespace
 
-std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeScene& make_scene, const SolveOptions& options,
-                                   double* omega, double* attitude, int threads) {
+std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeScene& make_scene,
+                                   const SolveOptions& options, double* omega, double* attitude, int threads) {
   std::vector<ManyResult> results(n);
   if (omega != nullptr) std::fill_n(omega, 3 * n * times, nothing);
   if (attitude != nullptr) std::fill_n(attitude, 4 * n * times, nothing);
@@ -125,7 +127,8 @@ std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeS
   }
   if (std::ranges::find(in_lanes, 0) != in_lanes.end()) parallel_for(threads_there, threads_there, 1, one_by_one);
   for (std::size_t i = 0; stopped && i < n; ++i) {
-    if (results[i].message.empty()) results[i].status = Status::stopped, results[i].message = "not begun: stopped by the progress callback";
+    if (results[i].message.empty())
+      results[i].status = Status::stopped, results[i].message = "not begun: stopped by the progress callback";
   }
   return results;
 }

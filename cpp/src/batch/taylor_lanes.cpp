@@ -38,13 +38,20 @@ class TaylorBody final : public LaneBody {
 
   std::string kind() const override {
     const SeriesTerms& terms = series_.terms();
-    const bool flags[] = {terms.variables == RateVariables::separatrix, series_.has_attitude(), terms.gradient, terms.damped,
-                          series_.keeps_balance(), terms.fixed_vectors > 0, terms.fixed_vectors > 1};
+    const bool flags[] = {terms.variables == RateVariables::separatrix,
+                          series_.has_attitude(),
+                          terms.gradient,
+                          terms.damped,
+                          series_.keeps_balance(),
+                          terms.fixed_vectors > 0,
+                          terms.fixed_vectors > 1};
     return std::string(std::begin(flags), std::end(flags));
   }
 
   std::string describe_state() const override { return series_.describe_state(); }
-  void unpack(const double* y, double* omega, double* attitude) const override { series_.unpack(y, 1, omega, attitude); }
+  void unpack(const double* y, double* omega, double* attitude) const override {
+    series_.unpack(y, 1, omega, attitude);
+  }
   std::unique_ptr<LaneTeam> make_team(const ode::Tolerances& tolerances) const override;
 
  private:
@@ -111,7 +118,8 @@ class TaylorTeam final : public LaneTeam {
   void put_constants(int lane, const BodySeries& series) {
     const SeriesTerms& terms = series.terms();
     b_.to_rates[lane] = terms.to_rates[0], b_.orbit_rate[lane] = terms.orbit_rate;
-    put(b_.product, lane, terms.product, 3), put(b_.product_low, lane, terms.product_low, 3), put(b_.torque, lane, terms.torque, 3);
+    put(b_.product, lane, terms.product, 3), put(b_.product_low, lane, terms.product_low, 3),
+        put(b_.torque, lane, terms.torque, 3);
     for (int j = 0; j < 3; ++j) put(b_.damping[j], lane, terms.damping[j], 3);
     for (int i = 0; i < 2; ++i) {
       for (int j = 0; j < 3; ++j) put(b_.pull[i][j], lane, terms.pull[i][j], 3);
@@ -143,7 +151,8 @@ std::unique_ptr<LaneTeam> TaylorBody::make_team(const ode::Tolerances& tolerance
 
 }  // namespace
 
-const LaneMethod taylor_lanes{ode::Taylor::record, [](const Scene& scene) { return compute_series_refusal(scene).empty(); },
-                              [](const Scene& scene) -> std::unique_ptr<LaneBody> { return std::make_unique<TaylorBody>(scene); }};
+const LaneMethod taylor_lanes{
+    ode::Taylor::record, [](const Scene& scene) { return compute_series_refusal(scene).empty(); },
+    [](const Scene& scene) -> std::unique_ptr<LaneBody> { return std::make_unique<TaylorBody>(scene); }};
 
 }  // namespace polhode

@@ -17,7 +17,8 @@ Quat make_attitude(const Quat& q) {
     throw InvalidInput("attitude", "a unit quaternion (x, y, z, w)", "norm " + to_text(n),
                        "normalise it first, if it is meant to be an attitude");
   }
-  if (std::abs(n - 1.0) <= 4 * std::numeric_limits<double>::epsilon()) return q;  // so that doing it twice changes nothing
+  if (std::abs(n - 1.0) <= 4 * std::numeric_limits<double>::epsilon())
+    return q;   // so that doing it twice changes nothing
   return {q.x / n, q.y / n, q.z / n, q.w / n};
 }
 

@@ -51,7 +51,8 @@ std::vector<double> FreeMotion::flip_times(double begin, double end) const {
   const double first = checked_time(begin), last = checked_time(end);
   if (!(end >= begin)) throw InvalidInput("end", "at or after begin", to_text(end));
   std::vector<double> times;
-  if (kind_ != FreeKind::about_least && kind_ != FreeKind::about_greatest && kind_ != FreeKind::separatrix) return times;
+  if (kind_ != FreeKind::about_least && kind_ != FreeKind::about_greatest && kind_ != FreeKind::separatrix)
+    return times;
   if (kind_ == FreeKind::separatrix) {
     const DD t = -(DD(hyper_.v0_hi, hyper_.v0_lo) / DD(hyper_.v_hi, hyper_.v_lo));
     const double at_zero = std::ldexp(t.hi, -time_exponent_);

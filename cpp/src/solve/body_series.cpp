@@ -26,7 +26,8 @@ std::string compute_series_refusal(const Scene& scene) {
       return "a Custom torque, whose derivatives are not known: dop853 and rk45 take it";
     }
     if (const auto* gradient = std::get_if<torques::GravityGradient>(&torque)) {
-      if (first != nullptr && (gradient->mean_motion() != first->mean_motion() || gradient->phase() != first->phase())) {
+      if (first != nullptr &&
+          (gradient->mean_motion() != first->mean_motion() || gradient->phase() != first->phase())) {
         return "gravity gradients of two orbits: dop853 and rk45 take them";
       }
       first = gradient;
@@ -291,7 +292,8 @@ void BodySeries::correct(DD t, long step, double* y, double* carry) const {
 }
 
 void BodySeries::keep_unit(double* y, double* carry) {
-  // |q| = 1, or the vertical's. The carry keeps no more than rounding: it is not turned along with q, and what is larger would grow.
+  // |q| = 1, or the vertical's. The carry keeps no more than rounding: it is not turned along with q, and what is
+  // larger would grow.
   double norm = 0.0, cross = 0.0;
   for (int i = 4; i < 8; ++i) norm += y[i] * y[i], cross += y[i] * carry[i];
   const double lack = 0.5 * (1.0 - norm) - cross;

@@ -80,7 +80,8 @@ class Certifier {
   /// A motion in pieces has its whole chain run twice.
   bool carries() const { return method_.carries_error && plan_.pieces.empty(); }
 
-  Motion run(const Scene& scene, const SolveOptions& options, double rtol, bool moved = false, ode::ErrorTrace* trace = nullptr) {
+  Motion run(const Scene& scene, const SolveOptions& options, double rtol, bool moved = false,
+             ode::ErrorTrace* trace = nullptr) {
     const RunOptions how{options, {rtol, options.atol.value_or(find_atol(method_.record, scene_, rtol))}, trace};
     Motion motion = plan_.pieces.empty() ? method_.solve(scene, how) : run_by_plan(scene, how, plan_, moved);
     stats_.steps += motion.stats.steps;
@@ -91,8 +92,8 @@ class Certifier {
     return motion;
   }
 
-  /// A torque may have spun the body up: the integral of |omega|, by a loose run. Where a tighter tolerance costs little,
-  /// that run would cost more than it saves.
+  /// A torque may have spun the body up: the integral of |omega|, by a loose run. Where a tighter tolerance costs
+  /// little, that run would cost more than it saves.
   double find_turns() {
     if (!facts_.may_spin_up || method_.record.adaptive_order) return facts_.turns;
     SolveOptions loose;
@@ -124,8 +125,8 @@ class Certifier {
     return error > 0.5 && best_.error > 0.5 ? parting_ > kept_parting_ : error < best_.error;
   }
 
-  /// Runs that carry their error along. It is proportional to the tolerance until it is rounding, so that the second run
-  /// is at the right one; and where much more than asked is lost on the way, the run need not be ended to know.
+  /// Runs that carry their error along. It is proportional to the tolerance until it is rounding, so that the second
+  /// run is at the right one; and where much more than asked is lost on the way, the run need not be ended to know.
   Motion track(double rtol) {
     const double least = method_.record.least_rtol;
     for (bool first = true;; first = false) {
@@ -184,10 +185,11 @@ class Certifier {
       const double difference = compute_distance(motion.t.size(), data(motion.omega), data(motion.attitude),
                                                  data(other.omega), data(other.attitude));
       if (difference < infinity) motion.error = safety_ * difference + formulas;
-      parting_ = motion.error <= plan_.accuracy
-                     ? infinity
-                     : find_parting(motion.t.size(), motion.t.data(), scene_.t0(), data(motion.omega), data(motion.attitude),
-                                    data(other.omega), data(other.attitude), plan_.accuracy / safety_);
+      parting_ =
+          motion.error <= plan_.accuracy
+              ? infinity
+              : find_parting(motion.t.size(), motion.t.data(), scene_.t0(), data(motion.omega), data(motion.attitude),
+                             data(other.omega), data(other.attitude), plan_.accuracy / safety_);
     }
     return motion;
   }
@@ -219,9 +221,10 @@ class Certifier {
     }
     if (best_.error <= plan_.accuracy) {
       best_.error_kind = "bounded";
-      note(carries()
-               ? "certified: what each step loses and what rounding takes, carried along to the end, stays within the bound"
-               : "certified: with the inputs moved by two units in the last place, a coarser run stays within the bound");
+      note(carries() ? "certified: what each step loses and what rounding takes, carried along to the end, stays "
+                       "within the bound"
+                     : "certified: with the inputs moved by two units in the last place, a coarser run stays within "
+                       "the bound");
     } else {
       best_.error_kind = "limit";
       note(describe_limit());
@@ -233,14 +236,19 @@ class Certifier {
     char text[320];
     int n = 0;
     if (best_.error > 0.5) {
-      n = std::snprintf(text, sizeof text, "the accuracy of %.3g was not reached: over this span rounding and the inputs' last digits "
-                        "grow until nothing is certain", plan_.accuracy);
+      n = std::snprintf(text, sizeof text,
+                        "the accuracy of %.3g was not reached: over this span rounding and the inputs' last digits "
+                        "grow until nothing is certain",
+                        plan_.accuracy);
     } else {
-      n = std::snprintf(text, sizeof text, "the accuracy of %.3g was not reached: rounding and the inputs' last digits grow to %.2g "
-                        "over this span, by %s in float64", plan_.accuracy, best_.error, plan_.method.c_str());
+      n = std::snprintf(text, sizeof text,
+                        "the accuracy of %.3g was not reached: rounding and the inputs' last digits grow to %.2g "
+                        "over this span, by %s in float64",
+                        plan_.accuracy, best_.error, plan_.method.c_str());
     }
     if (kept_parting_ > 0 && kept_parting_ < infinity && n > 0 && static_cast<std::size_t>(n) < sizeof text) {
-      std::snprintf(text + n, sizeof text - static_cast<std::size_t>(n), "; it holds for the first %.4g s", kept_parting_);
+      std::snprintf(text + n, sizeof text - static_cast<std::size_t>(n), "; it holds for the first %.4g s",
+                    kept_parting_);
     }
     return text;
   }

@@ -39,7 +39,8 @@ const torques::Gravity* find_only_gravity(const Scene& scene) {
   return found;
 }
 
-/// The symmetry axis HeavyTop would take, from moments equal to the last bit; none for a full tensor that only nearly is one.
+/// The symmetry axis HeavyTop would take, from moments equal to the last bit; none for a full tensor that only nearly
+/// is one.
 std::optional<int> find_top_axis(const Scene& scene, const Vector3d& arm) {
   const Matrix3d& I = scene.inertia_B().matrix();
   if (!scene.inertia_B().is_diagonal()) return std::nullopt;

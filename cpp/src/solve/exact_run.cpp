@@ -108,9 +108,13 @@ Motion solve_exactly(const Scene& scene, const Facts& facts, const SolveOptions&
   motion.t_begin = scene.t0() - facts.before;
   motion.has_dense = options.dense;
   if (options.dense) motion.closed_form = std::make_shared<const ClosedForm>(std::move(form));
-  if (motion.message.empty()) motion.message = "evaluated at every time by the closed form, whose rounding bounds the error";
+  if (motion.message.empty())
+    motion.message = "evaluated at every time by the closed form, whose rounding bounds the error";
   if (error > motion.asked && motion.status == Status::finished) {
-    motion.message.append("; float64 allows ").append(to_text(error)).append(", not the ").append(to_text(motion.asked));
+    motion.message.append("; float64 allows ")
+        .append(to_text(error))
+        .append(", not the ")
+        .append(to_text(motion.asked));
     motion.message += " asked";
   }
   return motion;

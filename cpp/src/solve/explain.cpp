@@ -28,8 +28,8 @@ bool has(const Scene& scene, const char* name) {
 }
 
 /// Exact models in the order of their list; of those that hold, the one that is taken.
-void judge_exact(const Scene& scene, const Facts& facts, const SolveOptions& options, const std::optional<ClosedForm>& form,
-                 PlanReport& report) {
+void judge_exact(const Scene& scene, const Facts& facts, const SolveOptions& options,
+                 const std::optional<ClosedForm>& form, PlanReport& report) {
   for (const ExactModel& model : exact_models()) {
     if (form && model.name == form->model()) {
       report.candidates.push_back(judge_closed_form(scene, *form, facts, options));
@@ -63,26 +63,33 @@ void explain_exact(const Scene& scene, const Facts& facts, const ClosedForm& for
   } else if (model == "spherical") {
     reasons.push_back("All moments are equal and nothing acts on it, so omega stays: one turn about one axis.");
   } else if (model == "steady") {
-    reasons.push_back("It turns about a principal axis and nothing acts on it, so omega stays, exactly, stable or not.");
+    reasons.push_back(
+        "It turns about a principal axis and nothing acts on it, so omega stays, exactly, stable or not.");
   } else if (model == "symmetric") {
-    reasons.push_back("Two moments are equal and nothing acts on it: regular precession, two rotations at constant rates.");
+    reasons.push_back(
+        "Two moments are equal and nothing acts on it: regular precession, two rotations at constant rates.");
   } else if (model == "separatrix") {
     reasons.push_back("It starts exactly on the separatrix: one flip in all time, in hyperbolic functions.");
   } else if (model == "triaxial") {
     reasons.push_back("Nothing acts on it, so every sample is a formula (theta functions), not the end of many steps.");
   } else {
-    reasons.push_back("Symmetric, held on its axis, under gravity alone: Lagrange's top, which has a formula for every start.");
+    reasons.push_back(
+        "Symmetric, held on its axis, under gravity alone: Lagrange's top, which has a formula for every start.");
   }
   if (facts.turns > 10 && model != "rest") {
-    reasons.push_back(format("A formula has no drift: the error is the same after %.0f turns as after one.", facts.turns));
+    reasons.push_back(
+        format("A formula has no drift: the error is the same after %.0f turns as after one.", facts.turns));
   }
   if (model == "triaxial" && facts.separatrix < 1e-3) {
-    reasons.push_back(format("It starts next to the separatrix (k'^2 = %.1e), where each flip costs a stepper digits it cannot "
-                             "win back; the formula keeps them.", facts.separatrix));
+    reasons.push_back(
+        format("It starts next to the separatrix (k'^2 = %.1e), where each flip costs a stepper digits it cannot "
+               "win back; the formula keeps them.",
+               facts.separatrix));
   }
   const double condition = model == "rest" ? 0.0 : compute_condition(scene, form);
   if (condition > 20 * report.plan.predicted_error) {
-    reasons.push_back(format("Mind the inputs: half a unit in their last place moves the end of the span by %.0e.", condition));
+    reasons.push_back(
+        format("Mind the inputs: half a unit in their last place moves the end of the span by %.0e.", condition));
   }
 }
 
@@ -90,49 +97,61 @@ void explain_steps(const Scene& scene, const Facts& facts, const SolveOptions& o
   auto& reasons = report.reasons;
   const Plan& plan = report.plan;
   if (facts.is_free() || options.formulation == Formulation::lagrangian) {
-    if (options.formulation == Formulation::lagrangian) reasons.push_back("Lagrange's equations were asked for: they are stepped.");
+    if (options.formulation == Formulation::lagrangian)
+      reasons.push_back("Lagrange's equations were asked for: they are stepped.");
   } else if (has(scene, "Gravity") && facts.torques.acting == 1) {
     reasons.push_back("Gravity acts, and " + exact_models().back().refuse(scene, facts) + ": no closed form is known.");
   } else {
     reasons.push_back("A torque acts for which no closed form is known: it is stepped.");
   }
   if (facts.torques.acting > 0 && !facts.torques.uses_attitude) {
-    reasons.push_back(scene.want().attitude ? "The torque does not look at the attitude, so the attitude follows the rates and nothing comes back."
-                                            : "The torque does not look at the attitude, so the rates are solved alone.");
+    reasons.push_back(
+        scene.want().attitude
+            ? "The torque does not look at the attitude, so the attitude follows the rates and nothing comes back."
+            : "The torque does not look at the attitude, so the rates are solved alone.");
   }
   const ode::MethodRecord& record = find_method(plan.method);
   if (plan.pieces.size() == 2) {
-    reasons.push_back(format("Damping decays at up to %.3g /s over %.3g s. At first it spins so fast that accuracy bounds the steps, later "
-                             "stability would: taylor hands the state to radau at t = %.3g s, as a loose run foresees.",
-                             facts.decay, facts.span(), plan.pieces[1].begin));
+    reasons.push_back(format(
+        "Damping decays at up to %.3g /s over %.3g s. At first it spins so fast that accuracy bounds the steps, later "
+        "stability would: taylor hands the state to radau at t = %.3g s, as a loose run foresees.",
+        facts.decay, facts.span(), plan.pieces[1].begin));
   } else if (facts.stiffness > 100) {
-    reasons.push_back(format("Damping decays at up to %.3g /s over %.3g s (their product is %.0e): ", facts.decay, facts.span(), facts.stiffness) +
-                      (record.implicit ? "stiff, which an implicit method steps over."
-                                       : "explicit steps are short for stability's sake, and still cheaper than an implicit method."));
+    reasons.push_back(
+        format("Damping decays at up to %.3g /s over %.3g s (their product is %.0e): ", facts.decay, facts.span(),
+               facts.stiffness) +
+        (record.implicit
+             ? "stiff, which an implicit method steps over."
+             : "explicit steps are short for stability's sake, and still cheaper than an implicit method."));
   }
   if (facts.may_spin_up) {
     reasons.push_back("The torque may spin it up: the number of turns is a guess, and the certificate decides.");
   }
   if (facts.separatrix < 1e-3) {
-    reasons.push_back(format("It starts next to the separatrix (k'^2 = %.1e): errors grow at each flip, and the certificate "
-                             "will see it.", facts.separatrix));
+    reasons.push_back(
+        format("It starts next to the separatrix (k'^2 = %.1e): errors grow at each flip, and the certificate "
+               "will see it.",
+               facts.separatrix));
   }
   int others = 0;
   for (const Candidate& one : report.candidates) others += !one.exact && one.why_not.empty() && one.name != plan.method;
   if (options.method) {
     reasons.push_back(plan.method + " was asked for.");
   } else if (others > 0 && plan.pieces.empty()) {
-    reasons.push_back(format("%s is the cheapest of %d methods at this accuracy over %.3g turns.", plan.method.c_str(), others + 1, facts.turns));
+    reasons.push_back(format("%s is the cheapest of %d methods at this accuracy over %.3g turns.", plan.method.c_str(),
+                             others + 1, facts.turns));
   }
   if (!plan.certify) {
     reasons.push_back("Its error is only expected: no certificate was wanted.");
   } else if (find_body_method(plan.method).carries_error && plan.pieces.empty()) {
     reasons.push_back("Its error is certified in the same run: what each step loses is carried along to the end.");
   } else {
-    reasons.push_back("Its error is certified by a second, coarser run with every input moved by two units in the last place.");
+    reasons.push_back(
+        "Its error is certified by a second, coarser run with every input moved by two units in the last place.");
   }
   if (plan.predicted_error > forecast_slack * plan.accuracy) {
-    reasons.push_back(format("Rounding over so many turns is expected to leave %.0e: the result may say \"limit\".", plan.predicted_error));
+    reasons.push_back(format("Rounding over so many turns is expected to leave %.0e: the result may say \"limit\".",
+                             plan.predicted_error));
   }
 }
 
@@ -177,7 +196,8 @@ PlanReport explain_plan(const Scene& scene, const SolveOptions& options) {
   for (const ode::MethodRecord& record : methods()) {
     if (!record.adaptive) continue;
     report.candidates.push_back(judge_method(scene, facts, options, record));
-    if (record.name == report.plan.method && report.plan.pieces.empty()) report.candidates.back().predicted_seconds = report.plan.predicted_seconds;
+    if (record.name == report.plan.method && report.plan.pieces.empty())
+      report.candidates.back().predicted_seconds = report.plan.predicted_seconds;
   }
   if (exact) {
     explain_exact(scene, facts, *form, report);

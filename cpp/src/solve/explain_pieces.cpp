@@ -6,17 +6,22 @@
 namespace polhode {
 namespace {
 
-std::string count(std::size_t n, const char* what) { return std::to_string(n).append(" ").append(what).append(n == 1 ? "" : "s"); }
+std::string count(std::size_t n, const char* what) {
+  return std::to_string(n).append(" ").append(what).append(n == 1 ? "" : "s");
+}
 
 /// A method for all pieces that no closed form takes.
-Candidate judge_for_pieces(const Scene& scene, const Facts& facts, const SolveOptions& options, const ode::MethodRecord& record,
-                           const Plan& plan) {
+Candidate judge_for_pieces(const Scene& scene, const Facts& facts, const SolveOptions& options,
+                           const ode::MethodRecord& record, const Plan& plan) {
   Candidate one = judge_method(scene, facts, options, record);
   if (!one.why_not.empty()) return one;
   double stepped = 0.0, formulas = 0.0;
-  for (const PiecePlan& piece : plan.pieces) (piece.method == "exact" ? formulas : stepped) += piece.method == "exact" ? piece.predicted_seconds : piece.turns;
+  for (const PiecePlan& piece : plan.pieces)
+    (piece.method == "exact" ? formulas : stepped) += piece.method == "exact" ? piece.predicted_seconds : piece.turns;
   const double per_call = find_seconds_per_call(scene);
-  const auto predict = [&](double rtol) { return record.forecast.compute_seconds(rtol, stepped, facts.stiffness, per_call); };
+  const auto predict = [&](double rtol) {
+    return record.forecast.compute_seconds(rtol, stepped, facts.stiffness, per_call);
+  };
   one.predicted_seconds = (predict(one.rtol) + (options.certify ? predict(pair_ratio * one.rtol) : 0.0)) *
                               find_factor(options.cost_factors, record.name) + formulas;
   return one;
@@ -36,8 +41,10 @@ PlanReport explain_pieces(const Scene& scene, const Pieces& pieces, const SolveO
     std::size_t held = 0;
     for (const PiecePlan& one : parts) held += one.model == model.name;
     if (held == 0) continue;
-    report.candidates.push_back({.name = std::string(model.name), .exact = true,
-                                 .why_not = "taken in " + std::to_string(held) + " of " + count(parts.size(), "piece")});
+    report.candidates.push_back(
+        {.name = std::string(model.name),
+         .exact = true,
+         .why_not = "taken in " + std::to_string(held) + " of " + count(parts.size(), "piece")});
   }
   if (formulas < parts.size()) {
     for (const ode::MethodRecord& record : methods()) {
@@ -45,12 +52,13 @@ PlanReport explain_pieces(const Scene& scene, const Pieces& pieces, const SolveO
     }
   }
 
-  report.reasons.push_back("Torques begin or cease to act within the span: it is cut there into " + count(parts.size(), "piece") +
-                           ", each with the torques that act in it.");
+  report.reasons.push_back("Torques begin or cease to act within the span: it is cut there into " +
+                           count(parts.size(), "piece") + ", each with the torques that act in it.");
   if (formulas == parts.size()) {
     report.reasons.push_back("Every piece has a closed form: nothing is stepped.");
   } else if (formulas > 0) {
-    report.reasons.push_back(count(formulas, "piece") + (formulas == 1 ? " has a closed form, which costs" : " have closed forms, which cost") +
+    report.reasons.push_back(count(formulas, "piece") +
+                             (formulas == 1 ? " has a closed form, which costs" : " have closed forms, which cost") +
                              " the same however long they last; the others are stepped.");
   } else if (options.method) {
     report.reasons.push_back(report.plan.method + " was asked for, and steps every piece.");
@@ -61,12 +69,14 @@ PlanReport explain_pieces(const Scene& scene, const Pieces& pieces, const SolveO
   if (!report.plan.certify && formulas < parts.size()) {
     report.reasons.push_back("Its error is only expected: no certificate was wanted.");
   } else {
-    report.reasons.push_back("The error of the whole chain is bounded by a second one, with every input, the windows' ends and each "
-                             "piece's start moved by units of rounding.");
+    report.reasons.push_back(
+        "The error of the whole chain is bounded by a second one, with every input, the windows' ends and each "
+        "piece's start moved by units of rounding.");
   }
   for (const AnyTorque& torque : scene.torques()) {
     if (traits(torque).vanishes) {
-      report.left_out.push_back(std::string(std::visit([](const auto& one) { return one.record().name; }, torque)) + ": zero wherever the body goes.");
+      report.left_out.push_back(std::string(std::visit([](const auto& one) { return one.record().name; }, torque)) +
+                                ": zero wherever the body goes.");
     }
   }
   if (!scene.want().attitude && report.plan.state == "omega") {

@@ -47,9 +47,9 @@ Vector3d compute_drive_rates(const Scene& scene) {
   return S.allFinite() ? compute_principal_axes(S).moments : Vector3d::Zero();
 }
 
-/// The angle turned under a torque that stays as it is in the body. Such a torque ends up spinning it about its first or its
-/// third axis, at the share of that axis over its moment; until then the start's rate counts. Within a factor 2 of what is
-/// integrated for nine in ten of random blocks.
+/// The angle turned under a torque that stays as it is in the body. Such a torque ends up spinning it about its first
+/// or its third axis, at the share of that axis over its moment; until then the start's rate counts. Within a factor 2
+/// of what is integrated for nine in ten of random blocks.
 double turn_under_thrust(const Scene& scene, double span) {
   const InertiaTensor& inertia = scene.inertia_B();
   const Vector3d share = inertia.axes().transpose() * compute_torque(scene, scene.omega());

@@ -24,11 +24,17 @@ struct Story {
 
 std::optional<Story> scout(const Scene& scene, const Facts& facts, const SolveOptions& options, long most_steps) {
   std::vector<double> times;
-  for (int i = scales; i > 0; --i) times.push_back(scene.t0() + facts.after * std::pow(10.0, -static_cast<double>(i) / per_decade));
+  for (int i = scales; i > 0; --i)
+    times.push_back(scene.t0() + facts.after * std::pow(10.0, -static_cast<double>(i) / per_decade));
   for (int i = 1; i <= 24; ++i) times.push_back(scene.t0() + facts.after * i / 24);
   std::sort(times.begin(), times.end());
-  const Scene loose(SceneParts{.inertia_B = scene.inertia_B(), .omega = scene.omega(), .attitude = scene.attitude(),
-                               .torques = scene.torques(), .times = std::move(times), .want = {true, carries_attitude(scene, facts, options)}, .t0 = scene.t0()});
+  const Scene loose(SceneParts{.inertia_B = scene.inertia_B(),
+                               .omega = scene.omega(),
+                               .attitude = scene.attitude(),
+                               .torques = scene.torques(),
+                               .times = std::move(times),
+                               .want = {true, carries_attitude(scene, facts, options)},
+                               .t0 = scene.t0()});
   SolveOptions quiet;
   quiet.max_steps = most_steps;
   quiet.progress = options.progress;
@@ -59,7 +65,8 @@ std::optional<PiecesPlan> plan_damped(const Scene& scene, const Facts& facts, co
   if (!compute_refusal("taylor", scene).empty()) return std::nullopt;
   const ode::MethodRecord &first = taylor_method.record, &second = radau_method.record;
   const ode::Forecast &explicitly = first.forecast, &implicitly = second.forecast;
-  const std::optional<Story> story = scout(scene, facts, options, static_cast<long>(0.2 * facts.stiffness / explicitly.stability));
+  const std::optional<Story> story =
+      scout(scene, facts, options, static_cast<long>(0.2 * facts.stiffness / explicitly.stability));
   if (!story || story->t.empty()) return std::nullopt;
 
   const double accuracy = get_accuracy(options), turns = story->turned / (2 * std::numbers::pi);
@@ -76,11 +83,14 @@ std::optional<PiecesPlan> plan_damped(const Scene& scene, const Facts& facts, co
     return seconds * find_factor(options.cost_factors, record.name);
   };
   const double radian = price(first, coarse), implicit_radian = price(second, coarse * scale);
-  const double stable = radian / (explicitly.steps_per_radian * std::pow(coarse, -explicitly.power)) * facts.decay / explicitly.stability;
-  const double start_up = 30 * implicit_radian / (implicitly.steps_per_radian * std::pow(coarse * scale, -implicitly.power));
+  const double stable =
+      radian / (explicitly.steps_per_radian * std::pow(coarse, -explicitly.power)) * facts.decay / explicitly.stability;
+  const double start_up =
+      30 * implicit_radian / (implicitly.steps_per_radian * std::pow(coarse * scale, -implicitly.power));
   const double all = story->work.back(), end = scene.t0() + facts.after;
 
-  double best = std::numeric_limits<double>::infinity(), when = end, spent = 0.0, t = scene.t0(), work = 0.0, before = 0.0;
+  double best = std::numeric_limits<double>::infinity(), when = end, spent = 0.0, t = scene.t0(), work = 0.0,
+         before = 0.0;
   for (std::size_t i = 0; i < story->t.size(); ++i) {
     spent += std::max((story->work[i] - work) * radian, (story->t[i] - t) * stable);
     t = story->t[i], work = story->work[i];
@@ -90,7 +100,8 @@ std::optional<PiecesPlan> plan_damped(const Scene& scene, const Facts& facts, co
   // Turns about a principal axis cost Radau's rates no steps: the loose run has counted those that are needed.
   const double step = implicit_radian / (implicitly.steps_per_radian * std::pow(coarse * scale, -implicitly.power));
   const double counted = step * story->steps * std::pow(coarse * scale / loose_rtol, -implicitly.power);
-  const double taylor_alone = spent + (end - t) * stable, radau_alone = std::min(all * implicit_radian + start_up, counted);
+  const double taylor_alone = spent + (end - t) * stable,
+               radau_alone = std::min(all * implicit_radian + start_up, counted);
   PiecesPlan made;
   made.facts = facts;
   made.facts.turns = made.turns = turns;
@@ -109,16 +120,30 @@ std::optional<PiecesPlan> plan_damped(const Scene& scene, const Facts& facts, co
   const double main_coarse = mostly_first ? coarse : coarse * scale;
   const ode::MethodRecord& main = mostly_first ? first : second;
   made.plan.rtol = std::max(main_coarse / pair_ratio, main.least_rtol);
-  made.plan.predicted_error = main.forecast.compute_error(options.certify ? std::max(main_coarse, pair_ratio * main.least_rtol) : made.plan.rtol, turns);
+  made.plan.predicted_error = main.forecast.compute_error(
+      options.certify ? std::max(main_coarse, pair_ratio * main.least_rtol) : made.plan.rtol, turns);
   std::vector<std::string> names;
-  for (const AnyTorque& torque : scene.torques()) names.emplace_back(std::visit([](const auto& one) { return one.record().name; }, torque));
+  for (const AnyTorque& torque : scene.torques())
+    names.emplace_back(std::visit([](const auto& one) { return one.record().name; }, torque));
   double turned = 0.0;
   for (std::size_t i = 0; i < story->t.size() && story->t[i] <= when; ++i) turned = story->work[i] / all * turns;
-  made.plan.pieces = {
-      {.begin = scene.t0(), .end = when, .torques = names, .model = "euler", .method = std::string(first.name), .turns = turned,
-       .predicted_seconds = before, .rtol_scale = mostly_first ? 1.0 : 1 / scale},
-      {.begin = when, .end = end, .torques = names, .model = "euler", .method = std::string(second.name), .turns = turns - turned,
-       .predicted_seconds = best - before, .rtol_scale = mostly_first ? scale : 1.0, .handed_over = true}};
+  made.plan.pieces = {{.begin = scene.t0(),
+                       .end = when,
+                       .torques = names,
+                       .model = "euler",
+                       .method = std::string(first.name),
+                       .turns = turned,
+                       .predicted_seconds = before,
+                       .rtol_scale = mostly_first ? 1.0 : 1 / scale},
+                      {.begin = when,
+                       .end = end,
+                       .torques = names,
+                       .model = "euler",
+                       .method = std::string(second.name),
+                       .turns = turns - turned,
+                       .predicted_seconds = best - before,
+                       .rtol_scale = mostly_first ? scale : 1.0,
+                       .handed_over = true}};
   return made;
 }
 

@@ -67,7 +67,8 @@ std::map<std::string, double> compute_drift(const Scene& scene, const Motion& mo
   if (has_attitude) {
     compute_angular_momentum(scene, n, motion.omega.data(), motion.attitude.data(), L.data());
     compute_angular_momentum(scene, 1, start_omega, start_attitude, L0);
-    for (std::size_t i = 0; i < n; ++i) largest_L = std::max(largest_L, std::hypot(L[3 * i], L[3 * i + 1], L[3 * i + 2]));
+    for (std::size_t i = 0; i < n; ++i)
+      largest_L = std::max(largest_L, std::hypot(L[3 * i], L[3 * i + 1], L[3 * i + 2]));
     largest_L = std::max(largest_L, std::hypot(L0[0], L0[1], L0[2]));
   }
   if (free && has_attitude) {

@@ -11,7 +11,9 @@ namespace polhode {
 inline double compute_distance(std::size_t n, const double* omega_a, const double* attitude_a, const double* omega_b,
                                const double* attitude_b) {
   double size = 0.0, moved = 0.0, turned = 0.0;
-  const auto keep = [](double& largest, double value) { largest = largest != largest || value <= largest ? largest : value; };
+  const auto keep = [](double& largest, double value) {
+    largest = largest != largest || value <= largest ? largest : value;
+  };
   for (std::size_t i = 0; omega_a != nullptr && i < n; ++i) {
     double s = 0.0, d = 0.0;
     for (std::size_t k = 3 * i; k < 3 * i + 3; ++k) {
@@ -44,8 +46,10 @@ inline double find_parting(std::size_t n, const double* t, double t0, const doub
   }
   for (std::size_t i = 0; i < n; ++i) {
     double moved = 0.0;
-    for (std::size_t k = 3 * i; omega_a != nullptr && k < 3 * i + 3; ++k) moved = std::hypot(moved, omega_a[k] - omega_b[k]);
-    const double turned = attitude_a == nullptr ? 0.0 : compute_distance(1, nullptr, attitude_a + 4 * i, nullptr, attitude_b + 4 * i);
+    for (std::size_t k = 3 * i; omega_a != nullptr && k < 3 * i + 3; ++k)
+      moved = std::hypot(moved, omega_a[k] - omega_b[k]);
+    const double turned =
+        attitude_a == nullptr ? 0.0 : compute_distance(1, nullptr, attitude_a + 4 * i, nullptr, attitude_b + 4 * i);
     if (!(moved <= most * size && turned <= most)) parting = std::min(parting, std::abs(t[i] - t0));
   }
   if (parting == HUGE_VAL) return parting;

@@ -34,7 +34,8 @@ State Motion::at(double time) const {
     if (time >= piece->t_begin && time <= piece->t_reached) within = piece.get();
   }
   if (!(time >= begin && time <= end)) {
-    throw InvalidInput("motion(t)", "a time between " + polhode::to_text(begin) + " and " + polhode::to_text(end) + " s",
+    throw InvalidInput("motion(t)",
+                       "a time between " + polhode::to_text(begin) + " and " + polhode::to_text(end) + " s",
                        polhode::to_text(time));
   }
   if (time == start.t) return start;

@@ -62,12 +62,15 @@ Torque perturb_torque(const Torque& torque, Coin& coin) {
 AnyTorque perturb_windows(const AnyTorque& torque, double first, double last, double t0) {
   const auto* during = std::get_if<torques::During>(&torque);
   if (during == nullptr) return torque;
-  const auto move = [=](double t) { return first < t && t < last && t != t0 ? Coin(std::bit_cast<std::uint64_t>(t)).move(t) : t; };
+  const auto move = [=](double t) {
+    return first < t && t < last && t != t0 ? Coin(std::bit_cast<std::uint64_t>(t)).move(t) : t;
+  };
   std::vector<torques::Window> windows = during->windows();
   double before = -std::numeric_limits<double>::infinity();
   for (torques::Window& window : windows) {
     window = {move(window.begin), move(window.end)};
-    if (!(before <= window.begin && window.begin < window.end)) return torque;   // nothing lies between so near neighbours
+    if (!(before <= window.begin && window.begin < window.end))
+      return torque;   // nothing lies between so near neighbours
     before = window.end;
   }
   return torques::During(during->torque(), std::move(windows));
@@ -80,7 +83,8 @@ State shake(const State& state, double units, int seed) {
   const double size = units * std::numeric_limits<double>::epsilon(), rate = state.omega.norm();
   State moved = state;
   for (int i = 0; i < 3; ++i) moved.omega[i] += (coin.toss() ? size : -size) * rate;
-  for (double* part : {&moved.attitude.x, &moved.attitude.y, &moved.attitude.z, &moved.attitude.w}) *part += coin.toss() ? size : -size;
+  for (double* part : {&moved.attitude.x, &moved.attitude.y, &moved.attitude.z, &moved.attitude.w})
+    *part += coin.toss() ? size : -size;
   return moved;
 }
 
@@ -89,7 +93,8 @@ Scene perturb(const Scene& scene) {
   Matrix3d I = scene.inertia_B().matrix();
   const bool cut = has_windows(scene);   // then equal moments stay equal: a piece of it may be a closed form's
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j <= i; ++j) I(i, j) = I(j, i) = cut ? Coin(std::bit_cast<std::uint64_t>(I(i, j))).move(I(i, j)) : coin.move(I(i, j));
+    for (int j = 0; j <= i; ++j)
+      I(i, j) = I(j, i) = cut ? Coin(std::bit_cast<std::uint64_t>(I(i, j))).move(I(i, j)) : coin.move(I(i, j));
   SceneParts parts{.inertia_B = InertiaTensor::from_trusted(I, scene.inertia_B().physical())};
   parts.omega = scene.omega();
   coin(parts.omega);
@@ -97,7 +102,8 @@ Scene perturb(const Scene& scene) {
   parts.attitude = {coin.move(q.x), coin.move(q.y), coin.move(q.z), coin.move(q.w)};
   const auto [least, most] = std::minmax_element(scene.times().begin(), scene.times().end());
   for (const AnyTorque& torque : scene.torques()) {
-    parts.torques.push_back(perturb_windows(perturb_torque(torque, coin), std::min(*least, scene.t0()), std::max(*most, scene.t0()), scene.t0()));
+    parts.torques.push_back(perturb_windows(perturb_torque(torque, coin), std::min(*least, scene.t0()),
+                                            std::max(*most, scene.t0()), scene.t0()));
   }
   parts.times = scene.times();
   parts.want = scene.want();

@@ -108,7 +108,8 @@ class Chain {
   SolveOptions make_options(double last) const {
     SolveOptions one = options_;
     one.max_steps = options_.max_steps - motion_.stats.steps;
-    if (options_.progress) one.progress = [this, last](double reached, double) { return options_.progress(reached, last); };
+    if (options_.progress)
+      one.progress = [this, last](double reached, double) { return options_.progress(reached, last); };
     return one;
   }
 
@@ -118,7 +119,8 @@ class Chain {
     motion_.stats.derivatives += one.stats.derivatives;
     motion_.stats.events += one.stats.events;
     motion_.events.insert(motion_.events.end(), one.events.begin(), one.events.end());
-    if (!std::isnan(one.error)) motion_.error = std::isnan(motion_.error) ? one.error : std::max(one.error, motion_.error);
+    if (!std::isnan(one.error))
+      motion_.error = std::isnan(motion_.error) ? one.error : std::max(one.error, motion_.error);
   }
 
   /// The piece's rows into their places; those that were not reached are not among them.
@@ -127,7 +129,8 @@ class Chain {
     for (std::size_t i = 0; i < order.size() && row < motion.t.size(); ++i) {
       if (motion.t[row] != one.times()[i]) continue;
       if (!motion_.omega.empty()) std::copy_n(motion.omega.data() + 3 * row, 3, motion_.omega.data() + 3 * order[i]);
-      if (!motion_.attitude.empty()) std::copy_n(motion.attitude.data() + 4 * row, 4, motion_.attitude.data() + 4 * order[i]);
+      if (!motion_.attitude.empty())
+        std::copy_n(motion.attitude.data() + 4 * row, 4, motion_.attitude.data() + 4 * order[i]);
       answered_[order[i]] = 1;
       ++row;
     }
@@ -228,21 +231,31 @@ Pieces cut(const Scene& scene, std::vector<double> more) {
   return pieces;
 }
 
-Scene make_piece_scene(const Scene& scene, const Piece& piece, const State& start, std::vector<double> times, const Wanted& want) {
-  return Scene(SceneParts{.inertia_B = scene.inertia_B(), .omega = start.omega, .attitude = start.attitude,
-                          .torques = piece.torques, .times = std::move(times), .want = want, .t0 = start.t, .name = scene.name()});
+Scene make_piece_scene(const Scene& scene, const Piece& piece, const State& start, std::vector<double> times,
+                       const Wanted& want) {
+  return Scene(SceneParts{.inertia_B = scene.inertia_B(),
+                          .omega = start.omega,
+                          .attitude = start.attitude,
+                          .torques = piece.torques,
+                          .times = std::move(times),
+                          .want = want,
+                          .t0 = start.t,
+                          .name = scene.name()});
 }
 
 Scene drop_windows(const Scene& scene) {
   const auto [first, last] = find_span(scene);
-  return make_piece_scene(scene, {first, last, find_acting(scene, first, last)}, scene.start(), scene.times(), scene.want());
+  return make_piece_scene(scene, {first, last, find_acting(scene, first, last)}, scene.start(), scene.times(),
+                          scene.want());
 }
 
 std::string describe_span(const Piece& piece) {
-  return "from t = " + to_text(std::min(piece.begin, piece.end)) + " to " + to_text(std::max(piece.begin, piece.end)) + " s";
+  return "from t = " + to_text(std::min(piece.begin, piece.end)) + " to " + to_text(std::max(piece.begin, piece.end)) +
+         " s";
 }
 
-Motion run_pieces(const Scene& scene, const Pieces& pieces, const SolveOptions& options, const RunPiece& run, bool shaken) {
+Motion run_pieces(const Scene& scene, const Pieces& pieces, const SolveOptions& options, const RunPiece& run,
+                  bool shaken) {
   Wanted want{true, scene.want().attitude || !options.events.empty()};
   for (const auto* one_way : {&pieces.backward, &pieces.forward}) {
     for (const Piece& piece : *one_way) want.attitude |= summarize(piece.torques).uses_attitude;

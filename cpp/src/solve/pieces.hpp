@@ -29,7 +29,8 @@ bool has_windows(const Scene& scene);
 Pieces cut(const Scene& scene, std::vector<double> more = {});
 
 /// The scene of one piece: its torques, a start and times of its own.
-Scene make_piece_scene(const Scene& scene, const Piece& piece, const State& start, std::vector<double> times, const Wanted& want);
+Scene make_piece_scene(const Scene& scene, const Piece& piece, const State& start, std::vector<double> times,
+                       const Wanted& want);
 
 /// The same scene without windows, where none ends within the span: each torque acts all the time or not at all.
 Scene drop_windows(const Scene& scene);

@@ -70,10 +70,12 @@ Candidate judge_method(const Scene& scene, const Facts& facts, const SolveOption
   return one;
 }
 
-Candidate judge_closed_form(const Scene& scene, const ClosedForm& form, const Facts& facts, const SolveOptions& options) {
+Candidate judge_closed_form(const Scene& scene, const ClosedForm& form, const Facts& facts,
+                            const SolveOptions& options) {
   Candidate one{.name = std::string(form.model()), .exact = true};
   one.predicted_error = compute_closed_form_error(scene, facts, form);
-  one.predicted_seconds = predict_closed_form(one.name, static_cast<double>(scene.times().size()), options.cost_factors);
+  one.predicted_seconds =
+      predict_closed_form(one.name, static_cast<double>(scene.times().size()), options.cost_factors);
   return one;
 }
 

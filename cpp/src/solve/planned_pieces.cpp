@@ -95,15 +95,22 @@ class Planner {
     std::vector<double> times;
     for (const auto* one_way : {&pieces_.backward, &pieces_.forward}) {
       for (const Piece& piece : *one_way) {
-        for (int i = 1; i <= looks; ++i) times.push_back(i == looks ? piece.end : piece.begin + (piece.end - piece.begin) * i / looks);
+        for (int i = 1; i <= looks; ++i)
+          times.push_back(i == looks ? piece.end : piece.begin + (piece.end - piece.begin) * i / looks);
       }
     }
-    const Scene loose(SceneParts{.inertia_B = scene_.inertia_B(), .omega = scene_.omega(), .attitude = scene_.attitude(),
-                                 .torques = scene_.torques(), .times = std::move(times), .want = {true, false}, .t0 = scene_.t0()});
+    const Scene loose(SceneParts{.inertia_B = scene_.inertia_B(),
+                                 .omega = scene_.omega(),
+                                 .attitude = scene_.attitude(),
+                                 .torques = scene_.torques(),
+                                 .times = std::move(times),
+                                 .want = {true, false},
+                                 .t0 = scene_.t0()});
     SolveOptions options;
     options.formulation = options_.formulation;
     options.progress = options_.progress;
-    run_pieces(loose, pieces_, options, [this](const Scene& piece, const SolveOptions& one) { return run_loosely(piece, one); });
+    run_pieces(loose, pieces_, options,
+               [this](const Scene& piece, const SolveOptions& one) { return run_loosely(piece, one); });
     for (const auto* one_way : {&pieces_.backward, &pieces_.forward}) {
       for (const Piece& piece : *one_way) {
         const auto same = [&](const PiecePlan& one) { return one.begin == std::min(piece.begin, piece.end); };
@@ -135,13 +142,15 @@ class Planner {
     const auto [begin, end] = std::minmax({piece.t0(), piece.times().back()});
     PiecePlan plan{.begin = begin, .end = end, .model = "euler", .turns = facts.turns};
     for (const AnyTorque& torque : piece.torques()) {
-      if (!traits(torque).vanishes) plan.torques.emplace_back(std::visit([](const auto& one) { return one.record().name; }, torque));
+      if (!traits(torque).vanishes)
+        plan.torques.emplace_back(std::visit([](const auto& one) { return one.record().name; }, torque));
     }
     std::optional<ClosedForm> form;
     if (leaves_choice(options_) || options_.method == "exact") form = find_closed_form(piece, facts);
     if (form) {
       plan.model = form->model(), plan.method = "exact";
-      const auto samples = std::upper_bound(sorted_.begin(), sorted_.end(), plan.end) - std::lower_bound(sorted_.begin(), sorted_.end(), plan.begin);
+      const auto samples = std::upper_bound(sorted_.begin(), sorted_.end(), plan.end) -
+                           std::lower_bound(sorted_.begin(), sorted_.end(), plan.begin);
       plan.predicted_seconds = predict_closed_form(plan.model, static_cast<double>(samples), options_.cost_factors);
     } else {
       plan.method = choose_method(piece, facts, options_).name;
@@ -177,8 +186,10 @@ class Planner {
     for (std::size_t i = 0; i < plans_.size(); ++i) {
       if (plans_[i].method == "exact") continue;
       const ode::MethodRecord& record = find_method(plans_[i].method);
-      if (record.forecast.known() && main_->forecast.known()) plans_[i].rtol_scale = record.forecast.find_rtol(accuracy, turns_) / coarse_;
-      plans_[i].predicted_seconds = predict(record, plans_[i].rtol_scale * coarse_, facts_[i]) * find_factor(options_.cost_factors, record.name);
+      if (record.forecast.known() && main_->forecast.known())
+        plans_[i].rtol_scale = record.forecast.find_rtol(accuracy, turns_) / coarse_;
+      plans_[i].predicted_seconds =
+          predict(record, plans_[i].rtol_scale * coarse_, facts_[i]) * find_factor(options_.cost_factors, record.name);
     }
   }
 
@@ -194,7 +205,8 @@ class Planner {
       const auto* during = std::get_if<torques::During>(&torque);
       const double first = scene_.t0() - all.before, last = scene_.t0() + all.after;
       const auto meets = [=](const torques::Window& one) { return one.begin < last && one.end > first; };
-      if (during == nullptr || std::any_of(during->windows().begin(), during->windows().end(), meets)) acting.push_back(torque);
+      if (during == nullptr || std::any_of(during->windows().begin(), during->windows().end(), meets))
+        acting.push_back(torque);
     }
     all.torques = summarize(acting);
     all.turns = turns_, all.stiffness = 0.0, all.decay = 0.0, all.may_spin_up = false;
@@ -226,7 +238,8 @@ std::optional<Scene> stop(const Scene& piece, const Scene& whole, double rtol) {
   double span = 0.0;
   for (const double t : whole.times()) span = std::max(span, std::abs(t - whole.t0()));
   const double rate = piece.omega().norm();
-  if (piece.t0() == whole.t0() || rate == 0.0 || !(rate < 0.01 * rtol * std::min(whole.omega().norm(), 1 / span))) return std::nullopt;
+  if (piece.t0() == whole.t0() || rate == 0.0 || !(rate < 0.01 * rtol * std::min(whole.omega().norm(), 1 / span)))
+    return std::nullopt;
   return Scene(SceneParts{.inertia_B = piece.inertia_B(), .attitude = piece.attitude(), .torques = piece.torques(),
                           .times = piece.times(), .want = piece.want(), .t0 = piece.t0(), .name = piece.name()});
 }
@@ -242,26 +255,31 @@ Motion run_by_plan(const Scene& scene, const RunOptions& options, const Plan& pl
   for (const PiecePlan& one : plan.pieces) {
     if (one.handed_over) handovers.push_back(one.begin);
   }
-  return run_pieces(scene, cut(scene, std::move(handovers)), options.asked, [&](const Scene& piece, const SolveOptions& asked) {
-    const PiecePlan& one = find_plan(plan, piece);
-    std::string name = one.method;
-    if (one.method == "exact") {
-      const Facts facts = compute_facts(piece);
-      if (std::optional<ClosedForm> form = find_closed_form(piece, facts)) {
-        const Plan exact = make_exact_plan(piece, *form, facts, asked);
-        return solve_exactly(piece, facts, asked, *std::move(form), exact);
-      }
-      name = choose_method(piece, facts, asked).name;   // moved inputs may have lost what the closed form asks for
-    }
-    const BodyMethod& method = find_body_method(name);
-    const double rtol = std::max(options.tolerances.rtol * one.rtol_scale, method.record.least_rtol);
-    const std::optional<Scene> stopped = stop(piece, scene, rtol);
-    const Scene& begun = stopped ? *stopped : piece;
-    Motion motion = method.solve(begun, RunOptions{asked, {rtol, find_atol(method.record, scene, rtol)}});
-    const bool stuck = motion.status == Status::failed && motion.stats.steps == 0;   // its first step was below the times' spacing
-    if (!stuck || name == "taylor" || !compute_refusal("taylor", begun).empty()) return motion;
-    return taylor_method.solve(begun, RunOptions{asked, {std::max(options.tolerances.rtol, taylor_method.record.least_rtol)}});
-  }, shaken);
+  return run_pieces(
+      scene, cut(scene, std::move(handovers)), options.asked,
+      [&](const Scene& piece, const SolveOptions& asked) {
+        const PiecePlan& one = find_plan(plan, piece);
+        std::string name = one.method;
+        if (one.method == "exact") {
+          const Facts facts = compute_facts(piece);
+          if (std::optional<ClosedForm> form = find_closed_form(piece, facts)) {
+            const Plan exact = make_exact_plan(piece, *form, facts, asked);
+            return solve_exactly(piece, facts, asked, *std::move(form), exact);
+          }
+          name = choose_method(piece, facts, asked).name;   // moved inputs may have lost what the closed form asks for
+        }
+        const BodyMethod& method = find_body_method(name);
+        const double rtol = std::max(options.tolerances.rtol * one.rtol_scale, method.record.least_rtol);
+        const std::optional<Scene> stopped = stop(piece, scene, rtol);
+        const Scene& begun = stopped ? *stopped : piece;
+        Motion motion = method.solve(begun, RunOptions{asked, {rtol, find_atol(method.record, scene, rtol)}});
+        const bool stuck =
+            motion.status == Status::failed && motion.stats.steps == 0;   // its first step was below the times' spacing
+        if (!stuck || name == "taylor" || !compute_refusal("taylor", begun).empty()) return motion;
+        return taylor_method.solve(
+            begun, RunOptions{asked, {std::max(options.tolerances.rtol, taylor_method.record.least_rtol)}});
+      },
+      shaken);
 }
 
 Motion solve_exact_pieces(const Scene& scene, const SolveOptions& options, const Plan& plan) {
@@ -273,17 +291,27 @@ Motion solve_exact_pieces(const Scene& scene, const SolveOptions& options, const
   std::vector<double> times, omega, attitude;
   for (std::size_t i = (n - 1) % stride; i < n; i += stride) {
     times.push_back(motion.t[i]);
-    if (!motion.omega.empty()) omega.insert(omega.end(), motion.omega.begin() + static_cast<std::ptrdiff_t>(3 * i), motion.omega.begin() + static_cast<std::ptrdiff_t>(3 * i + 3));
-    if (!motion.attitude.empty()) attitude.insert(attitude.end(), motion.attitude.begin() + static_cast<std::ptrdiff_t>(4 * i), motion.attitude.begin() + static_cast<std::ptrdiff_t>(4 * i + 4));
+    if (!motion.omega.empty())
+      omega.insert(omega.end(), motion.omega.begin() + static_cast<std::ptrdiff_t>(3 * i),
+                   motion.omega.begin() + static_cast<std::ptrdiff_t>(3 * i + 3));
+    if (!motion.attitude.empty())
+      attitude.insert(attitude.end(), motion.attitude.begin() + static_cast<std::ptrdiff_t>(4 * i),
+                      motion.attitude.begin() + static_cast<std::ptrdiff_t>(4 * i + 4));
   }
   if (!times.empty()) {
     SolveOptions quiet = options;
     quiet.dense = false, quiet.events.clear(), quiet.progress = {};
-    const Scene moved = perturb(Scene(SceneParts{.inertia_B = scene.inertia_B(), .omega = scene.omega(), .attitude = scene.attitude(),
-                                                 .torques = scene.torques(), .times = std::move(times), .want = scene.want(), .t0 = scene.t0()}));
+    const Scene moved = perturb(Scene(SceneParts{.inertia_B = scene.inertia_B(),
+                                                 .omega = scene.omega(),
+                                                 .attitude = scene.attitude(),
+                                                 .torques = scene.torques(),
+                                                 .times = std::move(times),
+                                                 .want = scene.want(),
+                                                 .t0 = scene.t0()}));
     const Motion other = run_by_plan(moved, RunOptions{quiet, {}}, plan, true);
     const auto data = [](const std::vector<double>& v) { return v.empty() ? nullptr : v.data(); };
-    motion.error += 1.5 * compute_distance(other.t.size(), data(omega), data(attitude), data(other.omega), data(other.attitude));
+    motion.error +=
+        1.5 * compute_distance(other.t.size(), data(omega), data(attitude), data(other.omega), data(other.attitude));
   }
   ++motion.runs;
   motion.error_kind = motion.error <= motion.asked ? "bounded" : "limit";
@@ -292,7 +320,10 @@ Motion solve_exact_pieces(const Scene& scene, const SolveOptions& options, const
                      " pieces; what rounding at their ends does bounds the error";
   }
   if (motion.error > motion.asked && motion.status == Status::finished) {
-    motion.message.append("; float64 allows ").append(to_text(motion.error)).append(", not the ").append(to_text(motion.asked));
+    motion.message.append("; float64 allows ")
+        .append(to_text(motion.error))
+        .append(", not the ")
+        .append(to_text(motion.asked));
     motion.message += " asked";
   }
   return motion;

@@ -21,10 +21,13 @@ bool carries_attitude(const Scene& scene, const Facts& facts, const SolveOptions
 double find_seconds_per_call(const Scene& scene);
 double find_factor(const CostFactors* factors, std::string_view name);
 
-Candidate judge_method(const Scene& scene, const Facts& facts, const SolveOptions& options, const ode::MethodRecord& record);
-Candidate judge_closed_form(const Scene& scene, const ClosedForm& form, const Facts& facts, const SolveOptions& options);
-/// What an implicit method may leave of rates that have died away: so much less than the start's, and than what turns the
-/// body by the tolerance over the span, that no sample tells [rad/s]. Else 0: explicit steps would not be longer for it.
+Candidate judge_method(const Scene& scene, const Facts& facts, const SolveOptions& options,
+                       const ode::MethodRecord& record);
+Candidate judge_closed_form(const Scene& scene, const ClosedForm& form, const Facts& facts,
+                            const SolveOptions& options);
+/// What an implicit method may leave of rates that have died away: so much less than the start's, and than what turns
+/// the body by the tolerance over the span, that no sample tells [rad/s]. Else 0: explicit steps would not be longer
+/// for it.
 double find_atol(const ode::MethodRecord& record, const Scene& scene, double rtol);
 double predict_closed_form(std::string_view model, double samples, const CostFactors* factors);   ///< [s]
 Candidate choose_method(const Scene& scene, const Facts& facts, const SolveOptions& options);

@@ -199,13 +199,15 @@ class BodySeries {
   std::vector<Orbit>::iterator orbit_;
 };
 
-/// Goes from t0 through times in the order of `visit`, all on one side of it, and from piece to piece where windows end.
+/// Goes from t0 through times in the order of `visit`, all on one side of it, and from piece to piece where windows
+/// end.
 void follow(const Scene& scene, const ReferenceOptions& options, const std::vector<Piece>& pieces,
             const std::vector<std::size_t>& visit, Reference& found) {
   if (visit.empty()) return;
   std::vector<Scene> scenes;
   for (const Piece& piece : pieces) {
-    scenes.push_back(make_piece_scene(scene, piece, {piece.begin, scene.omega(), scene.attitude()}, {piece.end}, scene.want()));
+    scenes.push_back(
+        make_piece_scene(scene, piece, {piece.begin, scene.omega(), scene.attitude()}, {piece.end}, scene.want()));
   }
   std::size_t at = 0;
   BodySeries body(scenes[at], options.order);

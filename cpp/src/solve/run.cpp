@@ -36,7 +36,8 @@ Motion run(const Scene& scene, const SolveOptions& options, const double* y0, co
     events.push_back({[&](double t, const double* y) {
                         const double value = event.function(to_state(t, y));
                         if (std::isnan(value)) {
-                          throw InvalidInput("the event's function", "a number", "nan at t = " + polhode::to_text(t) + " s");
+                          throw InvalidInput("the event's function", "a number",
+                                             "nan at t = " + polhode::to_text(t) + " s");
                         }
                         return value;
                       },

@@ -23,7 +23,8 @@ template <class Action>
 Motion with_torque(const Scene& scene, Action&& action) {
   const auto& torques = scene.torques();
   if (torques.empty()) return action(NoTorque{});
-  if (torques.size() > 1 || std::holds_alternative<torques::During>(torques.front())) return action(SeveralTorques{torques});
+  if (torques.size() > 1 || std::holds_alternative<torques::During>(torques.front()))
+    return action(SeveralTorques{torques});
   return std::visit([&]<class Torque>(const Torque& one) -> Motion {
     if constexpr (std::is_same_v<Torque, torques::During>) return {};   // among several, above
     else return action(one);
@@ -40,9 +41,10 @@ Motion run_euler(const Scene& scene, const RunOptions& options) {
       const EulerProblem<Torque, diagonal, attitude> problem(inertia, torque);
       return run_problem<Method>(scene, problem, options);
     };
-    Motion motion = inertia.is_diagonal()
-                        ? (with_attitude ? go.template operator()<true, true>() : go.template operator()<true, false>())
-                        : (with_attitude ? go.template operator()<false, true>() : go.template operator()<false, false>());
+    Motion motion =
+        inertia.is_diagonal()
+            ? (with_attitude ? go.template operator()<true, true>() : go.template operator()<true, false>())
+            : (with_attitude ? go.template operator()<false, true>() : go.template operator()<false, false>());
     motion.plan = {"euler", "", with_attitude ? "omega, attitude" : "omega"};
     return motion;
   });
@@ -50,7 +52,8 @@ Motion run_euler(const Scene& scene, const RunOptions& options) {
 
 template <class Method>
 Motion run_lagrangian(const Scene& scene, const RunOptions& options) {
-  constexpr const char* cause = "Lagrange's equations in z-x-z angles divide by sin(theta); Euler's, the default, do not";
+  constexpr const char* cause =
+      "Lagrange's equations in z-x-z angles divide by sin(theta); Euler's, the default, do not";
   using Angles = LagrangianProblem<NoTorque>;
   const double theta = Angles::compute_angles(scene.attitude())[1];
   if (!(std::sin(theta) > Angles::least_sine)) {

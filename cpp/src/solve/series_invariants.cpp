@@ -73,11 +73,13 @@ SeriesInvariants::Values SeriesInvariants::compute(DD t, const double* y, const 
       const DD product = math::two_prod(orbit_rate_, t.hi), angle = math::two_sum(product.hi, orbit_phase_);
       const double low = angle.lo + product.lo + orbit_rate_ * t.lo, s0 = std::sin(angle.hi), c0 = std::cos(angle.hi);
       const DD s = DD(s0, c0 * low), c = DD(c0, -s0 * low);
-      const DD xx = q[0] * q[0], yy = q[1] * q[1], zz = q[2] * q[2], xy = q[0] * q[1], xz = q[0] * q[2], yz = q[1] * q[2];
+      const DD xx = q[0] * q[0], yy = q[1] * q[1], zz = q[2] * q[2], xy = q[0] * q[1], xz = q[0] * q[2],
+               yz = q[1] * q[2];
       const DD xw = q[0] * q[3], yw = q[1] * q[3], zw = q[2] * q[3];
       const DD one(1.0);
       const DD u[3] = {c * (one - (yy + zz) * scale) + s * ((xy + zw) * scale),
-                       c * ((xy - zw) * scale) + s * (one - (xx + zz) * scale), (c * (xz + yw) + s * (yz - xw)) * scale};
+                       c * ((xy - zw) * scale) + s * (one - (xx + zz) * scale),
+                       (c * (xz + yw) + s * (yz - xw)) * scale};
       for (int i = 0; i < 3; ++i) values.kept[0] = values.kept[0] + u[i] * u[i] * DD(I_[i]) * DD(tidal_);
     }
   }

@@ -17,7 +17,8 @@ namespace polhode {
 namespace {
 
 void require_positive(const char* where, const std::optional<double>& value) {
-  if (value && !(std::isfinite(*value) && *value > 0.0)) throw InvalidInput(where, "positive and finite", to_text(*value));
+  if (value && !(std::isfinite(*value) && *value > 0.0))
+    throw InvalidInput(where, "positive and finite", to_text(*value));
 }
 
 /// Options without effect are refused, and so are those that are missing.
@@ -25,7 +26,8 @@ void require_fitting(const ode::MethodRecord& record, const SolveOptions& option
   const std::string with = " with method '" + std::string(record.name) + "'";
   if (record.adaptive) {
     if (options.step) {
-      throw InvalidInput("step", "left out" + with, to_text(*options.step), "it chooses its own steps by rtol and atol");
+      throw InvalidInput("step", "left out" + with, to_text(*options.step),
+                         "it chooses its own steps by rtol and atol");
     }
     return;
   }
@@ -63,7 +65,8 @@ void describe_end(const CheckedOptions& checked, Motion& motion) {
   motion.asked = checked.asked;
   if (motion.message.empty()) motion.message = "reached the last time; the error was not estimated";
   if (checked.raised) {
-    motion.message += "; the tolerance was raised to " + to_text(checked.tolerances.rtol) + ", the least that float64 can serve";
+    motion.message +=
+        "; the tolerance was raised to " + to_text(checked.tolerances.rtol) + ", the least that float64 can serve";
   }
 }
 
@@ -77,7 +80,8 @@ void require_no_steps(const SolveOptions& options) {
     if (value) throw InvalidInput(where, "left out with method 'exact'", to_text(*value), cause);
   }
   if (options.formulation != Formulation::euler) {
-    throw InvalidInput("formulation", "left out with method 'exact'", "'lagrangian'", "a closed form integrates nothing");
+    throw InvalidInput("formulation", "left out with method 'exact'", "'lagrangian'",
+                       "a closed form integrates nothing");
   }
 }
 
@@ -123,7 +127,9 @@ Motion solve_by_tolerance(const Scene& scene, const SolveOptions& options, const
   const BodyMethod& method = find_body_method(name);
   require_fitting(method.record, options);
   const CheckedOptions checked = choose_tolerances(method.record, options);
-  const auto run_one = [&](const Scene& piece, const SolveOptions& one) { return method.solve(piece, {one, checked.tolerances}); };
+  const auto run_one = [&](const Scene& piece, const SolveOptions& one) {
+    return method.solve(piece, {one, checked.tolerances});
+  };
   Motion motion = pieces == nullptr ? run_one(scene, options) : run_pieces(scene, *pieces, options, run_one);
   motion.plan.method = name;
   describe_end(checked, motion);

@@ -23,7 +23,13 @@ Vector3d call(const torques::Custom& torque, const Look& look, const Matrix3d& I
 }
 
 std::string text(const Vector3d& v) {
-  return std::string("(").append(to_text(v[0])).append(", ").append(to_text(v[1])).append(", ").append(to_text(v[2])).append(")");
+  return std::string("(")
+      .append(to_text(v[0]))
+      .append(", ")
+      .append(to_text(v[1]))
+      .append(", ")
+      .append(to_text(v[2]))
+      .append(")");
 }
 
 }  // namespace
@@ -55,7 +61,8 @@ void require_true_claims(const Scene& scene) {
         if (seen) return;
         const Vector3d then = call(*custom, other, scene.inertia_B().matrix());
         if (then == tau || !then.allFinite() || !tau.allFinite()) return;
-        throw InvalidInput(where, std::string(claim) + "=True, for its torque changes when only the " + changed + " does",
+        throw InvalidInput(where,
+                           std::string(claim) + "=True, for its torque changes when only the " + changed + " does",
                            text(tau) + " and " + text(then) + " N m at t = " + to_text(here.t) + " s",
                            "the claim makes the answer wrong; leave it out when in doubt");
       };

@@ -19,7 +19,9 @@ std::vector<Window> arrange(std::vector<Window> windows) {
     if (one.begin < one.end) continue;
     const bool known = !std::isnan(one.begin) && !std::isnan(one.end);
     throw InvalidInput("During.windows", "pairs of a begin and a later end", show(one),
-                       !known ? "" : one.begin == one.end ? "an empty window: nothing ever acts in it" : "begin and end are swapped");
+                       !known                 ? ""
+                       : one.begin == one.end ? "an empty window: nothing ever acts in it"
+                                              : "begin and end are swapped");
   }
   std::sort(windows.begin(), windows.end(), [](const Window& a, const Window& b) { return a.begin < b.begin; });
   std::vector<Window> apart;
@@ -43,16 +45,19 @@ During::During(LastingTorque torque, std::vector<Window> windows)
     : torque_(std::move(torque)), windows_(arrange(std::move(windows))) {}
 
 const TorqueRecord& During::record() {
-  static constexpr TorqueRecord record{"During", "during", "Another torque within windows of time, and none outside.", "", {}};
+  static constexpr TorqueRecord record{
+      "During", "during", "Another torque within windows of time, and none outside.", "", {}};
   return record;
 }
 
 bool During::acts_at(double t) const {
-  return std::any_of(windows_.begin(), windows_.end(), [t](const Window& one) { return one.begin <= t && t < one.end; });
+  return std::any_of(windows_.begin(), windows_.end(),
+                     [t](const Window& one) { return one.begin <= t && t < one.end; });
 }
 
 bool During::acts_throughout(double begin, double end) const {
-  return std::any_of(windows_.begin(), windows_.end(), [=](const Window& one) { return one.begin <= begin && end <= one.end; });
+  return std::any_of(windows_.begin(), windows_.end(),
+                     [=](const Window& one) { return one.begin <= begin && end <= one.end; });
 }
 
 TorqueTraits During::traits() const {

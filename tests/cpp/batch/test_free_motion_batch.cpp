@@ -56,7 +56,8 @@ TEST_CASE("a batch is the objects, one by one and on the full grid, with one thr
       CHECK(std::abs(grid_omega[9 * i + 6 + u] - last.omega[k]) <= 2e-15 * last.omega.norm());
     }
     const double *q = &attitude[4 * i], *p = &grid_attitude[12 * i + 8];
-    const Quat a = conjugate(one.attitude) * Quat{q[0], q[1], q[2], q[3]}, b = conjugate(last.attitude) * Quat{p[0], p[1], p[2], p[3]};
+    const Quat a = conjugate(one.attitude) * Quat{q[0], q[1], q[2], q[3]},
+               b = conjugate(last.attitude) * Quat{p[0], p[1], p[2], p[3]};
     CHECK(std::hypot(a.x, a.y, a.z) <= 1e-15);
     CHECK(std::hypot(b.x, b.y, b.z) <= 1e-15);
   }

@@ -13,7 +13,8 @@ namespace {
 
 Scene make_body(std::size_t i) {
   const double spin = 0.5 + 0.01 * static_cast<double>(i);
-  return Scene(SceneParts{.inertia_B = InertiaTensor::from_moments({1.0, 1.5, 2.0}), .omega = {0.1, spin, 0.3}, .times = {1.0, 2000.0}});
+  return Scene(SceneParts{
+      .inertia_B = InertiaTensor::from_moments({1.0, 1.5, 2.0}), .omega = {0.1, spin, 0.3}, .times = {1.0, 2000.0}});
 }
 
 Scene make_tilted(std::size_t) {

@@ -39,8 +39,9 @@ void check_invariants(const Vector3d& moments, const Vector3d& omega, double spa
 }  // namespace
 
 TEST_CASE("energy and momentum in space stay the start's, in every regime") {
-  const Vector3d starts[] = {{1, 2, 3}, {3, 2, 1}, {-1, 2, -3}, {1e-4, 5, 1e-4}, {1e-9, 5, 1e-7}, {0, 5, 1e-12}, {1, 0, 0}, {0, 1, 0},
-                             {0, 0, -1}, {1, 1, 0}, {0, 1, 1}, {1, 0, 1}, {1e-160, 1, 1e-150}};
+  const Vector3d starts[] = {{1, 2, 3},     {3, 2, 1}, {-1, 2, -3},        {1e-4, 5, 1e-4}, {1e-9, 5, 1e-7},
+                             {0, 5, 1e-12}, {1, 0, 0}, {0, 1, 0},          {0, 0, -1},      {1, 1, 0},
+                             {0, 1, 1},     {1, 0, 1}, {1e-160, 1, 1e-150}};
   const Vector3d bodies[] = {block,           {0.52, 0.2, 0.4}, {0.4, 0.52, 0.2}, {1, 1, 1},      {1, 1, 2},
                              {2, 1, 2},       {1, 1, 1 + 1e-15}, {1, 1 + 1e-9, 1.5}, {1e-12, 1, 1}, {1, 2, 3}};
   for (const Vector3d& moments : bodies)
@@ -77,7 +78,8 @@ TEST_CASE("a symmetric body precesses at L / I1 and spins at the textbook rate")
     CHECK(motion.period() == doctest::Approx(2 * std::numbers::pi / std::abs(spin)).epsilon(1e-15));
     const Vector3d a = motion.euler_angles(0), b = motion.euler_angles(0.25);
     CHECK(b[1] == doctest::Approx(std::acos(L_B[2] / L_B.norm())).epsilon(1e-14));
-    CHECK(std::remainder(b[0] - a[0] - 0.25 * L_B.norm() / 0.4, 2 * std::numbers::pi) == doctest::Approx(0).epsilon(1e-14));
+    CHECK(std::remainder(b[0] - a[0] - 0.25 * L_B.norm() / 0.4, 2 * std::numbers::pi) ==
+          doctest::Approx(0).epsilon(1e-14));
     CHECK(std::remainder(b[2] - a[2] - 0.25 * spin, 2 * std::numbers::pi) == doctest::Approx(0).epsilon(1e-14));
   }
 }

@@ -140,9 +140,8 @@ TEST_CASE("every compiled level answers alike: avx2 and avx512 to the bit, a row
     for (int of = 0; of <= static_cast<int>(simd_level()); ++of) {
       std::vector<double> rows(7 * n), alone(7);
       const auto at = exact::heavy_top_kernels(static_cast<SimdLevel>(of)).at;
-      const auto loop = [at](const exact::HeavyTopConstants& c, const double* t, std::size_t count, double* w, double* q) {
-        at(c, exact::TimeGrid(t, count), w, q);
-      };
+      const auto loop = [at](const exact::HeavyTopConstants& c, const double* t, std::size_t count, double* w,
+                             double* q) { at(c, exact::TimeGrid(t, count), w, q); };
       loop(top.constants(), times.data(), n, rows.data(), rows.data() + 3 * n);
       for (const std::size_t i : {std::size_t{0}, std::size_t{5}, n - 1}) {
         loop(top.constants(), &times[i], 1, alone.data(), alone.data() + 3);

@@ -31,7 +31,8 @@ Surface make_box(const Vector3d& low, const Vector3d& high) {
   Surface box;
   for (int i = 0; i < 8; ++i)
     for (int k = 0; k < 3; ++k) box.vertices.push_back(((i >> k) & 1) == 1 ? high[k] : low[k]);
-  box.faces = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+  box.faces = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+               2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
   return box;
 }
 

@@ -237,7 +237,9 @@ TEST_CASE("every method of the list conforms") {
 TEST_CASE("the series kernels of every level agree, and avx2 and avx512 bit for bit") {
   double rows[series_width * 21], base[series_width], rest[series_width], s[7];
   unsigned seed = 1;
-  const auto random = [&] { return static_cast<double>((seed = seed * 1664525u + 1013904223u) >> 8) / 16777216.0 - 0.5; };
+  const auto random = [&] {
+    return static_cast<double>((seed = seed * 1664525u + 1013904223u) >> 8) / 16777216.0 - 0.5;
+  };
   for (double& x : rows) x = random();
   for (double& x : base) x = random();
   for (double& x : rest) x = 1e-16 * random();

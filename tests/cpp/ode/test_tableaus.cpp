@@ -60,7 +60,8 @@ class Conditions {
 
   void grow() {   // the trees of the last order, as branches
     for (int order = branches_.empty() ? 1 : branches_.back().order + 1;
-         static_cast<std::size_t>(order) < by_order_.size() && !by_order_[static_cast<std::size_t>(order)].empty(); ++order) {
+         static_cast<std::size_t>(order) < by_order_.size() && !by_order_[static_cast<std::size_t>(order)].empty();
+         ++order) {
       for (const Tree& tree : trees(order)) branches_.push_back({order, tree.gamma, apply(tree.phi)});
     }
   }
@@ -141,8 +142,8 @@ TEST_CASE_TEMPLATE("a tableau meets its order conditions, its lower formulas onl
   }
 }
 
-TEST_CASE_TEMPLATE("a continuous extension meets the conditions of its order anywhere within a step", T, DormandPrince54,
-                   DormandPrince853) {
+TEST_CASE_TEMPLATE("a continuous extension meets the conditions of its order anywhere within a step", T,
+                   DormandPrince54, DormandPrince853) {
   const Conditions<T> conditions(dense_order<T> + 1);
   const auto b = weights<T>();
   for (const double s : {0.1, 0.37, 0.5, 0.82, 1.0}) {

@@ -113,7 +113,8 @@ TEST_CASE("facts: a thruster may spin a body up, gravity and damping do not") {
 }
 
 TEST_CASE("facts: torques that vanish are not there") {
-  const Scene scene(block({1, 2, 3}, {torques::Gravity(0, {1, 2, 3}), torques::GravityGradient(0), torques::Constant({0, 0, 0})}));
+  const Scene scene(
+      block({1, 2, 3}, {torques::Gravity(0, {1, 2, 3}), torques::GravityGradient(0), torques::Constant({0, 0, 0})}));
   CHECK(find_acting_torques(scene).acting == 0);
   CHECK(!find_acting_torques(scene).uses_attitude);
   CHECK(scene.torque_sum().acting == 0);

@@ -24,7 +24,8 @@ const Quat tilted{std::sin(0.35), 0, 0, std::cos(0.35)};
 constexpr double weight_arm = 2.0;
 
 Scene make_scene(const Vector3d& moments, const Vector3d& omega, std::vector<double> times, bool driven) {
-  SceneParts parts{.inertia_B = InertiaTensor::from_moments(moments), .omega = omega, .attitude = tilted, .times = std::move(times)};
+  SceneParts parts{
+      .inertia_B = InertiaTensor::from_moments(moments), .omega = omega, .attitude = tilted, .times = std::move(times)};
   if (driven) parts.torques = {torques::Gravity(weight_arm, {0, 0, 1})};
   return Scene(std::move(parts));
 }
@@ -107,7 +108,8 @@ Drifts compute_drifts(const Scene& scene, const Motion& motion) {
   return drifts;
 }
 
-void check_order(const ode::MethodRecord& method, const Scene& scene, int order, double least_slope, double most_slope) {
+void check_order(const ode::MethodRecord& method, const Scene& scene, int order, double least_slope,
+                 double most_slope) {
   double error[2], work[2];
   for (int k = 0; k < 2; ++k) {
     SolveOptions options = at_accuracy(method, method.adaptive && k == 1 ? 1e-8 : 1e-4, order);
@@ -162,7 +164,8 @@ TEST_CASE("every adaptive method: the error stays near its tolerance") {
   });
 }
 
-TEST_CASE("every method: what it keeps of a free body is kept to rounding, over 200000 steps too, and nothing else is") {
+TEST_CASE(
+    "every method: what it keeps of a free body is kept to rounding, over 200000 steps too, and nothing else is") {
   for_each_method([](const ode::MethodRecord& method) {
     if (method.adaptive) return;
     const double step = 0.02;
@@ -171,7 +174,8 @@ TEST_CASE("every method: what it keeps of a free body is kept to rounding, over 
     const Scene scene = make_free(method, times);
     SolveOptions options{.method = std::string(method.name), .step = step};
     const Drifts drifts = compute_drifts(scene, solve(scene, options));
-    const std::pair<const char*, double> kept[] = {{"energy", drifts.energy}, {"|L|", drifts.size}, {"L", drifts.vector}};
+    const std::pair<const char*, double> kept[] = {
+        {"energy", drifts.energy}, {"|L|", drifts.size}, {"L", drifts.vector}};
     for (const auto& [invariant, drift] : kept) {
       CAPTURE(invariant);
       if (claims(method, invariant)) {
@@ -182,7 +186,8 @@ TEST_CASE("every method: what it keeps of a free body is kept to rounding, over 
     }
     if (!claims(method, "|L|")) return;
     const Scene longer = make_free(method, {200000 * step});
-    CHECK(compute_drifts(longer, solve(longer, options)).size < 5e-12);   // 7e-12 where omega is carried and L made of it each step
+    CHECK(compute_drifts(longer, solve(longer, options)).size <
+          5e-12);   // 7e-12 where omega is carried and L made of it each step
   });
 }
 
@@ -204,7 +209,8 @@ TEST_CASE("every method: backwards, there and back, a span of zero, and a start 
     REQUIRE(back.t.size() == 2);
     CHECK(back.omega[3] == parts.omega[0]);
     double away = 0.0;
-    for (std::size_t k = 0; k < 3; ++k) away = std::max(away, std::abs(back.omega[k] - there.omega()[static_cast<int>(k)]));
+    for (std::size_t k = 0; k < 3; ++k)
+      away = std::max(away, std::abs(back.omega[k] - there.omega()[static_cast<int>(k)]));
     CHECK(away / there.omega().norm() < 8 * error + 1e-12);
 
     const Motion none = solve(make_free(method, {0.0, 0.0}), options);
@@ -223,7 +229,8 @@ TEST_CASE("every method: the same bits again, whatever the samples; dense output
     for (std::size_t k = 0; k < 4; ++k) CHECK(sampled.attitude[4 * 97 + k] == once.attitude[k]);
     for (std::size_t i = 0; i < sampled.t.size(); i += 7) {
       const State state = sampled.at(sampled.t[i]);
-      for (std::size_t k = 0; k < 3; ++k) CHECK(std::abs(state.omega[static_cast<int>(k)] - sampled.omega[3 * i + k]) < 1e-12);
+      for (std::size_t k = 0; k < 3; ++k)
+        CHECK(std::abs(state.omega[static_cast<int>(k)] - sampled.omega[3 * i + k]) < 1e-12);
       CHECK(std::abs(state.attitude.x - sampled.attitude[4 * i]) < 1e-12);
     }
   });

@@ -32,16 +32,19 @@ TEST_CASE("the reference of a free body is its closed form, before and after the
   const FreeMotion exact(InertiaTensor::from_moments({1.0, 2.0, 2.5}), {1, 2, 3});
   for (std::size_t k = 0; k < times.size(); ++k) {
     const State state = exact.at(times[k]);
-    for (int i = 0; i < 3; ++i) CHECK(found.omega[3 * k + static_cast<std::size_t>(i)] == doctest::Approx(state.omega[i]).epsilon(4e-15));
+    for (int i = 0; i < 3; ++i)
+      CHECK(found.omega[3 * k + static_cast<std::size_t>(i)] == doctest::Approx(state.omega[i]).epsilon(4e-15));
     const double* q = &found.attitude[4 * k];
-    const double along = q[0] * state.attitude.x + q[1] * state.attitude.y + q[2] * state.attitude.z + q[3] * state.attitude.w;
+    const double along =
+        q[0] * state.attitude.x + q[1] * state.attitude.y + q[2] * state.attitude.z + q[3] * state.attitude.w;
     CHECK(std::abs(along) == doctest::Approx(1.0).epsilon(1e-15));
   }
   CHECK(found.steps > 20);
 }
 
 TEST_CASE("two orders agree under every torque") {
-  const Scene scene = make({torques::Gravity(2.0, {0.3, 0.2, 0.5}), torques::Damping(Vector3d(0.01, 0.02, 0.03).asDiagonal().toDenseMatrix()),
+  const Scene scene = make({torques::Gravity(2.0, {0.3, 0.2, 0.5}),
+                            torques::Damping(Vector3d(0.01, 0.02, 0.03).asDiagonal().toDenseMatrix()),
                             torques::Constant({0.01, 0.02, 0.03}, torques::Constant::Frame::space),
                             torques::Constant({0.03, 0.0, -0.01}), torques::GravityGradient(0.5, 0.3)},
                            {1.0, 5.0, 10.0});

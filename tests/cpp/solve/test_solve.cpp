@@ -32,16 +32,18 @@ TEST_CASE("solve agrees with the closed form, forwards and backwards") {
   REQUIRE(motion.t.size() == 3);
   for (std::size_t i = 0; i < 3; ++i) {
     const State exact = free.at(motion.t[i]);
-    for (std::size_t k = 0; k < 3; ++k) CHECK(std::abs(motion.omega[3 * i + k] - exact.omega[static_cast<int>(k)]) < 1e-9);
+    for (std::size_t k = 0; k < 3; ++k)
+      CHECK(std::abs(motion.omega[3 * i + k] - exact.omega[static_cast<int>(k)]) < 1e-9);
   }
   CHECK(succeeded(scene, solve(scene, {.accuracy = 1e-8})));
   CHECK(compute_drift(scene, motion).size() == 2);
 }
 
 TEST_CASE("a C++ callable is a torque, and its exception comes through") {
-  const auto thruster = torques::Custom::from(
-      [](double, const double*, const double*, double* torque) { torque[0] = 0.01, torque[1] = -0.02, torque[2] = 0.03; },
-      {.uses_time = false, .uses_attitude = false, .uses_rates = false});
+  const auto thruster =
+      torques::Custom::from([](double, const double*, const double*,
+                               double* torque) { torque[0] = 0.01, torque[1] = -0.02, torque[2] = 0.03; },
+                            {.uses_time = false, .uses_attitude = false, .uses_rates = false});
   const Motion mine = solve(make_block({5.0}, {thruster}), {.rtol = 1e-9});
   const Motion built_in = solve(make_block({5.0}, {torques::Constant({0.01, -0.02, 0.03})}), {.rtol = 1e-9});
   CHECK(mine.omega == built_in.omega);
@@ -89,7 +91,11 @@ TEST_CASE("a functor is stepped by any general method, with no call between") {
   problem.pack(scene.start(), y0);
   ode::Dop853::Stepper<EulerProblem<Thruster, true, true>> stepper(problem, 0.0, y0, 5.0, {.rtol = 1e-10});
   const double times[] = {5.0};
-  ode::drive(stepper, times, [&](std::size_t, std::span<const double> at, const double* rows) { std::copy_n(rows + 7 * (at.size() - 1), 7, end); }, {});
+  ode::drive(stepper, times,
+             [&](std::size_t, std::span<const double> at, const double* rows) {
+               std::copy_n(rows + 7 * (at.size() - 1), 7, end);
+             },
+             {});
   const Motion built_in = solve(scene, {.method = "dop853", .rtol = 1e-10});
   for (std::size_t k = 0; k < 3; ++k) CHECK(end[k] == built_in.omega[k]);
 }

@@ -35,13 +35,15 @@ struct FreeKernels {
 
   /// n bodies, each at its own time: set up and evaluated in lanes. `left` gets the indices of those that this cannot
   /// do (exactly on the separatrix or the unstable axis, at rest, out of range); returns how many they are.
-  std::size_t (*once)(FreeStarts starts, const double* t, std::size_t n, double* omega, double* attitude, std::size_t* left);
+  std::size_t (*once)(FreeStarts starts, const double* t, std::size_t n, double* omega, double* attitude,
+                      std::size_t* left);
 
   /// The constants of n bodies; `left` as for `once`, and those near the separatrix with them.
   std::size_t (*set_up)(FreeStarts starts, std::size_t n, FreeTrig<double>* trig, FreeFrame* frames, std::size_t* left);
 
   /// One body: its constants and, as k^2 <= 0.97 or beyond, `trig` or `hyper`. `start` is scaled as `analyse` asks.
-  void (*prepare)(const FreeStart<double>& start, FreeConstants<double>& constants, FreeTrig<double>& trig, FreeHyper<double>& hyper);
+  void (*prepare)(const FreeStart<double>& start, FreeConstants<double>& constants, FreeTrig<double>& trig,
+                  FreeHyper<double>& hyper);
 };
 
 /// Those of a level; of the next lower one that was compiled.

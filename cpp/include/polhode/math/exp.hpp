@@ -8,8 +8,9 @@ namespace polhode::math {
 /// Cody & Waite's two-part reduction by ln 2, then the Taylor polynomial of degree 13 on |r| <= ln(2) / 2.
 template <class T>
 POLHODE_INLINE T exp_minus(T x) {
-  constexpr double c[] = {1.0, 1.0, 1.0 / 2, 1.0 / 6, 1.0 / 24, 1.0 / 120, 1.0 / 720, 1.0 / 5040, 1.0 / 40320, 1.0 / 362880,
-                          1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600, 1.0 / 6227020800};
+  constexpr double c[] = {
+      1.0,        1.0,         1.0 / 2,      1.0 / 6,       1.0 / 24,       1.0 / 120,       1.0 / 720,
+      1.0 / 5040, 1.0 / 40320, 1.0 / 362880, 1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600, 1.0 / 6227020800};
   x = min(x, T(708.0));
   const T n = rint(x * T(1.4426950408889634));
   const T r = madd(n, T(1.9082149292705877e-10), n * T(0x1.62e42fee00000p-1) - x);

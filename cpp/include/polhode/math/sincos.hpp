@@ -4,8 +4,8 @@
 
 namespace polhode::math {
 
-/// sin and cos of 2 pi f for |f| <= 1/2 turn, each within 1.7e-16 (1.2e-16 with a fused multiply-add), without libm or branches.
-/// Polynomials: minimax on 1/8 turn (Remez exchange at 60 digits), 5e-20 in exact arithmetic.
+/// sin and cos of 2 pi f for |f| <= 1/2 turn, each within 1.7e-16 (1.2e-16 with a fused multiply-add), without libm or
+/// branches. Polynomials: minimax on 1/8 turn (Remez exchange at 60 digits), 5e-20 in exact arithmetic.
 template <class T>
 POLHODE_INLINE void sincos_cycles(T f, T& sine, T& cosine) {
   constexpr double s[] = {-41.34170224039976, 81.60524927607504,  -76.70585975304293, 42.05869393780828,

@@ -27,8 +27,9 @@ class DenseOutput {
   /// y at a time between t_begin and t_end (which may run backwards).
   void operator()(double t, double* out) const {
     const bool forward = t_end() >= t_begin_;
-    const auto it = std::lower_bound(ends_.begin(), ends_.end(), t,
-                                     [forward](double end, double value) { return forward ? end < value : end > value; });
+    const auto it = std::lower_bound(ends_.begin(), ends_.end(), t, [forward](double end, double value) {
+      return forward ? end < value : end > value;
+    });
     const auto i = std::min<std::size_t>(static_cast<std::size_t>(it - ends_.begin()), ends_.size() - 1);
     const double a = i == 0 ? t_begin_ : ends_[i - 1], b = ends_[i];
     evaluate_(segments_.data() + i * static_cast<std::size_t>(size_), (t - a) / (b - a), out);

@@ -6,7 +6,8 @@
 
 namespace polhode::ode {
 
-/// The embedded pair of Dormand and Prince of order 8, for torques that have no other form at accuracies of 1e-6 and below.
+/// The embedded pair of Dormand and Prince of order 8, for torques that have no other form at accuracies of 1e-6 and
+/// below.
 struct Dop853 {
   static constexpr MethodRecord record{
       .name = "dop853",

@@ -24,7 +24,10 @@ class EventTracker {
  public:
   using Evaluate = std::function<void(double t, double* y)>;
 
-  EventTracker(const Event& event, double t, const double* y) : event_(&event) { side_ = sign(event.function(t, y)); t_ = t; }
+  EventTracker(const Event& event, double t, const double* y) : event_(&event) {
+    side_ = sign(event.function(t, y));
+    t_ = t;
+  }
 
   /// Looks at the piece (previous time, t]; `evaluate(t, y)` gives the solution there. True when a zero of the wanted
   /// direction lies in it, at `root`.

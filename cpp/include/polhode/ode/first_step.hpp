@@ -8,15 +8,17 @@
 namespace polhode::ode {
 
 /// The first step of a method of this order, from the size of y' and y''. After Hairer, Norsett, Wanner 1993, Solving
-/// ODEs I, sec. II.4, made free of the unit of time: all is measured against tau, the time in which y changes by its own
-/// size. f: y' at the start; `compute(t, y, f)` is the problem's, for those who count its calls.
+/// ODEs I, sec. II.4, made free of the unit of time: all is measured against tau, the time in which y changes by its
+/// own size. f: y' at the start; `compute(t, y, f)` is the problem's, for those who count its calls.
 template <Problem P, class Compute>
-double choose_first_step(const P& problem, const Tolerances& tolerances, int order, double t, const double* y, const double* f,
-                         double t_end, const Compute& compute) {
+double choose_first_step(const P& problem, const Tolerances& tolerances, int order, double t, const double* y,
+                         const double* f, double t_end, const Compute& compute) {
   constexpr int N = P::dimension;
   const double span = std::abs(t_end - t), direction = t_end < t ? -1.0 : 1.0;
   if (span == 0.0) return 0.0;
-  const auto norm_of = [&](const double* v, const double* y1) { return problem.error_norm(v, y, y1, tolerances.rtol, tolerances.atol); };
+  const auto norm_of = [&](const double* v, const double* y1) {
+    return problem.error_norm(v, y, y1, tolerances.rtol, tolerances.atol);
+  };
   const double d0 = norm_of(y, y), d1 = norm_of(f, y);
   if (d1 == 0.0) return direction * span;
   const double tau = d0 > 0 && std::isfinite(d1) ? std::min(d0 / d1, span) : 0.1 * span;

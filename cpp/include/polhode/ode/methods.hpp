@@ -8,7 +8,8 @@
 
 namespace polhode::ode {
 
-/// The methods for any y' = f(t, y): the conformance tests of `ode` follow. solve/methods.def lists all that turn a body.
+/// The methods for any y' = f(t, y): the conformance tests of `ode` follow. solve/methods.def lists all that turn a
+/// body.
 using Methods = std::tuple<Rk45, Dop853, Rk4>;
 
 }  // namespace polhode::ode

@@ -11,7 +11,8 @@ concept Problem = requires(const P& problem, double t, const double* y, double* 
   problem.compute_derivative(t, y, out);
   /// |error| against the sizes of y at both ends of the step, in units of (atol + rtol size): 1 is just acceptable.
   { problem.error_norm(y, y, y, t, t) } -> std::convertible_to<double>;
-  /// Brings y, and its derivative with it, back to where it belongs (a unit quaternion); called after each accepted step.
+  /// Brings y, and its derivative with it, back to where it belongs (a unit quaternion); called after each accepted
+  /// step.
   problem.restore(out, out);
 };
 

@@ -14,10 +14,18 @@ struct Rk45 {
       .dense_order = 4,
       .adaptive = true,
       .keeps = "nothing",
-      .doc = "Explicit Runge-Kutta pair of orders 5(4), seven stages, the last reused; for any torque at loose accuracies.",
+      .doc =
+          "Explicit Runge-Kutta pair of orders 5(4), seven stages, the last reused; for any torque at loose "
+          "accuracies.",
       .source = "Dormand & Prince 1980, J. Comput. Appl. Math. 6, 19",
-      .forecast = {.error_per_turn = 0.5, .margin = 2.0, .floor_per_turn = 1e-15, .steps_per_radian = 0.2, .power = 0.198,
-                   .step_seconds = 1.7e-7, .calls_per_step = 6, .stability = 3.3},
+      .forecast = {.error_per_turn = 0.5,
+                   .margin = 2.0,
+                   .floor_per_turn = 1e-15,
+                   .steps_per_radian = 0.2,
+                   .power = 0.198,
+                   .step_seconds = 1.7e-7,
+                   .calls_per_step = 6,
+                   .stability = 3.3},
   };
 
   template <class P>

@@ -52,7 +52,8 @@ class RungeKuttaStepper final : public Stepper {
       if (!(std::abs(h) > 8 * std::numeric_limits<double>::epsilon() * std::abs(t_)) && !last) {
         return finite ? StepResult::underflow : StepResult::not_finite;
       }
-      if (std::abs(h) < std::numeric_limits<double>::min()) return finite ? StepResult::underflow : StepResult::not_finite;
+      if (std::abs(h) < std::numeric_limits<double>::min())
+        return finite ? StepResult::underflow : StepResult::not_finite;
       compute_stages(h, std::make_integer_sequence<int, Tableau::stages - 1>{});
       const double error = estimate_error(h);
       if (error <= 1.0) {

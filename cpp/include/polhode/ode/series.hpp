@@ -15,8 +15,8 @@ inline constexpr int most_series_order = 40;
 /// Evaluates a series at many points at once, compiled for one instruction set; avx2 and avx512 give the same bits.
 struct SeriesKernels {
   /// out_i = base + (rest + sum over k >= 1 of rows[k] s_i^k), n rows of eight.
-  void (*evaluate)(const double* rows, int order, const double* base, const double* rest, const double* s, std::size_t n,
-                   double* out);
+  void (*evaluate)(const double* rows, int order, const double* base, const double* rest, const double* s,
+                   std::size_t n, double* out);
 };
 
 /// Those of simd_level(), decided once.

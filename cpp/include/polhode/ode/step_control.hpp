@@ -7,8 +7,8 @@
 
 namespace polhode::ode {
 
-/// log2(x) for 0 < x < infinity to 1e-3, in parts: the exponent is exact, the mantissa's logarithm a cubic. A difference
-/// of two is the same in every unit that is a power of two.
+/// log2(x) for 0 < x < infinity to 1e-3, in parts: the exponent is exact, the mantissa's logarithm a cubic. A
+/// difference of two is the same in every unit that is a power of two.
 struct RoughLog2 {
   int exponent;
   double mantissa;

@@ -17,21 +17,22 @@ namespace polhode::ode {
 /// y' = f(t, y) whose solution's Taylor coefficients are known by recurrences. A state is `dimension` <= series_width
 /// numbers y and what rounding took from them, `carry`.
 template <class P>
-concept SeriesProblem = requires(const P& problem, math::DD t, double unit, const double* y, int order, long step, double* out) {
-  { P::dimension } -> std::convertible_to<int>;
-  /// Rows 0..order of series_width numbers: the coefficients of y(t + unit s) in powers of s.
-  problem.compute_series(t, unit, y, y, order, out);
-  /// Sizes of a row's blocks: what has a unit of its own is measured by itself.
-  { P::blocks } -> std::convertible_to<int>;
-  problem.compute_sizes(y, out);
-  /// How many leading coefficients tell a block's size: more than one where a start at rest is nothing special.
-  { P::heads[0] } -> std::convertible_to<int>;
-  /// A time in which the solution changes; only its order of magnitude counts.
-  { problem.compute_time_scale(t, y) } -> std::convertible_to<double>;
-  problem.start_carry(out);
-  /// Brings state and carry back to what is known to hold; called after each step, which are numbered from 0.
-  problem.correct(t, step, out, out);
-};
+concept SeriesProblem =
+    requires(const P& problem, math::DD t, double unit, const double* y, int order, long step, double* out) {
+      { P::dimension } -> std::convertible_to<int>;
+      /// Rows 0..order of series_width numbers: the coefficients of y(t + unit s) in powers of s.
+      problem.compute_series(t, unit, y, y, order, out);
+      /// Sizes of a row's blocks: what has a unit of its own is measured by itself.
+      { P::blocks } -> std::convertible_to<int>;
+      problem.compute_sizes(y, out);
+      /// How many leading coefficients tell a block's size: more than one where a start at rest is nothing special.
+      { P::heads[0] } -> std::convertible_to<int>;
+      /// A time in which the solution changes; only its order of magnitude counts.
+      { problem.compute_time_scale(t, y) } -> std::convertible_to<double>;
+      problem.start_carry(out);
+      /// Brings state and carry back to what is known to hold; called after each step, which are numbered from 0.
+      problem.correct(t, step, out, out);
+    };
 
 /// The Taylor series of the solution itself. Order and step after Jorba & Zou 2005, Experimental Mathematics 14, 99,
 /// with the sizes in blocks; the sum is compensated from step to step (Kahan), in time too.
@@ -45,17 +46,25 @@ struct Taylor {
       .least_rtol = 1e-16,
       .keeps = "nothing",
       .needs = "torques of the library, not Custom",
-      .doc = "The Taylor series of the solution by recurrences, order and step by the tolerance: the one for tight accuracies.",
+      .doc =
+          "The Taylor series of the solution by recurrences, order and step by the tolerance: the one for tight "
+          "accuracies.",
       .source = "Jorba & Zou 2005, Exp. Math. 14, 99",
       // A decade of tolerance costs a few per cent here, another try two runs.
-      .forecast = {.error_per_turn = 0.4, .margin = 10.0, .floor_per_turn = 2e-17, .steps_per_radian = 0.62, .power = 0.013,
-                   .step_seconds = 2.8e-7, .order_seconds = 9e-10, .stability = 8.5},
+      .forecast = {.error_per_turn = 0.4,
+                   .margin = 10.0,
+                   .floor_per_turn = 2e-17,
+                   .steps_per_radian = 0.62,
+                   .power = 0.013,
+                   .step_seconds = 2.8e-7,
+                   .order_seconds = 9e-10,
+                   .stability = 8.5},
   };
   static constexpr int least_order = 4;
 
   /// The cheapest order is -ln(tolerance) where each row costs the same, half of it where the price of all grows as the
-  /// square of their number. Nearly the first at loose tolerances, where rows are few; towards the rounding short steps,
-  /// which round less, are worth more.
+  /// square of their number. Nearly the first at loose tolerances, where rows are few; towards the rounding short
+  /// steps, which round less, are worth more.
   static int choose_order(double tolerance) {
     const double digits = -std::log(tolerance), tight = std::clamp((digits - 18.0) / 18.0, 0.0, 1.0);
     const int order = static_cast<int>(std::ceil(1.0 + (1.0 - 0.46 * tight) * digits));
@@ -72,7 +81,8 @@ class Taylor::Stepper : public ode::Stepper {
 
  public:
   Stepper(const P& problem, double t0, const double* y0, double t_end, const Tolerances& tolerances)
-      : ode::Stepper(P::dimension, header + W * (choose_order(tolerances.rtol + tolerances.atol) + 1), &evaluate_segment, t0),
+      : ode::Stepper(P::dimension, header + W * (choose_order(tolerances.rtol + tolerances.atol) + 1),
+                     &evaluate_segment, t0),
         problem_(problem),
         tolerances_(tolerances),
         order_(choose_order(tolerances.rtol + tolerances.atol)),
@@ -96,7 +106,8 @@ class Taylor::Stepper : public ode::Stepper {
     if (!(fraction > 0.0)) return StepResult::not_finite;
     const bool last = fraction * unit_ * 1.01 >= std::abs(rest);
     const double s = last ? rest / unit_ : std::copysign(fraction, rest), h = s * unit_;
-    if (!last && !(std::abs(h) > 8 * std::numeric_limits<double>::epsilon() * std::abs(time_.hi))) return StepResult::underflow;
+    if (!last && !(std::abs(h) > 8 * std::numeric_limits<double>::epsilon() * std::abs(time_.hi)))
+      return StepResult::underflow;
 
     std::copy_n(y_, W, y_old_);
     std::copy_n(carry_, W, carry_old_);

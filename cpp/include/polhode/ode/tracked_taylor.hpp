@@ -13,29 +13,32 @@ namespace polhode::ode {
 struct ErrorTrace {
   double asked = 1e-9;         ///< in: the error that matters
   double most = std::numeric_limits<double>::infinity();   ///< in: times what is asked, after which the run is given up
-  bool all_terms = false;      ///< in: as long a series for the error as for the motion (steps short for stability's sake)
+  bool all_terms = false;   ///< in: as long a series for the error as for the motion (steps short for stability's sake)
   double moved = 0.0;          ///< out: largest error of the first part (rates), absolute
   double turned = 0.0;         ///< out: largest error of the second (attitude), an angle
-  double parting = std::numeric_limits<double>::infinity();   ///< out: how far from the start the samples are as good as asked
+  double parting =
+      std::numeric_limits<double>::infinity();   ///< out: how far from the start the samples are as good as asked
   double given_up = 0.0;       ///< out: how far from the start the run was given up; 0: it was not
 };
 
 /// y' = f(t, y) whose errors can be carried along.
 template <class P>
 concept TrackedProblem = SeriesProblem<P> && requires(const P& problem, const double* y, double* out) {
-  /// Of a state and a small error of it: the size of the first part, its error, and the error of the second as an angle.
+  /// Of a state and a small error of it: the size of the first part, its error, and the error of the second as an
+  /// angle.
   problem.measure_error(y, y, out);
 };
 
-/// A Taylor series that carries its own error along: e, how far from y a twin would be that takes the same steps, loses in
-/// each more than twice what is left out there, and starts from inputs that are rounded once more. The twin need not be stepped: e is small, so that it
-/// follows the equations linearised about y, and few terms of their series do. They are differences of two series, that
-/// of y and that of y + scale e, where scale brings an error of less than a millionth that is asked for to a millionth. (Linearised transport of
-/// the local errors: Hairer, Norsett & Wanner 1993, I.13 and II.8, there for estimates of the global error.)
+/// A Taylor series that carries its own error along: e, how far from y a twin would be that takes the same steps, loses
+/// in each more than twice what is left out there, and starts from inputs that are rounded once more. The twin need not
+/// be stepped: e is small, so that it follows the equations linearised about y, and few terms of their series do. They
+/// are differences of two series, that of y and that of y + scale e, where scale brings an error of less than a
+/// millionth that is asked for to a millionth. (Linearised transport of the local errors: Hairer, Norsett & Wanner
+/// 1993, I.13 and II.8, there for estimates of the global error.)
 template <TrackedProblem P>
 class TrackedTaylor final : public Taylor::Stepper<P> {
   static constexpr int W = series_width;
-  static constexpr int few = 7;                 // terms for the error: to a part in a thousand of what a step does to it
+  static constexpr int few = 7;   // terms for the error: to a part in a thousand of what a step does to it
   static constexpr double safety = 2.5;         // on what a step leaves out
   static constexpr double aligned = 0.1;        // of it, whatever its sign
   static constexpr double rounding = 0x1p-54;   // of y, in a step, whose sums are compensated
@@ -43,8 +46,8 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
 
  public:
   /// @param moved  the same problem with its constants moved by compute_move(trace)
-  TrackedTaylor(const P& problem, const P& moved, double t0, const double* y0, double t_end, const Tolerances& tolerances,
-                ErrorTrace& trace)
+  TrackedTaylor(const P& problem, const P& moved, double t0, const double* y0, double t_end,
+                const Tolerances& tolerances, ErrorTrace& trace)
       : Base(problem, t0, y0, t_end, tolerances), moved_(moved), trace_(trace), scale_(find_scale(trace)), t0_(t0) {
     for (int i = 0; i < W; ++i) error_[i] = flip() * compute_move(trace) * y0[i];
     measure(0.0);
@@ -115,7 +118,9 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     measure(scale_ * rounding + aligned * find_part(sizes));
   }
 
-  static double find_part(const double* sizes) { return std::max(sizes[0] > 0.0 ? sizes[1] / sizes[0] : 0.0, sizes[2]); }
+  static double find_part(const double* sizes) {
+    return std::max(sizes[0] > 0.0 ? sizes[1] / sizes[0] : 0.0, sizes[2]);
+  }
 
   /// What y is brought back to after a step, its twin is brought back to as well.
   void restore() {
@@ -128,7 +133,8 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     for (int i = 0; i < W; ++i) error_[i] = (twin[i] - this->y_[i]) + (low[i] - this->carry_[i]);
   }
 
-  /// @param more  by how much of y the error grows in the direction that has grown so far: in any other it might by chance
+  /// @param more  by how much of y the error grows in the direction that has grown so far: in any other it might by
+  /// chance
   ///              not grow, and signs might cancel that do not cancel in truth
   void measure(double more) {
     double out[3];
@@ -149,7 +155,8 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   const P& moved_;
   ErrorTrace& trace_;
   double scale_, t0_;
-  double shrink_ = std::pow(this->tolerances_.rtol, 1.0 / (this->order_ - 1));   // of one term to the next, by the step's rule
+  double shrink_ =
+      std::pow(this->tolerances_.rtol, 1.0 / (this->order_ - 1));   // of one term to the next, by the step's rule
   double largest_ = 0.0, now_[2] = {}, old_[2] = {}, good_ = 0.0;
   std::uint64_t coin_ = 2026;
   alignas(64) double error_[W] = {};

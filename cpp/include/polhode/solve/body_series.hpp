@@ -53,7 +53,9 @@ class BodySeries {
   void compute_sizes(const double* row, double* sizes) const {
     double w[3];
     compute_rates(row, w);
-    const auto largest = [](double a, double b, double c) { return std::max(std::max(std::abs(a), std::abs(b)), std::abs(c)); };
+    const auto largest = [](double a, double b, double c) {
+      return std::max(std::max(std::abs(a), std::abs(b)), std::abs(c));
+    };
     // A sum as well, since a comparison lets what is not a number pass.
     sizes[0] = largest(w[0], w[1], w[2]) + 0.0 * (w[0] + w[1] + w[2]);
     sizes[1] = std::max(largest(row[4], row[5], row[6]), std::abs(row[7])) + 0.0 * (row[4] + row[5] + row[6] + row[7]);

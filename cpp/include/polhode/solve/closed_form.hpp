@@ -44,9 +44,9 @@ std::span<const ExactModel> exact_models();
 /// The closed form of a scene, where one holds.
 std::optional<ClosedForm> find_closed_form(const Scene& scene, const Facts& facts);
 
-/// A bound on the error of the closed form over the scene's times, against the exact motion from the same float64 input:
-/// 20 units of rounding (docs/exact.md; the largest ever measured are 7), and what rounding of the times' distances from
-/// the start, of weight times arm, or of the principal axes of a full tensor does to it.
+/// A bound on the error of the closed form over the scene's times, against the exact motion from the same float64
+/// input: 20 units of rounding (docs/exact.md; the largest ever measured are 7), and what rounding of the times'
+/// distances from the start, of weight times arm, or of the principal axes of a full tensor does to it.
 double compute_closed_form_error(const Scene& scene, const Facts& facts, const ClosedForm& form);
 
 }  // namespace polhode

@@ -51,7 +51,8 @@ struct MotionEvent {
 };
 
 /// The answer: where the body points and how fast it spins, at the times asked for, in the order asked for.
-/// Times that were not reached are left out. `omega` is (n, 3) and `attitude` (n, 4), row by row, empty when not wanted.
+/// Times that were not reached are left out. `omega` is (n, 3) and `attitude` (n, 4), row by row, empty when not
+/// wanted.
 struct Motion {
   std::vector<double> t, omega, attitude;
   Status status = Status::finished;
@@ -60,7 +61,8 @@ struct Motion {
   int runs = 1;                          ///< two or more where the error was certified
   Plan plan;
   double error = std::numeric_limits<double>::quiet_NaN();   ///< of all samples; NaN: not estimated
-  std::string error_kind = "not estimated";   ///< "bounded" | "expected" | "limit" (more than was asked) | "not estimated"
+  std::string error_kind =
+      "not estimated";                   ///< "bounded" | "expected" | "limit" (more than was asked) | "not estimated"
   double asked = 0.0;                    ///< the accuracy, or the relative tolerance, that was asked for
   std::vector<MotionEvent> events;
   ode::DenseOutput dense_forward, dense_backward;

@@ -27,8 +27,8 @@ struct PlanReport {
   std::vector<std::string> left_out;   ///< what is not modelled, and why that is safe
 };
 
-/// The least model and the cheapest method that reach the accuracy. @throws InvalidInput for wishes that contradict each
-/// other, or a method that does not take the scene.
+/// The least model and the cheapest method that reach the accuracy. @throws InvalidInput for wishes that contradict
+/// each other, or a method that does not take the scene.
 Plan make_plan(const Scene& scene, const Facts& facts, const SolveOptions& options);
 
 /// The same with every candidate judged and the reasons in words.

@@ -20,10 +20,12 @@ struct Reference {
   long steps = 0;
 };
 
-/// What to hold others against: w_B and q_WB of a scene at its times by Taylor series in `long double`, which has 64 bits
-/// on x86-64 (elsewhere perhaps only 53). Two runs of different order tell by their difference how far to trust both.
+/// What to hold others against: w_B and q_WB of a scene at its times by Taylor series in `long double`, which has 64
+/// bits on x86-64 (elsewhere perhaps only 53). Two runs of different order tell by their difference how far to trust
+/// both.
 ///
-/// Recurrences by Cauchy's products; step from the last two terms as in Jorba & Zou 2005, Experimental Mathematics 14, 99.
+/// Recurrences by Cauchy's products; step from the last two terms as in Jorba & Zou 2005, Experimental Mathematics
+/// 14, 99.
 /// @throws InvalidInput for a torque that has no series (a user's function), IntegrationFailure past max_steps
 Reference compute_reference(const Scene& scene, const ReferenceOptions& options = {});
 

@@ -25,7 +25,9 @@ class Separatrix {
   /// (u, v, w2) of rates, and what rounding took from them.
   void from_rates(const double* w_P, double* r, double* carry) const;
   /// The same of any vector, with k rounded: of a torque over the moments.
-  void from_vector(const double* a, double* r) const { r[0] = a[2] - k_.hi * a[0], r[1] = a[2] + k_.hi * a[0], r[2] = a[1]; }
+  void from_vector(const double* a, double* r) const {
+    r[0] = a[2] - k_.hi * a[0], r[1] = a[2] + k_.hi * a[0], r[2] = a[1];
+  }
   void to_rates(const double* r, double* w_P) const {
     w_P[0] = (r[1] - r[0]) * half_over_k_.hi, w_P[1] = r[2], w_P[2] = (r[0] + r[1]) * 0.5;
   }

@@ -7,8 +7,8 @@
 namespace polhode {
 
 /// What a driven body keeps, and the way back to it from a state that a series has carried off by rounding and by what
-/// its tolerance leaves: the energy, or under gravity's gradient the energy less n L_z (Jacobi's integral), and L_z where
-/// no torque acts about the vertical. A symmetric top's p_psi needs no help: its derivative is exactly zero.
+/// its tolerance leaves: the energy, or under gravity's gradient the energy less n L_z (Jacobi's integral), and L_z
+/// where no torque acts about the vertical. A symmetric top's p_psi needs no help: its derivative is exactly zero.
 ///
 /// One Newton step of the rate variables towards the values at the start, from residuals in double-double. Its metric
 /// leaves to u and v their relative accuracy, and untouched what stays by itself. Projection on invariants: Hairer,

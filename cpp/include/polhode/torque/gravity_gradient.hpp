@@ -8,7 +8,8 @@
 
 namespace polhode::torques {
 
-/// Gravity gradient on a circular orbit about space z: tau_B = 3 n^2 u x (I u), u = R_WB^T (cos a, sin a, 0), a = n t + phase.
+/// Gravity gradient on a circular orbit about space z: tau_B = 3 n^2 u x (I u), u = R_WB^T (cos a, sin a, 0), a = n t +
+/// phase.
 class GravityGradient {
  public:
   /// @param mean_motion  n, the orbit's angular rate [rad/s]

@@ -10,7 +10,9 @@
 #include "batch/lanes/taylor_loops.hpp"
 
 namespace polhode {
-TaylorKernels avx512_taylor_lanes(const SeriesTerms& terms, bool attitude) { return POLHODE_ISA::choose_lanes(terms, attitude); }
+TaylorKernels avx512_taylor_lanes(const SeriesTerms& terms, bool attitude) {
+  return POLHODE_ISA::choose_lanes(terms, attitude);
+}
 Rk45Kernels avx512_rk45_lanes(bool diagonal, bool attitude) { return POLHODE_ISA::choose_rk45(diagonal, attitude); }
 }  // namespace polhode
 #else

@@ -11,6 +11,8 @@ POLHODE_INLINE unsigned bits(bool mask) { return mask; }
 #include "batch/lanes/taylor_loops.hpp"
 
 namespace polhode {
-TaylorKernels baseline_taylor_lanes(const SeriesTerms& terms, bool attitude) { return POLHODE_ISA::choose_lanes(terms, attitude); }
+TaylorKernels baseline_taylor_lanes(const SeriesTerms& terms, bool attitude) {
+  return POLHODE_ISA::choose_lanes(terms, attitude);
+}
 Rk45Kernels baseline_rk45_lanes(bool diagonal, bool attitude) { return POLHODE_ISA::choose_rk45(diagonal, attitude); }
 }  // namespace polhode

@@ -10,8 +10,8 @@
 #include "polhode/solve/euler_formulas.hpp"
 
 // Steps of rk45 with a body in each lane, for one lane type `Wide`; included once by each file that is built for one
-// instruction set. Operation by operation what ode::RungeKuttaStepper does with solve's EulerProblem, without fused ones:
-// the same bits.
+// instruction set. Operation by operation what ode::RungeKuttaStepper does with solve's EulerProblem, without fused
+// ones: the same bits.
 namespace polhode::POLHODE_ISA {
 
 using Mask = math::Mask<Wide>;
@@ -80,7 +80,8 @@ struct LaneControl {
 
   static POLHODE_INLINE Wide exp2(Wide x) {
     const Wide low(-1000.0), high(1000.0), p = select(x < low, low, select(high < x, high, x));
-    const Wide shifted = p + Wide(1024.0), near = rint(shifted), whole = select(shifted < near, near - Wide(1.0), near) - Wide(1024.0);
+    const Wide shifted = p + Wide(1024.0), near = rint(shifted),
+               whole = select(shifted < near, near - Wide(1.0), near) - Wide(1024.0);
     const Wide f = p - whole;
     return power_of_two(whole) * (Wide(1.0) + f * (Wide(0.6951) + f * (Wide(0.2276) + f * Wide(0.0773))));
   }
@@ -178,9 +179,11 @@ class Rk45Lanes {
     const Wide norm = compute_error_norm<attitude>(error, y_, y_new_, Wide(b_.rtol), Wide(b_.atol));
     const Mask accepted = (norm <= one) & moves;
 
-    const Wide reached = select(accepted, select(last, t_end, t + h), t), steps = load(b_.steps) + select(accepted, one, zero);
+    const Wide reached = select(accepted, select(last, t_end, t + h), t),
+               steps = load(b_.steps) + select(accepted, one, zero);
     const Wide next_sample = load(b_.next_sample);
-    const Mask due = accepted & (((next_sample <= reached) & (zero <= rest)) | ((reached <= next_sample) & (rest < zero)));
+    const Mask due =
+        accepted & (((next_sample <= reached) & (zero <= rest)) | ((reached <= next_sample) & (rest < zero)));
     const Wide stuck = select(load(b_.not_finite) == zero, Wide(lane_underflow), Wide(lane_not_finite));
     choose_step(norm, h, tried, rest, last, accepted);
     pass_.store(b_.time, reached), pass_.store(b_.steps, steps);

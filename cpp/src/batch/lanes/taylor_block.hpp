@@ -23,7 +23,8 @@ struct TaylorBlock : LaneClock {
   Row y_old[8] = {}, carry_old[8] = {}, time_old = {}, time_old_low = {}, unit_old = {};
 
   // Taylor coefficients in powers of t / unit, rates times unit: of y, of (v - u, w1, w3), of vectors
-  Row c[8][ode::most_series_order + 1] = {}, side[3][ode::most_series_order + 1] = {}, vector[4][3][ode::most_series_order + 1] = {};
+  Row c[8][ode::most_series_order + 1] = {}, side[3][ode::most_series_order + 1] = {},
+                                    vector[4][3][ode::most_series_order + 1] = {};
 };
 
 struct TaylorKernels {

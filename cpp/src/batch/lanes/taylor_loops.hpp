@@ -50,7 +50,9 @@ class LaneSeries {
   POLHODE_INLINE Wide load(const Row& row) const { return pass_.load(row); }
 
   // Where a coefficient is kept: the rates, the left factors of the rates' products, vectors.
-  static POLHODE_INLINE auto& rate_rows(const TaylorBlock& b, int i) { return !separatrix || i == 1 ? b.c[separatrix ? 2 : i] : b.side[i]; }
+  static POLHODE_INLINE auto& rate_rows(const TaylorBlock& b, int i) {
+    return !separatrix || i == 1 ? b.c[separatrix ? 2 : i] : b.side[i];
+  }
   POLHODE_INLINE auto& rate_rows(int i) const { return rate_rows(b_, i); }
   POLHODE_INLINE auto& vector_rows(int v, int i) const { return seen ? b_.c[4 + i] : b_.vector[v][i]; }
   POLHODE_INLINE Wide rate(int i, int n) const { return load(rate_rows(i)[n]); }
@@ -197,7 +199,8 @@ class LaneSeries {
       const auto &v0 = vector_rows(v, 0), &v1 = vector_rows(v, 1), &v2 = vector_rows(v, 2);
       const auto &w0 = rate_rows(0), &w1 = rate_rows(1), &w2 = rate_rows(2);
       sum_products(n, [&](int j, int i) __attribute__((always_inline)) {
-        const Wide r0 = load(w0[i]), r1 = load(w1[i]), r2 = load(w2[i]), s0 = load(v0[j]), s1 = load(v1[j]), s2 = load(v2[j]);
+        const Wide r0 = load(w0[i]), r1 = load(w1[i]), r2 = load(w2[i]), s0 = load(v0[j]), s1 = load(v1[j]),
+                   s2 = load(v2[j]);
         a[0] = madd(s1, r2, a[0]), a[1] = madd(s2, r0, a[1]), a[2] = madd(s0, r1, a[2]);
         o[0] = madd(s2, r1, o[0]), o[1] = madd(s0, r2, o[1]), o[2] = madd(s1, r0, o[2]);
       });
@@ -208,12 +211,14 @@ class LaneSeries {
       }
     }
     for (int v = 0; v < vectors; ++v)
-      for (int i = 0; i < 3; ++i) pass_.store(vector_rows(v, i)[n + 1], early && n == 2 ? next[v][i] / count : next[v][i] * inverse);
+      for (int i = 0; i < 3; ++i)
+        pass_.store(vector_rows(v, i)[n + 1], early && n == 2 ? next[v][i] / count : next[v][i] * inverse);
   }
 
   TaylorBlock& b_;
   Pass pass_;
-  Wide product_[3], product_low_[3], torque_[3], damping_[3][3], pull_[fixed > 0 ? fixed : 1][3][3], tidal_[2][3], orbit_;
+  Wide product_[3], product_low_[3], torque_[3], damping_[3][3], pull_[fixed > 0 ? fixed : 1][3][3], tidal_[2][3],
+      orbit_;
 };
 
 template <bool separatrix, bool attitude, int fixed, bool gradient>
@@ -223,8 +228,11 @@ TaylorKernels make_kernels() {
 
 template <bool separatrix>
 TaylorKernels choose_lanes(const SeriesTerms& c, bool attitude) {
-  if (!attitude) return c.fixed_vectors == 1 ? make_kernels<separatrix, false, 1, false>() : make_kernels<separatrix, false, 0, false>();
-  if (c.gradient) return c.fixed_vectors > 0 ? make_kernels<separatrix, true, 2, true>() : make_kernels<separatrix, true, 0, true>();
+  if (!attitude)
+    return c.fixed_vectors == 1 ? make_kernels<separatrix, false, 1, false>()
+                                : make_kernels<separatrix, false, 0, false>();
+  if (c.gradient)
+    return c.fixed_vectors > 0 ? make_kernels<separatrix, true, 2, true>() : make_kernels<separatrix, true, 0, true>();
   if (c.fixed_vectors == 0) return make_kernels<separatrix, true, 0, false>();
   return c.fixed_vectors == 1 ? make_kernels<separatrix, true, 1, false>() : make_kernels<separatrix, true, 2, false>();
 }

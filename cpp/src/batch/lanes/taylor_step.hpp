@@ -22,7 +22,8 @@ POLHODE_INLINE Wide rough_exp2(Wide x) {
 }
 
 /// The coefficients' sum at s without the first one; it begins with the carry.
-POLHODE_INLINE void sum_series(const TaylorBlock& b, Pass pass, Wide s, Wide unit, const Row (&carry)[8], Wide (&out)[8]) {
+POLHODE_INLINE void sum_series(const TaylorBlock& b, Pass pass, Wide s, Wide unit, const Row (&carry)[8],
+                               Wide (&out)[8]) {
   constexpr int used[7] = {0, 1, 2, 4, 5, 6, 7};
   Wide sum[7];
   for (int i = 0; i < 7; ++i) sum[i] = pass.load(b.c[used[i]][b.order]);
@@ -60,7 +61,8 @@ POLHODE_INLINE Wide log_step(const Wide (&size)[5], Wide tolerance, int order) {
 POLHODE_INLINE void balance_rates(const TaylorBlock& b, Pass pass, Wide (&y)[8], Wide (&carry)[8]) {
   const Wide zero(0.0), balance = pass.load(b.balance);
   const WideDD u(y[0], carry[0]), v(y[1], carry[1]), w(y[2], carry[2]);
-  const WideDD kept[2] = {{pass.load(b.kept[0]), pass.load(b.kept_low[0])}, {pass.load(b.kept[1]), pass.load(b.kept_low[1])}};
+  const WideDD kept[2] = {{pass.load(b.kept[0]), pass.load(b.kept_low[0])},
+                          {pass.load(b.kept[1]), pass.load(b.kept_low[1])}};
   const Wide uu = y[0] * y[0], vv = y[1] * y[1], ww = y[2] * y[2], uv = y[0] * y[1], sum = uu + vv;
   const Wide split = select(sum > zero, (uu - vv) / sum, zero);
   const Wide turn = select(abs(uv) > Wide(1e-250), Wide(-0.5) * (u * v - kept[0]).hi / uv, zero);
@@ -111,7 +113,8 @@ POLHODE_INLINE void finish_step(TaylorBlock& b, Pass pass, const Wide (&rates)[5
   }
   least = select(least > Wide(1000.0), Wide(1000.0), larger(least, Wide(-1000.0)));
   const auto finite = probe == zero;
-  const Wide reach = rough_exp2(least) * unit, time = pass.load(b.time), time_low = pass.load(b.time_low), t_end = pass.load(b.t_end);
+  const Wide reach = rough_exp2(least) * unit, time = pass.load(b.time), time_low = pass.load(b.time_low),
+             t_end = pass.load(b.t_end);
   const Wide rest = (t_end - time) - time_low;
   const auto last = abs(rest) <= reach * Wide(1.01);
   const Wide h = select(last, rest, copysign(reach, rest));

@@ -41,8 +41,10 @@ struct Turn {
 
 template <class T>
 POLHODE_INLINE Turn<T> product(Turn<T> a, Turn<T> b) {
-  return {madd(a.w, b.x, madd(a.x, b.w, madd(a.y, b.z, -(a.z * b.y)))), madd(a.w, b.y, madd(a.y, b.w, madd(a.z, b.x, -(a.x * b.z)))),
-          madd(a.w, b.z, madd(a.z, b.w, madd(a.x, b.y, -(a.y * b.x)))), madd(a.w, b.w, -madd(a.x, b.x, madd(a.y, b.y, a.z * b.z)))};
+  return {madd(a.w, b.x, madd(a.x, b.w, madd(a.y, b.z, -(a.z * b.y)))),
+          madd(a.w, b.y, madd(a.y, b.w, madd(a.z, b.x, -(a.x * b.z)))),
+          madd(a.w, b.z, madd(a.z, b.w, madd(a.x, b.y, -(a.y * b.x)))),
+          madd(a.w, b.w, -madd(a.x, b.x, madd(a.y, b.y, a.z * b.z)))};
 }
 
 /// A block of bodies on their way: what both forms of the series start from.
@@ -77,7 +79,8 @@ POLHODE_INLINE Block<T> read_block(FreeStarts starts, Pick pick) {
   const T zero(0.0), one(1.0);
   Block<T> block;
   T moments[3], omega[3];
-  for (std::size_t a = 0; a < 3; ++a) moments[a] = column<T>(starts.moments, 3, a, pick), omega[a] = column<T>(starts.omega, 3, a, pick);
+  for (std::size_t a = 0; a < 3; ++a)
+    moments[a] = column<T>(starts.moments, 3, a, pick), omega[a] = column<T>(starts.omega, 3, a, pick);
   for (std::size_t a = 0; a < 4; ++a) block.attitude[a] = column<T>(starts.attitude, 4, a, pick);
   const T fastest = max(abs(omega[0]), max(abs(omega[1]), abs(omega[2])));
   const T largest = max(moments[0], max(moments[1], moments[2]));
@@ -128,8 +131,8 @@ POLHODE_INLINE FreeFrameOf<T> make_frame(const Block<T>& block, const exact::Fre
 
 /// The states of a block, into the rows that `pick` names and `rows_wanted` has a bit for.
 template <class T, class Body>
-POLHODE_INLINE void write_block(const Body& body, const Block<T>& block, const double* t, Pick pick, unsigned rows_wanted,
-                                double* omega, double* attitude) {
+POLHODE_INLINE void write_block(const Body& body, const Block<T>& block, const double* t, Pick pick,
+                                unsigned rows_wanted, double* omega, double* attitude) {
   const FreeFrameOf<T> frame = make_frame(block, exact::evaluate(body, T(0.0)));
   const Rows<T> rows = rows_at(body, frame, column<T>(t, 1, 0, pick));
   double w[3 * T::width], q[4 * T::width];
@@ -143,7 +146,8 @@ POLHODE_INLINE void write_block(const Body& body, const Block<T>& block, const d
   }
 }
 
-inline void once_hyper(FreeStarts starts, const double* t, const std::size_t* which, std::size_t n, double* omega, double* attitude) {
+inline void once_hyper(FreeStarts starts, const double* t, const std::size_t* which, std::size_t n, double* omega,
+                       double* attitude) {
   for (std::size_t first = 0; first < n; first += Wide::width) {
     const Pick pick{which, first, n};
     const Block<Wide> block = read_block<Wide>(starts, pick);
@@ -151,7 +155,8 @@ inline void once_hyper(FreeStarts starts, const double* t, const std::size_t* wh
   }
 }
 
-inline std::size_t once(FreeStarts starts, const double* t, std::size_t n, double* omega, double* attitude, std::size_t* left) {
+inline std::size_t once(FreeStarts starts, const double* t, std::size_t n, double* omega, double* attitude,
+                        std::size_t* left) {
   constexpr std::size_t waiting_room = 64;
   std::size_t count = 0, hyper[waiting_room], waiting = 0;
   for (std::size_t first = 0; first < n; first += Wide::width) {
@@ -170,7 +175,8 @@ inline std::size_t once(FreeStarts starts, const double* t, std::size_t n, doubl
   return count;
 }
 
-inline std::size_t set_up(FreeStarts starts, std::size_t n, FreeTrig<double>* trig, FreeFrame* frames, std::size_t* left) {
+inline std::size_t set_up(FreeStarts starts, std::size_t n, FreeTrig<double>* trig, FreeFrame* frames,
+                          std::size_t* left) {
   constexpr std::size_t width = Wide::width;
   std::size_t count = 0;
   for (std::size_t first = 0; first < n; first += width) {
@@ -193,8 +199,8 @@ inline std::size_t set_up(FreeStarts starts, std::size_t n, FreeTrig<double>* tr
 }
 
 /// One body for FreeMotion: everything, in the one of two forms that it needs.
-inline void prepare(const exact::FreeStart<double>& start, exact::FreeConstants<double>& constants, FreeTrig<double>& trig,
-                    exact::FreeHyper<double>& hyper) {
+inline void prepare(const exact::FreeStart<double>& start, exact::FreeConstants<double>& constants,
+                    FreeTrig<double>& trig, exact::FreeHyper<double>& hyper) {
   static_assert(sizeof(exact::FreeConstants<One>) == sizeof(exact::FreeConstants<double>));
   exact::FreeStart<One> s;
   __builtin_memcpy(static_cast<void*>(&s), &start, sizeof s);
@@ -209,7 +215,11 @@ inline void prepare(const exact::FreeStart<double>& start, exact::FreeConstants<
   }
 }
 
-inline constexpr exact::FreeKernels kernels = {
-    .times = time_kernels, .trig = &on_times, .hyper = &on_times, .once = &once, .set_up = &set_up, .prepare = &prepare};
+inline constexpr exact::FreeKernels kernels = {.times = time_kernels,
+                                               .trig = &on_times,
+                                               .hyper = &on_times,
+                                               .once = &once,
+                                               .set_up = &set_up,
+                                               .prepare = &prepare};
 
 }  // namespace polhode::POLHODE_ISA

@@ -40,12 +40,14 @@ POLHODE_INLINE void write(const Rows<T>& rows, double* omega, double* attitude) 
 }
 
 template <bool want_omega, bool want_attitude, class T, class Body>
-POLHODE_INLINE void write_at(const Body& body, const FreeFrame& frame, const double* t, double* omega, double* attitude) {
+POLHODE_INLINE void write_at(const Body& body, const FreeFrame& frame, const double* t, double* omega,
+                             double* attitude) {
   write<want_omega, want_attitude>(rows_at(body, frame, T::load(t)), omega, attitude);
 }
 
 template <bool want_omega, bool want_attitude, class Body>
-void loop(const Body& body_in, const FreeFrame& frame_in, const double* t, std::size_t n, double* omega, double* attitude) {
+void loop(const Body& body_in, const FreeFrame& frame_in, const double* t, std::size_t n, double* omega,
+          double* attitude) {
   std::size_t i = 0;
   if (n >= Wide::width) {
     const Body body = body_in;  // of our own: the results written cannot change it
@@ -103,8 +105,9 @@ void hyper_loop(const exact::FreeHyper<double>& body_in, const FreeFrame& frame_
         p.sine.store(middle[3] + k), p.cosine.store(middle[4] + k);
       }
       for (std::size_t k = 0; k < n; k += Wide::width) {
-        const exact::FreePassage<Wide> p{Wide::load(middle[0] + k), Wide::load(middle[1] + k), Wide::load(middle[2] + k),
-                                         Wide::load(middle[3] + k), Wide::load(middle[4] + k)};
+        const exact::FreePassage<Wide> p{Wide::load(middle[0] + k), Wide::load(middle[1] + k),
+                                         Wide::load(middle[2] + k), Wide::load(middle[3] + k),
+                                         Wide::load(middle[4] + k)};
         write<want_omega, want_attitude>(brought_back(frame, exact::evaluate(body, p)), omega + 3 * (first + k),
                                          attitude + 4 * (first + k));
       }

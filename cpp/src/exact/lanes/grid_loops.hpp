@@ -97,7 +97,8 @@ struct Angles {
 template <class T, int count>
 POLHODE_INLINE Angle<T> angle_at(const Rates<count>& rates, int c, T t) {
   Angle<T> a;
-  sincos_cycles(cycle_fraction(t * T(rates.scale), T(rates.hi[c]), T(rates.lo[c]), T(rates.start[c])), a.sine, a.cosine);
+  sincos_cycles(cycle_fraction(t * T(rates.scale), T(rates.hi[c]), T(rates.lo[c]), T(rates.start[c])), a.sine,
+                a.cosine);
   return a;
 }
 

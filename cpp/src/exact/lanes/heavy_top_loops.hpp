@@ -58,6 +58,7 @@ inline void top_at(const HeavyTopConstants& c, const TimeGrid& grid, double* ome
   return (c.framed ? top_loop<true, true> : top_loop<true, false>)(c, grid.t, grid.n, omega, attitude);
 }
 
-inline constexpr exact::HeavyTopKernels heavy_top_kernels = {.times = time_kernels, .at = &top_at, .set_up = &set_up_top};
+inline constexpr exact::HeavyTopKernels heavy_top_kernels = {
+    .times = time_kernels, .at = &top_at, .set_up = &set_up_top};
 
 }  // namespace polhode::POLHODE_ISA

@@ -108,14 +108,16 @@ struct AtStart {
 
 /// The direction of the constant c in value = c N, slope = c (i k N + speed (D - N theta' / theta)), from whichever
 /// is not small.
-inline Complex direction(bool by_slope, Complex value, Complex slope, Complex N, Complex D, DD k, DD speed, const AtStart& f) {
+inline Complex direction(bool by_slope, Complex value, Complex slope, Complex N, Complex D, DD k, DD speed,
+                         const AtStart& f) {
   if (!by_slope) return unit(balanced(value) * conj(N));
   const Complex slope_N = k * times_i(N) + speed * (D - (f.d_theta / f.theta) * N);
   return unit(balanced(slope) * conj(balanced(slope_N)));
 }
 
 /// The two factors in front, of given size, so that the attitude at t = 0 is the start's.
-inline void set_factors(HeavyTopConstants& c, const HeavyTopStart& s, DD ca, DD cb, DD kA, DD kB, DD speed, const AtStart& f) {
+inline void set_factors(HeavyTopConstants& c, const HeavyTopStart& s, DD ca, DD cb, DD kA, DD kB, DD speed,
+                        const AtStart& f) {
   const Complex alpha{s.w, s.z}, beta{s.x, s.y}, wp{s.w1, s.w2};
   const DD half = DD(0.5);
   const Complex alpha_slope = half * (s.w3 * times_i(alpha) - conj(wp) * beta);

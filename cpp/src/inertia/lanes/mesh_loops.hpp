@@ -6,8 +6,8 @@
 // The sums over the triangles, for one lane type `Wide`; included once by each file that is built for one instruction
 // set, after `nmadd(a, b, c)` = c - a b and `load_rows<last>(vertices, indices, x, y, z)` for it.
 //
-// The tetrahedron between the reference point and the triangle (a, b, c) has the volume d / 6, the first moments d s / 24
-// and the second moments d (p p + q q + o o) / 120 with d = a . (b x c), s = a + b + c, and the sums p, q, o of two
+// The tetrahedron between the reference point and the triangle (a, b, c) has the volume d / 6, the first moments d s /
+// 24 and the second moments d (p p + q q + o o) / 120 with d = a . (b x c), s = a + b + c, and the sums p, q, o of two
 // corners: Mirtich 1996, Eberly 2002; their a a + b b + c c + s s is the same. Here d = a . ((b - a) x (c - a)): the
 // edges are short and nearly exact however far the triangle is, where b x c of a small one loses most of its digits.
 namespace polhode::POLHODE_ISA {

@@ -6,7 +6,9 @@
 #include "solve/lanes/series_loops.hpp"
 
 namespace polhode {
-SeriesKernel avx512_series_kernel(const SeriesTerms& terms, bool attitude) { return POLHODE_ISA::choose(terms, attitude); }
+SeriesKernel avx512_series_kernel(const SeriesTerms& terms, bool attitude) {
+  return POLHODE_ISA::choose(terms, attitude);
+}
 }  // namespace polhode
 #else
 namespace polhode {

@@ -4,5 +4,7 @@
 #include "solve/lanes/series_loops.hpp"
 
 namespace polhode {
-SeriesKernel baseline_series_kernel(const SeriesTerms& terms, bool attitude) { return POLHODE_ISA::choose(terms, attitude); }
+SeriesKernel baseline_series_kernel(const SeriesTerms& terms, bool attitude) {
+  return POLHODE_ISA::choose(terms, attitude);
+}
 }  // namespace polhode

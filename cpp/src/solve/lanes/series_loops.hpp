@@ -17,9 +17,9 @@ constexpr auto reciprocals = [] {
   return table;
 }();
 
-/// The products of the recurrences, sum_j left_j right_{n-j}, eight components each. Two rows' sums are made in one pass,
-/// where every factor that was loaded serves both: loads bind here, not sums. From `shared` on the products have one
-/// right factor in common.
+/// The products of the recurrences, sum_j left_j right_{n-j}, eight components each. Two rows' sums are made in one
+/// pass, where every factor that was loaded serves both: loads bind here, not sums. From `shared` on the products have
+/// one right factor in common.
 template <int count, int shared>
 class Products {
  public:
@@ -106,18 +106,21 @@ POLHODE_INLINE Quad negative(Quad v) { return v ^ all4(-0.0); }
 /// The recurrences of Euler's equations, a body's quaternion and what its torques see. Separatrix variables or plain
 /// ones; `attitude`: the second half of y is the quaternion, else a fixed vector if there is one, else nothing.
 ///
-/// A coefficient's way to the next is kept short, since each waits for the one before: the newest terms of every product
-/// are linear in the newest coefficients, with constant factors that are multiplied out while they are on their way.
+/// A coefficient's way to the next is kept short, since each waits for the one before: the newest terms of every
+/// product are linear in the newest coefficients, with constant factors that are multiplied out while they are on their
+/// way.
 template <bool separatrix, bool attitude, int fixed, bool gradient>
 class Expansion {
   static constexpr int vectors = fixed + (gradient ? 2 : 0), kept = vectors > 0 ? vectors : 1;
   // (q times k, rates) with (w3, rates); (q times i, q times j) with (w1, w2); u with itself; vectors with the rates
-  static constexpr int mixed = 0, turn = 1, pair = turn + attitude, carried = pair + gradient, count = carried + vectors;
+  static constexpr int mixed = 0, turn = 1, pair = turn + attitude, carried = pair + gradient,
+                       count = carried + vectors;
 
  public:
   using Rows = Products<count, carried>;
 
-  POLHODE_INLINE Expansion(const SeriesTerms& c, const SeriesStart& start, Rows& products, double* rows) : rows_(rows), damped_(c.damped) {
+  POLHODE_INLINE Expansion(const SeriesTerms& c, const SeriesStart& start, Rows& products, double* rows)
+      : rows_(rows), damped_(c.damped) {
     const Quad H = all4(start.unit), HH = H * H;
     unscale_ = join(all4(1.0 / start.unit), all4(1.0));   // rates leave in their own unit
     product_ = load4(c.product), product_low_ = load4(c.product_low), to_rates_ = load4(c.to_rates);
@@ -147,7 +150,8 @@ class Expansion {
     if constexpr (attitude) {
       times_q_[0] = permute<3, 2, 1, 0>(q_) ^ signs(0), times_q_[1] = permute<2, 3, 0, 1>(q_) ^ signs(1);
       times_q_[2] = permute<1, 0, 3, 2>(q_) ^ signs(2);
-      times_w_[0] = broadcast<0>(w_) ^ signs(0), times_w_[1] = broadcast<1>(w_) ^ signs(1), times_w_[2] = broadcast<2>(w_) ^ signs(2);
+      times_w_[0] = broadcast<0>(w_) ^ signs(0), times_w_[1] = broadcast<1>(w_) ^ signs(1),
+      times_w_[2] = broadcast<2>(w_) ^ signs(2);
     }
   }
 
@@ -193,7 +197,8 @@ class Expansion {
       next_v[fixed + 1] = next_v[fixed + 1] - orbit_ * v_[fixed];
     }
 
-    if constexpr (attitude) advance_attitude<early>(n, low(older[turn]) + high(older[turn]) + low(older[mixed]), inverse);
+    if constexpr (attitude)
+      advance_attitude<early>(n, low(older[turn]) + high(older[turn]) + low(older[mixed]), inverse);
     advance_rates<early>(n, high(older[mixed]), tau, inverse);
     for (int i = 0; i < vectors; ++i) v_[i] = next_v[i] * inverse;
     put(n + 1, products);
@@ -297,7 +302,8 @@ void expand(const SeriesTerms& terms, const SeriesStart& start, int order, doubl
 
 template <bool separatrix>
 SeriesKernel choose(const SeriesTerms& c, bool attitude) {
-  if (!attitude) return c.fixed_vectors == 1 ? &expand<separatrix, false, 1, false> : &expand<separatrix, false, 0, false>;
+  if (!attitude)
+    return c.fixed_vectors == 1 ? &expand<separatrix, false, 1, false> : &expand<separatrix, false, 0, false>;
   if (c.gradient) return c.fixed_vectors > 0 ? &expand<separatrix, true, 2, true> : &expand<separatrix, true, 0, true>;
   if (c.fixed_vectors == 0) return &expand<separatrix, true, 0, false>;
   return c.fixed_vectors == 1 ? &expand<separatrix, true, 1, false> : &expand<separatrix, true, 2, false>;

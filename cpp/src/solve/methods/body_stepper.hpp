@@ -17,10 +17,10 @@ namespace polhode {
 /// for one step of L_P and q_WP, false where it finds no solution, and
 ///   static constexpr bool kick_within   its torque acts inside the step, as h tau in `kick`
 ///   static constexpr int interior       shorter steps that the polynomial between the steps is drawn through
-/// A Step that carries numbers of its own beside L has their count `carried`, `start(w, own)` and `kick(kick, own)`; they
-/// stand behind L. One with `ascending` wants the moments of a triaxial body in that order.
-/// Without kick_within the torque acts between the parts of a step, by `kicks` and `drifts` where Step has them, else
-/// half of it before and half after (Strang 1968, SIAM J. Numer. Anal. 5, 506).
+/// A Step that carries numbers of its own beside L has their count `carried`, `start(w, own)` and `kick(kick, own)`;
+/// they stand behind L. One with `ascending` wants the moments of a triaxial body in that order. Without kick_within
+/// the torque acts between the parts of a step, by `kicks` and `drifts` where Step has them, else half of it before and
+/// half after (Strang 1968, SIAM J. Numer. Anal. 5, 506).
 template <class Step>
 class BodyStepper final : public ode::FixedStepper {
  public:
@@ -34,7 +34,10 @@ class BodyStepper final : public ode::FixedStepper {
   }();
 
   BodyStepper(const Scene& scene, double t0, const double* y0, const ode::Tolerances& tolerances)
-      : FixedStepper(N, segment_size, &evaluate_segment, t0, tolerances.step), body_(scene, tolerances.step, requires { Step::ascending; }), step_(body_, scene),
+      : FixedStepper(N, segment_size, &evaluate_segment, t0, tolerances.step),
+        body_(
+            scene, tolerances.step, requires { Step::ascending; }),
+        step_(body_, scene),
         earlier_(step_) {
     std::copy_n(y0, N, y_);
     body_.enter(y0, L_, q_);
@@ -125,7 +128,8 @@ class BodyStepper final : public ode::FixedStepper {
     std::copy_n(q_, 4, q);
     Step next = step_;
     if (!advance(next, t, h, L, q)) return ode::StepResult::no_solution;
-    if (!std::isfinite(L[0] + L[1] + L[2]) || !std::isfinite(q[0] + q[1] + q[2] + q[3])) return ode::StepResult::not_finite;
+    if (!std::isfinite(L[0] + L[1] + L[2]) || !std::isfinite(q[0] + q[1] + q[2] + q[3]))
+      return ode::StepResult::not_finite;
     std::copy_n(L_, momenta, L_old_);
     std::copy_n(q_, 4, q_old_);
     std::copy_n(L, momenta, L_);

@@ -38,8 +38,9 @@ const BodyMethod buss_method{
         .adaptive = false,
         .cheap = true,
         .keeps = "|L|, L",
-        .doc = "Buss's augmented second-order step: L in space is kept, the energy grows until the body turns about its "
-               "least axis.",
+        .doc =
+            "Buss's augmented second-order step: L in space is kept, the energy grows until the body turns about its "
+            "least axis.",
         .source = "Buss 2000, J. Comput. Phys. 164, 377; JSBSim eBuss2",
     },
     &solve_with<Buss>,

@@ -44,8 +44,10 @@ const BodyMethod catto_method{
         .implicit = true,
         .cheap = true,
         .keeps = "nothing",
-        .doc = "Catto's implicit gyroscopic step, one Newton step of implicit Euler: never bursts, takes energy and |L| away.",
-        .source = "Catto 2015, GDC, Numerical Methods; Bullet computeGyroscopicImpulseImplicit_Body; MuJoCo implicitfast",
+        .doc = "Catto's implicit gyroscopic step, one Newton step of implicit Euler: never bursts, takes energy and "
+               "|L| away.",
+        .source =
+            "Catto 2015, GDC, Numerical Methods; Bullet computeGyroscopicImpulseImplicit_Body; MuJoCo implicitfast",
     },
     &solve_with<Catto>,
 };

@@ -3,8 +3,8 @@
 namespace polhode {
 namespace {
 
-/// The moments J that make the discrete Moser-Veselov step, of order 2 with J = I, one of order 4, 6 or 8: 1/J = s/I + d,
-/// s and d series in C = h^2 |L|^2 / 2 and H = h^2 L.w / 2. Hairer & Vilmart 2006, J. Phys. A 39, 13225, theorem 3.
+/// The moments J that make the discrete Moser-Veselov step, of order 2 with J = I, one of order 4, 6 or 8: 1/J = s/I +
+/// d, s and d series in C = h^2 |L|^2 / 2 and H = h^2 L.w / 2. Hairer & Vilmart 2006, J. Phys. A 39, 13225, theorem 3.
 template <int order>
 void preprocess(const double* I, double h, const double* L, double* J) {
   if constexpr (order == 2) {
@@ -49,7 +49,8 @@ class Dmv {
   Dmv(const PrincipalBody& body, const Scene&) : body_(&body) {}
 
   bool advance(double h, const double*, double* L, double* q) {
-    if (h != h_ || body_->driven()) preprocess<order>(body_->I, h, L, J_);   // its two arguments are kept by a free body
+    if (h != h_ || body_->driven())
+      preprocess<order>(body_->I, h, L, J_);   // its two arguments are kept by a free body
     h_ = h;
     const double g[3] = {(J_[1] - J_[2]) / J_[0], (J_[2] - J_[0]) / J_[1], (J_[0] - J_[1]) / J_[2]};
     const double u[3] = {0.5 * h * L[0] / J_[0], 0.5 * h * L[1] / J_[1], 0.5 * h * L[2] / J_[2]};
@@ -64,7 +65,8 @@ class Dmv {
       x[1] = A * u[1] + g[1] * x[2] * x[0];
       x[2] = A * u[2] + g[2] * x[0] * x[1];
       const double moved = std::abs(x[0] - old[0]) + std::abs(x[1] - old[1]) + std::abs(x[2] - old[2]);
-      if (!std::isfinite(moved)) return !std::isfinite(L[0] + L[1] + L[2]);   // a torque that was no number, or no solution
+      if (!std::isfinite(moved))
+        return !std::isfinite(L[0] + L[1] + L[2]);   // a torque that was no number, or no solution
       if (moved <= 1e-16 * size || (moved < 1e-12 * size && moved >= last)) break;
       last = moved;
     }
@@ -98,9 +100,11 @@ const BodyMethod dmv2_method{
     record_of("dmv2", 2, "The discrete Moser-Veselov step: keeps all a free body keeps; its phase drifts.", moser),
     &solve_with<Dmv<2>>};
 const BodyMethod dmv4_method{
-    record_of("dmv4", 4, "Moser-Veselov with moments prepared for order 4 of a free body.", hairer), &solve_with<Dmv<4>>};
+    record_of("dmv4", 4, "Moser-Veselov with moments prepared for order 4 of a free body.", hairer),
+    &solve_with<Dmv<4>>};
 const BodyMethod dmv6_method{
-    record_of("dmv6", 6, "Moser-Veselov with moments prepared for order 6 of a free body.", hairer), &solve_with<Dmv<6>>};
+    record_of("dmv6", 6, "Moser-Veselov with moments prepared for order 6 of a free body.", hairer),
+    &solve_with<Dmv<6>>};
 const BodyMethod dmv8_method{
     record_of("dmv8", 8, "Moser-Veselov with moments prepared for order 8 of a free body: the best cheap free step.",
               hairer),

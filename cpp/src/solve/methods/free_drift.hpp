@@ -28,7 +28,8 @@ class FreeDrift {
     }
     for (int i = 0; i < 3; ++i) terms_.product[i] = product[i].hi, terms_.product_low[i] = product[i].lo;
     const double lower = I[1] - I[0], upper = I[2] - I[1], both = I[2] - I[0];
-    square_[0] = lower / I[2] * (both / I[1]), square_[1] = lower / I[2] * (upper / I[0]), square_[2] = upper / I[0] * (both / I[1]);
+    square_[0] = lower / I[2] * (both / I[1]), square_[1] = lower / I[2] * (upper / I[0]),
+    square_[2] = upper / I[0] * (both / I[1]);
     kernel_ = find_series_kernel(terms_, true);
   }
 
@@ -85,7 +86,8 @@ class FreeDrift {
   struct Enough {
     double radii[most + 1], turn[most + 1];
     Enough() {
-      for (int n = 1; n <= most; ++n) radii[n] = std::exp2(-64.0 / n), turn[n] = std::exp2((std::lgamma(n + 1.0) / std::log(2.0) - 64) / n);
+      for (int n = 1; n <= most; ++n)
+        radii[n] = std::exp2(-64.0 / n), turn[n] = std::exp2((std::lgamma(n + 1.0) / std::log(2.0) - 64) / n);
     }
   };
   static inline const Enough enough;

@@ -74,7 +74,8 @@ std::string refuse(const Scene& scene) {
   const Matrix3d& I = scene.inertia_B().matrix();
   if (!scene.inertia_B().is_diagonal() || I(0, 0) != I(1, 1)) return "another body";
   if (std::isnan(find_weight_arm(scene))) return "another torque";
-  const double s = std::hypot(scene.attitude().x, scene.attitude().y) * std::hypot(scene.attitude().z, scene.attitude().w);
+  const double s =
+      std::hypot(scene.attitude().x, scene.attitude().y) * std::hypot(scene.attitude().z, scene.attitude().w);
   return s > 0.5e-8 ? "" : "a start at theta = 0 or pi";
 }
 
@@ -89,7 +90,8 @@ const BodyMethod leapfrog_method{
         .cheap = true,
         .keeps = "L_z",
         .needs = "I1 = I2 about body z, no torque but gravity along it, and theta away from 0 and pi",
-        .doc = "Leapfrog in the textbook's z-x-z angles: p_phi and p_psi are kept, the energy's error stays bounded, until "
+        .doc = "Leapfrog in the textbook's z-x-z angles: p_phi and p_psi are kept, the energy's error stays bounded, "
+               "until "
                "theta nears 0 or pi.",
         .source = "Goldstein, Classical Mechanics, sec. 5.7; Hairer, Lubich & Wanner 2003, Acta Numerica 12, 399",
     },

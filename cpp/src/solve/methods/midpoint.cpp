@@ -33,7 +33,8 @@ class Midpoint {
       const Vector3d change = J.inverse() * Vector3d{M[0] + g[0] - b[0], M[1] + g[1] - b[1], M[2] + g[2] - b[2]};
       for (int i = 0; i < 3; ++i) x[i] -= change[i];
       const double moved = std::abs(change[0]) + std::abs(change[1]) + std::abs(change[2]);
-      if (!std::isfinite(moved)) return !std::isfinite(L[0] + L[1] + L[2]);   // a torque that was no number, or no solution
+      if (!std::isfinite(moved))
+        return !std::isfinite(L[0] + L[1] + L[2]);   // a torque that was no number, or no solution
       if (moved <= 1e-9 * size) break;   // Newton squares it: what is left is below rounding
     }
     const double M[3] = {I[0] * x[0], I[1] * x[1], I[2] * x[2]}, p[4] = {x[0], x[1], x[2], 1.0};
@@ -60,7 +61,8 @@ const BodyMethod midpoint_method{
         .implicit = true,
         .keeps = "energy, |L|, L",
         .doc = "The implicit midpoint rule in the angular momentum: keeps what a free body keeps, its phase drifts.",
-        .source = "Austin, Krishnaprasad & Wang 1993, J. Comput. Phys. 107, 105; Lewis & Simo 1994, J. Nonlinear Sci. 4, 253",
+        .source =
+            "Austin, Krishnaprasad & Wang 1993, J. Comput. Phys. 107, 105; Lewis & Simo 1994, J. Nonlinear Sci. 4, 253",
     },
     &solve_with<Midpoint>,
 };

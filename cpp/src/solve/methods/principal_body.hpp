@@ -8,8 +8,8 @@
 
 namespace polhode {
 
-/// A body in principal axes P and in units of its own: the largest moment and a step's length lie in [1, 2), both scaled
-/// by powers of two, so that scales change no bit and no formula runs out of range.
+/// A body in principal axes P and in units of its own: the largest moment and a step's length lie in [1, 2), both
+/// scaled by powers of two, so that scales change no bit and no formula runs out of range.
 class PrincipalBody {
  public:
   /// @param ascending  the principal axes in the order of their moments, where these differ
@@ -120,8 +120,17 @@ inline void exponential(const double* r, double* p) {
   const double x = 0.25 * (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);   // the half angle, squared
   double s;
   if (x < 0.25) {   // sin and cos by their series, to rounding
-    s = 0.5 * (1 - x * (1.0 / 6) * (1 - x * (1.0 / 20) * (1 - x * (1.0 / 42) * (1 - x * (1.0 / 72) * (1 - x * (1.0 / 110) * (1 - x * (1.0 / 156) * (1 - x * (1.0 / 210))))))));
-    p[3] = 1 - x * (1.0 / 2) * (1 - x * (1.0 / 12) * (1 - x * (1.0 / 30) * (1 - x * (1.0 / 56) * (1 - x * (1.0 / 90) * (1 - x * (1.0 / 132) * (1 - x * (1.0 / 182)))))));
+    s = 0.5 *
+        (1 - x * (1.0 / 6) *
+                 (1 - x * (1.0 / 20) *
+                          (1 - x * (1.0 / 42) *
+                                   (1 - x * (1.0 / 72) *
+                                            (1 - x * (1.0 / 110) * (1 - x * (1.0 / 156) * (1 - x * (1.0 / 210))))))));
+    p[3] = 1 - x * (1.0 / 2) *
+                   (1 - x * (1.0 / 12) *
+                            (1 - x * (1.0 / 30) *
+                                     (1 - x * (1.0 / 56) *
+                                              (1 - x * (1.0 / 90) * (1 - x * (1.0 / 132) * (1 - x * (1.0 / 182)))))));
   } else {
     const double half = std::sqrt(x);
     s = 0.5 * std::sin(half) / half;

@@ -16,13 +16,15 @@ using ode::StepResult;
 double sum3(const double* v) { return std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]); }
 
 /// Radau IIA of order 5 for the rate variables r, its Newton steps in systems of three equations; the attitude follows
-/// from the collocation polynomial r(s) by Magnus' expansion, at the end of a step, at its stages and between them alike.
+/// from the collocation polynomial r(s) by Magnus' expansion, at the end of a step, at its stages and between them
+/// alike.
 class RadauStepper final : public ode::Stepper {
  public:
   static constexpr int N = radau::Body::N;
   static constexpr int segment_size = 2 + 12 + 4;   ///< h, half_over_k, the cubic r(s), q at the start of the step
 
-  RadauStepper(const radau::Body& body, const Scene& scene, bool with_attitude, const double* y0, double t_end, const ode::Tolerances& tolerances)
+  RadauStepper(const radau::Body& body, const Scene& scene, bool with_attitude, const double* y0, double t_end,
+               const ode::Tolerances& tolerances)
       : Stepper(N, segment_size, &evaluate_segment, scene.t0()),
         body_(body),
         control_(3),
@@ -62,7 +64,8 @@ class RadauStepper final : public ode::Stepper {
       const double rest = t_end - t_;
       const bool last = std::abs(h_) * 1.01 >= std::abs(rest);
       const double h = last ? rest : h_;
-      const double least = last ? std::numeric_limits<double>::min() : 8 * std::numeric_limits<double>::epsilon() * std::abs(t_);
+      const double least =
+          last ? std::numeric_limits<double>::min() : 8 * std::numeric_limits<double>::epsilon() * std::abs(t_);
       if (!(std::abs(h) > least)) return finite ? StepResult::underflow : StepResult::not_finite;
       double Z[3][3];
       body_.compute_sizes(h, y_, f_, size_);
@@ -136,7 +139,8 @@ class RadauStepper final : public ode::Stepper {
     guess(h, Z);
     double W[3][3];
     for (int k = 0; k < 3; ++k)
-      for (int i = 0; i < 3; ++i) W[k][i] = T_inverse[k][0] * Z[0][i] + T_inverse[k][1] * Z[1][i] + T_inverse[k][2] * Z[2][i];
+      for (int i = 0; i < 3; ++i)
+        W[k][i] = T_inverse[k][0] * Z[0][i] + T_inverse[k][1] * Z[1][i] + T_inverse[k][2] * Z[2][i];
     // What the rounding of r' leaves in an iteration, as its linear systems spread it: no further one gets below.
     double rounding[3], noise[3];
     for (int i = 0; i < 3; ++i) {
@@ -166,7 +170,8 @@ class RadauStepper final : public ode::Stepper {
       Complex bc[3], pair[3];
       for (int i = 0; i < 3; ++i) {
         double G[3];
-        for (int k = 0; k < 3; ++k) G[k] = h * (T_inverse[k][0] * F[0][i] + T_inverse[k][1] * F[1][i] + T_inverse[k][2] * F[2][i]);
+        for (int k = 0; k < 3; ++k)
+          G[k] = h * (T_inverse[k][0] * F[0][i] + T_inverse[k][1] * F[1][i] + T_inverse[k][2] * F[2][i]);
         b[i] = G[0] - mu_real * W[0][i];
         bc[i] = Complex{G[1], G[2]} - Complex{mu_re, mu_im} * Complex{W[1][i], W[2][i]};
       }
@@ -189,7 +194,8 @@ class RadauStepper final : public ode::Stepper {
       if (last >= 0.0) {
         const double rate = now / last;
         if (rate < 1.0 && rate / (1 - rate) * now < newton_tolerance_) return Newton::converged;
-        if (rate >= 1.0 || std::pow(rate, most_iterations_ - n) / (1 - rate) * now > newton_tolerance_) return Newton::diverged;
+        if (rate >= 1.0 || std::pow(rate, most_iterations_ - n) / (1 - rate) * now > newton_tolerance_)
+          return Newton::diverged;
       }
       last = now;
     }
@@ -230,7 +236,9 @@ class RadauStepper final : public ode::Stepper {
     // As plain rates are measured by their sum: max(|u|, |v|) is |w3| + k |w1|. What is no number must not hide in it.
     return (u > v || u != u ? u : v) + ratio(error[2], std::max(size_[2], std::max(end[0], end[1]) + end[2]));
   }
-  double ratio(double error, double size) const { return error == 0.0 ? 0.0 : std::abs(error) / (rtol_ * size + atol_); }
+  double ratio(double error, double size) const {
+    return error == 0.0 ? 0.0 : std::abs(error) / (rtol_ * size + atol_);
+  }
 
   /// The error of the embedded formula in units of what is allowed, of the rates and of the turn.
   double estimate(double h, const double (&Z)[3][3], const double* c, bool again) {
@@ -304,10 +312,14 @@ const BodyMethod radau_method{
         .adaptive = true,
         .implicit = true,
         .keeps = "nothing",
-        .doc = "Radau IIA of order 5 for the rates, the attitude by Magnus' expansion: for stiff damping, where explicit "
-               "steps are bound by stability.",
+        .doc =
+            "Radau IIA of order 5 for the rates, the attitude by Magnus' expansion: for stiff damping, where explicit "
+            "steps are bound by stability.",
         .source = "Hairer & Wanner 1996, Solving ODEs II, sec. IV.8; Blanes, Casas & Ros 2000, BIT 40, 434",
-        .forecast = {.error_per_turn = 0.5, .floor_per_turn = 1e-15, .steps_per_radian = 0.21, .power = 0.165,
+        .forecast = {.error_per_turn = 0.5,
+                     .floor_per_turn = 1e-15,
+                     .steps_per_radian = 0.21,
+                     .power = 0.165,
                      .step_seconds = 4.5e-7},
     },
     &solve_radau,

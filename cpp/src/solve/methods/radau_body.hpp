@@ -90,12 +90,13 @@ class Body {
     if (!all_.torques.empty()) add_torques(t, y, f);
   }
 
-  /// Its derivative by the rate variables, f = f(t, y) and `change` a small change of them; Newton only needs it nearly.
-  /// The count of right-hand sides it took.
+  /// Its derivative by the rate variables, f = f(t, y) and `change` a small change of them; Newton only needs it
+  /// nearly. The count of right-hand sides it took.
   int compute_jacobian(double t, const double* y, const double* f, double change, double (&J)[3][3]) const {
     if (separatrix_ && linear_) {
       const double rate = separatrix_->rate().hi, twice = 2 * separatrix_->middle().hi;
-      const double free[3][3] = {{rate * y[2], 0, rate * y[0]}, {0, -rate * y[2], -rate * y[1]}, {-twice * y[0], twice * y[1], 0}};
+      const double free[3][3] = {
+          {rate * y[2], 0, rate * y[0]}, {0, -rate * y[2], -rate * y[1]}, {-twice * y[0], twice * y[1], 0}};
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) J[i][j] = free[i][j] + damping_[i][j];
       return 0;
@@ -121,7 +122,8 @@ class Body {
     const double least = 0x1p-200 * all, turn = separatrix_->rate().hi * y[2];
     for (int i = 0; i < 2; ++i) {
       const double driven = std::abs(f[i] - (i == 0 ? turn : -turn) * y[i]);
-      const double damped = std::abs(damping_[i][0] * y[0]) + std::abs(damping_[i][1] * y[1]) + std::abs(damping_[i][2] * y[2]);
+      const double damped =
+          std::abs(damping_[i][0] * y[0]) + std::abs(damping_[i][1] * y[1]) + std::abs(damping_[i][2] * y[2]);
       size[i] = std::clamp(std::abs(h) * std::max(driven, damped), std::max(std::abs(y[i]), least), all);
     }
   }

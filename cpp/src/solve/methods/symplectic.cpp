@@ -102,7 +102,8 @@ const BodyMethod symplectic_method{
         .adaptive = false,
         .keeps = "energy, |L|, L",
         .needs = "torques that do not see the rates",
-        .doc = "Splitting into the exact free motion and kicks by the torque, at a fixed step: a symplectic map, so that the "
+        .doc = "Splitting into the exact free motion and kicks by the torque, at a fixed step: a symplectic map, so "
+               "that the "
                "energy's error stays bounded.",
         .source = "Blanes & Moan 2002, J. Comput. Appl. Math. 142, 313 (SRKN6b)",
     },
