@@ -22,7 +22,7 @@ from measures import error, truth  # noqa: E402
 import polhode as ph  # noqa: E402
 
 LEVELS = (1e-3, 1e-6, 1e-9, 1e-12)
-SETTINGS = 10.0 ** -np.arange(1, 16.5, 0.5)
+SETTINGS = 10.0 ** -np.arange(1, 16.25, 0.25)
 
 
 def make_heyoka(name):
