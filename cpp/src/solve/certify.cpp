@@ -20,6 +20,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t least_samples = 8;   // fewer differences may be small by chance
 constexpr int pieces = 48;                 // of the span, to count its turns
+constexpr double chaotic_safety = 2.5;     // where a first run has lost more than is asked
 constexpr double hopeless = 30.0;          // times the accuracy: a run that has lost as much is not worth its end
 
 Scene with_times(const Scene& scene, std::vector<double> times, const Wanted& want) {
@@ -138,6 +139,7 @@ class Certifier {
         // What grew so much in a part of the span may grow as much again in each other part of its length.
         const double parts = std::min(facts_.span() / trace.given_up, 4.0);
         rtol = std::max(rtol / std::pow(10 * hopeless, parts), least);
+        safety_ = std::max(safety_, chaotic_safety);
         continue;
       }
       const double error = motion.error;
@@ -147,7 +149,10 @@ class Certifier {
         kept_parting_ = parting_;
       }
       if (ended || error <= plan_.accuracy || last) return conclude();
-      rtol = stalled ? least : std::max(rtol / std::clamp(2 * error / plan_.accuracy, 10.0, 1e8), least);
+      // A motion that multiplies its errors shows how much in a run at its own tolerance, not to the last digit.
+      const double wider = std::max(1.0, chaotic_safety / safety_);
+      safety_ *= wider;
+      rtol = stalled ? least : std::max(rtol / std::clamp(2 * wider * error / plan_.accuracy, 10.0, 1e8), least);
     }
   }
 
