@@ -188,6 +188,17 @@ def test_start_time_shifts_a_torque_that_sees_time():
     assert abs(late.omega[1, 2] - (np.sin(4) - np.sin(2))) < 1e-10
 
 
+@pytest.mark.parametrize("method", ["rk45", "dop853", "radau"])
+@pytest.mark.parametrize("rate", [1e-13, 1e-16])
+def test_next_to_rest_far_from_zero_the_first_step_is_one_that_time_can_take(method, rate):
+    """Steps as short as such rates ask for are below the spacing of the times around 1000 s."""
+    push = ph.torques.Constant((0.1, 0.2, 0.3))
+    one = ph.Scene(inertia=(1, 2, 2.5), omega=(rate, 0, 0), torques=[push], t0=1000.0, times=np.linspace(1000, 1010, 11))
+    motion, known = ph.solve(one, method=method, rtol=1e-9), ph.solve(one, method="taylor", rtol=1e-13)
+    assert motion.status == "finished"
+    assert np.abs(motion.omega - known.omega).max() < 1e-7
+
+
 # ---- scales
 
 

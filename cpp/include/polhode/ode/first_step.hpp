@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "polhode/ode/problem.hpp"
 
 namespace polhode::ode {
+
+/// Shorter first steps would be lost in the spacing of the times: rates next to nothing, far from t = 0, ask for such.
+inline double shortest_first_step(double t) { return 64 * std::numeric_limits<double>::epsilon() * std::abs(t); }
 
 /// The first step of a method of this order, from the size of y' and y''. After Hairer, Norsett, Wanner 1993, Solving
 /// ODEs I, sec. II.4, made free of the unit of time: all is measured against tau, the time in which y changes by its
@@ -30,7 +34,7 @@ double choose_first_step(const P& problem, const Tolerances& tolerances, int ord
   const double d2 = norm_of(change, y1);
   const double size = std::max(d0, d2 * tau * tau);
   const double h1 = std::isfinite(size) && size > 0 ? tau * std::pow(0.01 / size, 1.0 / order) : h0;
-  return direction * std::min({100 * h0, h1, span});
+  return direction * std::min(std::max(std::min(100 * h0, h1), shortest_first_step(t)), span);
 }
 
 }  // namespace polhode::ode

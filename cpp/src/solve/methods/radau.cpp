@@ -2,6 +2,7 @@
 #include <limits>
 #include <memory>
 
+#include "polhode/ode/first_step.hpp"
 #include "polhode/ode/step_control.hpp"
 #include "solve/methods/body_method.hpp"
 #include "solve/methods/magnus.hpp"
@@ -276,7 +277,7 @@ class RadauStepper final : public ode::Stepper {
     body_.compute_sizes(0.0, y_, f_, size);
     for (int i = 0; i < 3; ++i) rate += size[i] > 0.0 ? std::abs(f_[i]) / size[i] : 0.0;
     const double first = rate > 0 ? 0.01 / rate : 1e-3 * std::abs(span);
-    return std::copysign(std::min(first, std::abs(span)), span);
+    return std::copysign(std::min(std::max(first, ode::shortest_first_step(t_)), std::abs(span)), span);
   }
 
   static constexpr int most_iterations_ = 12;
