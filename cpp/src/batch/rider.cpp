@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "polhode/core/error.hpp"
+#include "solve/answered.hpp"
 
 namespace polhode {
 
@@ -97,18 +98,6 @@ void Rider::fail(Status status, const std::string& why, const char* when) {
   legs_ = 2;
 }
 
-void Rider::finish() {
-  const std::vector<double>& times = scene_.times();
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    if (!answered_[i]) continue;
-    motion_.t.push_back(times[i]);
-    if (scene_.want().omega) std::copy_n(motion_.omega.data() + 3 * i, 3, motion_.omega.data() + 3 * kept);
-    if (scene_.want().attitude) std::copy_n(motion_.attitude.data() + 4 * i, 4, motion_.attitude.data() + 4 * kept);
-    ++kept;
-  }
-  if (scene_.want().omega) motion_.omega.resize(3 * kept);
-  if (scene_.want().attitude) motion_.attitude.resize(4 * kept);
-}
+void Rider::finish() { keep_answered(scene_.times(), answered_, motion_); }
 
 }  // namespace polhode

@@ -89,8 +89,7 @@ void BodySeries::find_invariants(const Scene& scene) {
   using Sees = SeriesInvariants::Sees;
   vertical_ = !attitude_ && moment_P_ != Vector3d::Zero();
   const Sees sees = attitude_ ? Sees::attitude : vertical_ ? Sees::vertical : Sees::nothing;
-  const DD half_over_k = terms_.variables == RateVariables::separatrix ? Separatrix(I_).half_over_k() : DD(0.0);
-  invariants_ = SeriesInvariants(scene, terms_, I_, moment_P_, gradients_, orbit_phase_, half_over_k, sees);
+  invariants_ = SeriesInvariants(scene, terms_, I_, moment_P_, gradients_, orbit_phase_, half_over_k_, sees);
   invariants_.start(scene.t0(), start_, start_carry_);
 }
 
@@ -99,7 +98,8 @@ void BodySeries::choose_variables(const Vector3d& w) {
   if (!separatrix.suits(w)) return;
   k_ = separatrix.k().hi;
   terms_.variables = RateVariables::separatrix;
-  terms_.to_rates[0] = separatrix.half_over_k().hi, terms_.to_rates[1] = 1.0, terms_.to_rates[2] = 0.5;
+  half_over_k_ = separatrix.half_over_k();
+  terms_.to_rates[0] = half_over_k_.hi, terms_.to_rates[1] = 1.0, terms_.to_rates[2] = 0.5;
   const DD product[3] = {separatrix.rate(), -separatrix.rate(), separatrix.middle()};
   for (int i = 0; i < 3; ++i) terms_.product[i] = product[i].hi, terms_.product_low[i] = product[i].lo;
   separatrix.from_rates(w.data(), start_, start_carry_);

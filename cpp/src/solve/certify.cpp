@@ -85,10 +85,7 @@ class Certifier {
              ode::ErrorTrace* trace = nullptr) {
     const RunOptions how{options, {rtol, options.atol.value_or(find_atol(method_.record, scene_, rtol))}, trace};
     Motion motion = plan_.pieces.empty() ? method_.solve(scene, how) : run_by_plan(scene, how, plan_, moved);
-    stats_.steps += motion.stats.steps;
-    stats_.rejected += motion.stats.rejected;
-    stats_.derivatives += motion.stats.derivatives;
-    stats_.events += motion.stats.events;
+    stats_ += motion.stats;
     ++runs_;
     return motion;
   }

@@ -85,8 +85,8 @@ std::optional<PiecesPlan> plan_damped(const Scene& scene, const Facts& facts, co
   const double radian = price(first, coarse), implicit_radian = price(second, coarse * scale);
   const double stable =
       radian / (explicitly.steps_per_radian * std::pow(coarse, -explicitly.power)) * facts.decay / explicitly.stability;
-  const double start_up =
-      30 * implicit_radian / (implicitly.steps_per_radian * std::pow(coarse * scale, -implicitly.power));
+  const double step = implicit_radian / (implicitly.steps_per_radian * std::pow(coarse * scale, -implicitly.power));
+  const double start_up = 30 * step;
   const double all = story->work.back(), end = scene.t0() + facts.after;
 
   double best = std::numeric_limits<double>::infinity(), when = end, spent = 0.0, t = scene.t0(), work = 0.0,
@@ -98,7 +98,6 @@ std::optional<PiecesPlan> plan_damped(const Scene& scene, const Facts& facts, co
     if (t < end && total < best) best = total, when = t, before = spent;
   }
   // Turns about a principal axis cost Radau's rates no steps: the loose run has counted those that are needed.
-  const double step = implicit_radian / (implicitly.steps_per_radian * std::pow(coarse * scale, -implicitly.power));
   const double counted = step * story->steps * std::pow(coarse * scale / loose_rtol, -implicitly.power);
   const double taylor_alone = spent + (end - t) * stable,
                radau_alone = std::min(all * implicit_radian + start_up, counted);

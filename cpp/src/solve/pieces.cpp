@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "polhode/core/error.hpp"
+#include "solve/answered.hpp"
 #include "solve/itinerary.hpp"
 #include "solve/perturb.hpp"
 #include "solve/spot_check.hpp"
@@ -90,17 +91,7 @@ class Chain {
   }
 
   Motion finish() {
-    std::size_t kept = 0;
-    const Wanted want = scene_.want();
-    for (std::size_t i = 0; i < answered_.size(); ++i) {
-      if (!answered_[i]) continue;
-      motion_.t.push_back(scene_.times()[i]);
-      if (want.omega) std::copy_n(motion_.omega.data() + 3 * i, 3, motion_.omega.data() + 3 * kept);
-      if (want.attitude) std::copy_n(motion_.attitude.data() + 4 * i, 4, motion_.attitude.data() + 4 * kept);
-      ++kept;
-    }
-    if (want.omega) motion_.omega.resize(3 * kept);
-    if (want.attitude) motion_.attitude.resize(4 * kept);
+    keep_answered(scene_.times(), answered_, motion_);
     return std::move(motion_);
   }
 
@@ -114,10 +105,7 @@ class Chain {
   }
 
   void add(const Motion& one) {
-    motion_.stats.steps += one.stats.steps;
-    motion_.stats.rejected += one.stats.rejected;
-    motion_.stats.derivatives += one.stats.derivatives;
-    motion_.stats.events += one.stats.events;
+    motion_.stats += one.stats;
     motion_.events.insert(motion_.events.end(), one.events.begin(), one.events.end());
     if (!std::isnan(one.error))
       motion_.error = std::isnan(motion_.error) ? one.error : std::max(one.error, motion_.error);
@@ -254,12 +242,17 @@ std::string describe_span(const Piece& piece) {
          " s";
 }
 
+bool carries_attitude(const Scene& scene, const Pieces& pieces, const SolveOptions& options) {
+  bool uses = scene.want().attitude || !options.events.empty();
+  for (const auto* one_way : {&pieces.backward, &pieces.forward}) {
+    for (const Piece& piece : *one_way) uses |= summarize(piece.torques).uses_attitude;
+  }
+  return uses;
+}
+
 Motion run_pieces(const Scene& scene, const Pieces& pieces, const SolveOptions& options, const RunPiece& run,
                   bool shaken) {
-  Wanted want{true, scene.want().attitude || !options.events.empty()};
-  for (const auto* one_way : {&pieces.backward, &pieces.forward}) {
-    for (const Piece& piece : *one_way) want.attitude |= summarize(piece.torques).uses_attitude;
-  }
+  const Wanted want{true, carries_attitude(scene, pieces, options)};
   Chain chain(scene, options, run, shaken);
   const Itinerary itinerary(scene.times(), scene.t0());
   if (chain.follow(pieces.backward, itinerary.backward, want)) chain.follow(pieces.forward, itinerary.forward, want);

@@ -35,6 +35,9 @@ Scene make_piece_scene(const Scene& scene, const Piece& piece, const State& star
 /// The same scene without windows, where none ends within the span: each torque acts all the time or not at all.
 Scene drop_windows(const Scene& scene);
 
+/// Whether anybody wants the attitude, or any piece's torques see it: then all pieces carry it.
+bool carries_attitude(const Scene& scene, const Pieces& pieces, const SolveOptions& options);
+
 /// "from t = 10 to 20 s"
 std::string describe_span(const Piece& piece);
 

@@ -46,7 +46,7 @@ class Planner {
     PiecesPlan made;
     made.plan = {.model = options_.formulation == Formulation::euler ? "pieces" : "lagrangian",
                  .method = main_ == nullptr ? "exact" : std::string(main_->name),
-                 .state = carries_attitude() ? "omega, attitude" : "omega",
+                 .state = carries_attitude(scene_, pieces_, options_) ? "omega, attitude" : "omega",
                  .accuracy = get_accuracy(options_),
                  .certify = options_.certify,
                  .predicted_seconds = 0.0};
@@ -80,14 +80,6 @@ class Planner {
                            "no closed form is known for it; leave method out");
       }
     }
-  }
-
-  bool carries_attitude() const {
-    bool uses = scene_.want().attitude || !options_.events.empty();
-    for (const auto* one_way : {&pieces_.backward, &pieces_.forward}) {
-      for (const Piece& piece : *one_way) uses |= summarize(piece.torques).uses_attitude;
-    }
-    return uses;
   }
 
   /// A loose run; what it did not reach is planned from the scene's start.

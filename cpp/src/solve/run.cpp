@@ -6,6 +6,7 @@
 
 #include "polhode/core/error.hpp"
 #include "polhode/ode/drive.hpp"
+#include "solve/answered.hpp"
 #include "solve/itinerary.hpp"
 
 namespace polhode {
@@ -84,11 +85,7 @@ Motion run(const Scene& scene, const SolveOptions& options, const double* y0, co
                           options.progress});
     for (const ode::EventHit& hit : result.hits) motion.events.push_back({hit.event, to_state(hit.t, hit.y.data())});
     dense = std::move(result.dense);
-    const ode::Counts& counts = stepper->counts();
-    motion.stats.steps += counts.steps;
-    motion.stats.rejected += counts.rejected;
-    motion.stats.derivatives += counts.derivatives;
-    motion.stats.events += counts.events;
+    motion.stats += stepper->counts();
     motion.t_reached = result.t;
     using ode::Ending;
     const std::string when = " at t = " + polhode::to_text(result.t) + " s";
@@ -124,23 +121,7 @@ Motion run(const Scene& scene, const SolveOptions& options, const double* y0, co
   const Itinerary itinerary(times, scene.t0());
   if (one_way(itinerary.backward, motion.dense_backward)) one_way(itinerary.forward, motion.dense_forward);
 
-  if (std::find(answered.begin(), answered.end(), 0) == answered.end()) {
-    motion.t = times;
-    return motion;
-  }
-  // Rows that were not reached are left out.
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    if (!answered[i]) continue;
-    motion.t.push_back(times[i]);
-    if (kept != i) {
-      if (want.omega) std::copy_n(motion.omega.data() + 3 * i, 3, motion.omega.data() + 3 * kept);
-      if (want.attitude) std::copy_n(motion.attitude.data() + 4 * i, 4, motion.attitude.data() + 4 * kept);
-    }
-    ++kept;
-  }
-  if (want.omega) motion.omega.resize(3 * kept);
-  if (want.attitude) motion.attitude.resize(4 * kept);
+  keep_answered(times, answered, motion);
   return motion;
 }
 

@@ -30,6 +30,12 @@ struct Counts {
   long derivatives = 0;     ///< right-hand sides
   long events = 0;          ///< evaluations of event functions
   double seconds = 0.0;     ///< wall time of the whole run
+
+  Counts& operator+=(const Counts& more) {
+    steps += more.steps, rejected += more.rejected, derivatives += more.derivatives, events += more.events;
+    seconds += more.seconds;
+    return *this;
+  }
 };
 
 }  // namespace polhode::ode

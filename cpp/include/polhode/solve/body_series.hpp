@@ -83,6 +83,7 @@ class BodySeries {
   bool turned_ = false, attitude_ = true;
   Vector3d I_ = Vector3d::Zero();
   double k_ = 0.0;
+  math::DD half_over_k_;                   ///< 1 / 2k without its rounding; 0: plain rates
   bool free_ = false;                      ///< no torque, and separatrix variables: `kept_` holds
   double balance_ = 0.0;
   math::DD kept_[2];
