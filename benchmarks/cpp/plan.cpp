@@ -16,7 +16,7 @@ double measure(const Scene& scene) {
   for (int repeat = 0; repeat < 200; ++repeat) {
     const auto begin = Clock::now();
     for (int i = 0; i < 50; ++i) {
-      const Plan plan = make_plan(scene, compute_facts(scene), options);
+      const Plan plan = make_plan(scene, options);
       if (plan.method.empty()) std::puts("no plan");
     }
     const double seconds = std::chrono::duration<double>(Clock::now() - begin).count() / 50;

@@ -1,5 +1,5 @@
 #include "bind.hpp"
-#include "polhode/solve/methods.hpp"
+#include "polhode/method/methods.hpp"
 
 namespace polhode::python {
 

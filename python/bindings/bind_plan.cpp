@@ -45,7 +45,7 @@ py::dict make_report(const Scene& scene, const py::object& accuracy, const py::o
         py::make_tuple(one.name, one.exact, one.why_not, one.predicted_error, one.predicted_seconds, one.rtol));
   }
   py::dict all;
-  all["plan"] = describe_plan(report.plan);
+  all["plan"] = describe_plan(report.plan, report.plan.state, report.plan.rtol);
   all["facts"] = describe_facts(report.facts);
   all["candidates"] = candidates;
   all["reasons"] = py::cast(report.reasons);
@@ -55,13 +55,13 @@ py::dict make_report(const Scene& scene, const py::object& accuracy, const py::o
 
 }  // namespace
 
-py::tuple describe_plan(const Plan& plan) {
+py::tuple describe_plan(const Plan& plan, const std::string& state, double rtol) {
   py::list pieces;
   for (const PiecePlan& one : plan.pieces) {
     pieces.append(py::make_tuple(one.begin, one.end, py::tuple(py::cast(one.torques)), one.model, one.method, one.turns,
                                  one.predicted_seconds));
   }
-  return py::make_tuple(plan.model, plan.method, plan.state, plan.accuracy, plan.certify, plan.rtol,
+  return py::make_tuple(plan.model, plan.method, state, plan.accuracy, plan.certify, rtol,
                         plan.predicted_error, plan.predicted_seconds, py::tuple(pieces));
 }
 

@@ -18,7 +18,7 @@ struct Factors {
 };
 
 /// A plan's parts, in the order of the constructor of polhode.Plan.
-py::tuple describe_plan(const Plan& plan);
+py::tuple describe_plan(const Plan& plan, const std::string& state, double rtol);
 
 /// What a plan is made of, from Python.
 SolveOptions to_wishes(const py::object& accuracy, const py::object& method, bool certify,

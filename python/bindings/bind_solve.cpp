@@ -8,9 +8,9 @@
 #include "convert.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/solve/invariants.hpp"
-#include "polhode/solve/lagrangian_problem.hpp"
-#include "polhode/solve/euler_problem.hpp"
-#include "polhode/solve/methods.hpp"
+#include "polhode/method/lagrangian_problem.hpp"
+#include "polhode/method/euler_problem.hpp"
+#include "polhode/method/methods.hpp"
 #include "polhode/solve/reference.hpp"
 #include "polhode/solve/solve.hpp"
 
@@ -121,7 +121,7 @@ void bind_solve(py::module_& m) {
       .def_property_readonly("message", [](const Answer& answer) { return answer.motion.message; })
       .def_property_readonly("stats", [](const Answer& answer) { return describe_stats(answer.motion); })
       .def_property_readonly("events", [](const Answer& answer) { return describe_events(answer.motion); })
-      .def_property_readonly("plan", [](const Answer& answer) { return describe_plan(answer.motion.plan); })
+      .def_property_readonly("plan", [](const Answer& answer) { const Motion& motion = answer.motion; return describe_plan(motion.plan, motion.state, motion.rtol_used); })
       .def_property_readonly("error", [](const Answer& answer) { return answer.motion.error; })
       .def_property_readonly("error_kind", [](const Answer& answer) { return answer.motion.error_kind; })
       .def_property_readonly("asked", [](const Answer& answer) { return answer.motion.asked; })

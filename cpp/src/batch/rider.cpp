@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "method/samples.hpp"
 #include "polhode/core/error.hpp"
-#include "solve/answered.hpp"
 
 namespace polhode {
 
@@ -19,7 +19,8 @@ Rider::Rider(Scene scene, const LaneMethod& method)
   if (scene_.want().omega) motion_.omega.resize(3 * n);
   if (scene_.want().attitude) motion_.attitude.resize(4 * n);
   motion_.start = scene_.start(), motion_.t_reached = scene_.t0();
-  motion_.plan = {"euler", std::string(method.record.name), body_->describe_state()};
+  motion_.model = "euler", motion_.state = body_->describe_state();
+  motion_.plan = {"euler", std::string(method.record.name), motion_.state};
 }
 
 bool Rider::board(LaneTeam& team, int lane) {
@@ -98,6 +99,6 @@ void Rider::fail(Status status, const std::string& why, const char* when) {
   legs_ = 2;
 }
 
-void Rider::finish() { keep_answered(scene_.times(), answered_, motion_); }
+void Rider::finish() { drop_unreached(scene_.times(), answered_, motion_); }
 
 }  // namespace polhode

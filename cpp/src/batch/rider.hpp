@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "batch/lane_method.hpp"
+#include "method/samples.hpp"
 #include "polhode/solve/motion.hpp"
-#include "solve/itinerary.hpp"
 
 namespace polhode {
 
@@ -41,7 +41,7 @@ class Rider {
   Scene scene_;
   std::unique_ptr<LaneBody> body_;
   std::string kind_;
-  Itinerary itinerary_;
+  SampleOrder itinerary_;
   Motion motion_;
   std::vector<unsigned char> answered_;
   const std::vector<std::size_t>* leg_ = nullptr;

@@ -6,10 +6,10 @@
 #include "batch/lane_method.hpp"
 #include "batch/lanes/rk45_block.hpp"
 #include "polhode/core/simd.hpp"
+#include "polhode/method/euler_problem.hpp"
 #include "polhode/ode/first_step.hpp"
 #include "polhode/ode/rk45.hpp"
 #include "polhode/ode/step_control.hpp"
-#include "polhode/solve/euler_problem.hpp"
 
 namespace polhode {
 namespace {

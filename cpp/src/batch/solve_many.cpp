@@ -11,9 +11,8 @@
 #include "batch/ride.hpp"
 #include "polhode/batch/parallel.hpp"
 #include "polhode/core/error.hpp"
-#include "solve/checked_options.hpp"
+#include "solve/options.hpp"
 #include "solve/pieces.hpp"
-#include "solve/planning.hpp"
 
 namespace polhode {
 namespace {
@@ -96,7 +95,7 @@ std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeS
   const std::size_t threads_there = thread_count(threads, n, 2);
   const std::size_t chunk = std::clamp<std::size_t>(n / (2 * threads_there), 64, 512);
   const auto side_by_side = [&](std::size_t, std::size_t) {
-    const CheckedOptions checked = choose_tolerances(lanes->record, options);
+    const StepTolerances step = choose_tolerances(lanes->record, options);
     for (std::size_t begin = next.fetch_add(chunk); begin < n && !stopped; begin = next.fetch_add(chunk)) {
       std::vector<std::unique_ptr<Rider>> riders;
       std::vector<std::size_t> bodies;
@@ -112,10 +111,10 @@ std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeS
         });
       }
       const auto wants_to_stop = [&] { return one.progress ? !one.progress(0.0, 0.0) : stopped.load(); };
-      guarded(begin, [&] { ride(riders, checked.tolerances, options.max_steps, wants_to_stop); });
+      guarded(begin, [&] { ride(riders, step.tolerances, options.max_steps, wants_to_stop); });
       for (std::size_t i = 0; i < bodies.size(); ++i) {
         Rider& rider = *riders[i];
-        describe_end(checked, rider.motion());
+        describe_end(step, rider.motion());
         keep(bodies[i], rider.scene(), rider.motion(), true);
       }
     }

@@ -3,9 +3,9 @@
 
 #include "batch/lane_method.hpp"
 #include "batch/lanes/taylor_block.hpp"
+#include "method/series/body_series.hpp"
 #include "polhode/core/simd.hpp"
 #include "polhode/ode/taylor.hpp"
-#include "polhode/solve/body_series.hpp"
 
 namespace polhode {
 namespace {

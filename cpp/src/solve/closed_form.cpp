@@ -6,9 +6,9 @@
 #include <limits>
 #include <numbers>
 
-#include "measure.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/math/double_double.hpp"
+#include "solve/distance.hpp"
 
 namespace polhode {
 namespace {
@@ -59,7 +59,7 @@ std::string refuse_free(const Scene& scene, const Facts& facts) {
   for (const AnyTorque& torque : scene.torques()) {
     if (traits(torque).vanishes) continue;
     if (!names.empty()) names += " and ";
-    names += std::visit([](const auto& one) { return one.record().name; }, torque);
+    names += torque_name(torque);
   }
   return "not free: " + names + (facts.torques.acting == 1 ? " acts" : " act");
 }
@@ -204,12 +204,12 @@ double compute_closed_form_error(const Scene& scene, const Facts& facts, const C
     // The principal moments and axes of a full tensor are good to a few units of rounding of the largest.
     const PrincipalAxes& principal = scene.inertia_B().principal();
     const double largest = principal.moments[2];
-    const auto turned = [&](double sign) {
+    const auto perturbed = [&](double sign) {
       const Vector3d I = principal.moments + sign * nudge * largest * Vector3d{1, -1, 1};
       const Vector3d w = principal.axes.transpose() * scene.omega();
       return ClosedForm(FreeMotion(InertiaTensor::from_moments(I, false), w));
     };
-    error += 8 * (epsilon / nudge) * compare_closed_forms(scene, turned(1), turned(-1));
+    error += 8 * (epsilon / nudge) * compare_closed_forms(scene, perturbed(1), perturbed(-1));
   }
   return error;
 }

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "method/integrate.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/ode/stepper.hpp"
 #include "polhode/solve/closed_form.hpp"
-#include "solve/run.hpp"
+#include "solve/options.hpp"
 
 namespace polhode {
 namespace {
@@ -51,14 +52,15 @@ void unpack(const double* y, double* omega, double* attitude) {
 }
 
 Motion run_with_events(const Scene& scene, const SolveOptions& options, const ClosedForm& form) {
-  SolveOptions without_dense = options;
+  RunOptions without_dense = to_run_options(options, {});
   without_dense.dense = false;   // the closed form itself is the continuous answer
   double y0[7];
   const double zero = 0.0;
   form.at(&zero, 1, y0, y0 + 3);
-  return run(scene, without_dense, y0, by_rows<7>(&unpack), [&](const double* y, double) {
+  const auto make = [&](const double* y, double) {
     return std::make_unique<ClosedFormStepper>(form, scene.t0(), y);
-  });
+  };
+  return Motion(integrate(scene, without_dense, y0, by_rows<7>(&unpack), make));
 }
 
 /// Every sample by itself, in any order.
@@ -96,11 +98,12 @@ Motion evaluate(const Scene& scene, const SolveOptions& options, const ClosedFor
 
 }  // namespace
 
-Motion solve_exactly(const Scene& scene, const Facts& facts, const SolveOptions& options, ClosedForm form,
-                     const Plan& plan) {
+Motion run_closed_form(const Scene& scene, const Facts& facts, const SolveOptions& options, ClosedForm form,
+                       const Plan& plan) {
   const double error = plan.predicted_error;
   Motion motion = options.events.empty() ? evaluate(scene, options, form) : run_with_events(scene, options, form);
   motion.plan = plan;
+  motion.model = plan.model, motion.state = plan.state;
   motion.asked = plan.accuracy;
   motion.error = error;
   motion.error_kind = error <= motion.asked ? "bounded" : "limit";

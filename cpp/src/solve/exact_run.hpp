@@ -6,7 +6,7 @@
 namespace polhode {
 
 /// The answer of a closed form, with the events found on it; its plan has bounded the error.
-Motion solve_exactly(const Scene& scene, const Facts& facts, const SolveOptions& options, ClosedForm form,
-                     const Plan& plan);
+Motion run_closed_form(const Scene& scene, const Facts& facts, const SolveOptions& options, ClosedForm form,
+                       const Plan& plan);
 
 }  // namespace polhode

@@ -3,12 +3,13 @@
 #include <limits>
 #include <numbers>
 
-#include "polhode/solve/closed_form.hpp"
-#include "solve/handover.hpp"
-#include "solve/measure.hpp"
-#include "solve/methods/body_method.hpp"
+#include "method/method.hpp"
+#include "solve/candidates.hpp"
+#include "solve/decision.hpp"
+#include "solve/distance.hpp"
+#include "solve/explain_pieces.hpp"
+#include "solve/options.hpp"
 #include "solve/perturb.hpp"
-#include "solve/planning.hpp"
 
 namespace polhode {
 namespace {
@@ -22,33 +23,34 @@ std::string format(const char* pattern, Values... values) {
 
 bool has(const Scene& scene, const char* name) {
   for (const AnyTorque& torque : scene.torques()) {
-    if (std::visit([](const auto& one) { return one.record().name; }, torque) == name) return true;
+    if (torque_name(torque) == name) return true;
   }
   return false;
 }
 
 /// Exact models in the order of their list; of those that hold, the one that is taken.
-void judge_exact(const Scene& scene, const Facts& facts, const SolveOptions& options,
-                 const std::optional<ClosedForm>& form, PlanReport& report) {
+void evaluate_exact_models(const Scene& scene, const Facts& facts, const SolveOptions& options,
+                           const std::optional<ClosedForm>& form, PlanReport& report) {
   for (const ExactModel& model : exact_models()) {
     if (form && model.name == form->model()) {
-      report.candidates.push_back(judge_closed_form(scene, *form, facts, options));
+      report.candidates.push_back(evaluate_closed_form(scene, *form, facts, options));
       continue;
     }
-    Candidate one{.name = std::string(model.name), .exact = true, .why_not = model.refuse(scene, facts)};
-    if (one.why_not.empty() && form) one.why_not = "holds too, but " + std::string(form->model()) + " needs less";
-    if (one.why_not.empty()) one.why_not = "float64 cannot hold its start";
-    report.candidates.push_back(std::move(one));
+    Candidate candidate{.name = std::string(model.name), .exact = true, .why_not = model.refuse(scene, facts)};
+    std::string& why_not = candidate.why_not;
+    if (why_not.empty() && form) why_not = "holds too, but " + std::string(form->model()) + " needs less";
+    if (why_not.empty()) why_not = "float64 cannot hold its start";
+    report.candidates.push_back(std::move(candidate));
   }
 }
 
 /// How far half a unit in the last place of the inputs moves a closed form at the end of its span.
 double compute_condition(const Scene& scene, const ClosedForm& form) {
-  const Scene moved = perturb(scene);
-  const std::optional<ClosedForm> other = find_closed_form(moved, compute_facts(moved));
+  const Scene perturbed = perturb(scene);
+  const std::optional<ClosedForm> other = find_closed_form(perturbed, compute_facts(perturbed));
   if (!other) return std::numeric_limits<double>::quiet_NaN();
   double t = 0.0;
-  for (const double one : scene.times()) t = std::abs(one - scene.t0()) > std::abs(t) ? one - scene.t0() : t;
+  for (const double time : scene.times()) t = std::abs(time - scene.t0()) > std::abs(t) ? time - scene.t0() : t;
   double wa[3], wb[3], qa[4], qb[4];
   form.at(&t, 1, wa, qa);
   other->at(&t, 1, wb, qb);
@@ -134,7 +136,8 @@ void explain_steps(const Scene& scene, const Facts& facts, const SolveOptions& o
                facts.separatrix));
   }
   int others = 0;
-  for (const Candidate& one : report.candidates) others += !one.exact && one.why_not.empty() && one.name != plan.method;
+  for (const Candidate& candidate : report.candidates)
+    others += !candidate.exact && candidate.why_not.empty() && candidate.name != plan.method;
   if (options.method) {
     reasons.push_back(plan.method + " was asked for.");
   } else if (others > 0 && plan.pieces.empty()) {
@@ -161,7 +164,7 @@ void explain_left_out(const Scene& scene, const Facts& facts, const SolveOptions
   for (const AnyTorque& torque : scene.torques()) {
     if (!traits(torque).vanishes) continue;
     if (!names.empty()) names += ", ";
-    names += std::visit([](const auto& one) { return one.record().name; }, torque);
+    names += torque_name(torque);
   }
   if (!names.empty()) left.push_back(names + ": zero wherever the body goes.");
   if (scene.torque_sum().acting > facts.torques.acting) {
@@ -177,36 +180,32 @@ void explain_left_out(const Scene& scene, const Facts& facts, const SolveOptions
 
 }  // namespace
 
-PlanReport explain_plan(const Scene& scene, const SolveOptions& options) {
-  check_options(scene, options);
-  if (has_windows(scene)) {
-    const Pieces pieces = cut(scene);
-    return pieces.whole ? explain_plan(drop_windows(scene), options) : explain_pieces(scene, pieces, options);
-  }
-  PlanReport report;
-  report.facts = compute_facts(scene);
+PlanReport explain(const Decision& decision, const SolveOptions& options) {
+  if (decision.pieces.size() > 0 && decision.pieces.method_switches.empty()) return explain_pieces(decision, options);
+  PlanReport report{.plan = decision.plan, .facts = decision.facts};
+  const Scene& scene = decision.scene;
   const Facts& facts = report.facts;
-  report.plan = make_plan(scene, facts, options);
-  if (report.plan.method != "exact") {
-    if (const std::optional<PiecesPlan> damped = plan_damped(scene, facts, options)) report.facts = damped->facts;
-  }
-  const bool exact = report.plan.method == "exact";
-  const std::optional<ClosedForm> form = find_closed_form(scene, facts);
-  judge_exact(scene, facts, options, form, report);
+  const std::optional<ClosedForm> form = decision.form ? decision.form : find_closed_form(scene, facts);
+  evaluate_exact_models(scene, facts, options, form, report);
   for (const ode::MethodRecord& record : methods()) {
     if (!record.adaptive) continue;
-    report.candidates.push_back(judge_method(scene, facts, options, record));
+    report.candidates.push_back(evaluate_method(scene, facts, options, record));
     if (record.name == report.plan.method && report.plan.pieces.empty())
       report.candidates.back().predicted_seconds = report.plan.predicted_seconds;
   }
-  if (exact) {
-    explain_exact(scene, facts, *form, report);
+  if (decision.form) {
+    explain_exact(scene, facts, *decision.form, report);
   } else {
     explain_steps(scene, facts, options, report);
   }
   if (facts.only_at_end) report.reasons.push_back("Only one time is asked for: nothing is interpolated.");
   explain_left_out(scene, facts, options, report);
   return report;
+}
+
+PlanReport explain_plan(const Scene& scene, const SolveOptions& options) {
+  check_options(scene, options);
+  return explain(decide(scene, options), options);
 }
 
 }  // namespace polhode

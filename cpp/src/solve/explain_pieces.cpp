@@ -1,7 +1,6 @@
-#include <cstdio>
+#include "solve/explain_pieces.hpp"
 
-#include "solve/planned_pieces.hpp"
-#include "solve/planning.hpp"
+#include "solve/candidates.hpp"
 
 namespace polhode {
 namespace {
@@ -11,10 +10,10 @@ std::string count(std::size_t n, const char* what) {
 }
 
 /// A method for all pieces that no closed form takes.
-Candidate judge_for_pieces(const Scene& scene, const Facts& facts, const SolveOptions& options,
-                           const ode::MethodRecord& record, const Plan& plan) {
-  Candidate one = judge_method(scene, facts, options, record);
-  if (!one.why_not.empty()) return one;
+Candidate evaluate_for_pieces(const Scene& scene, const Facts& facts, const SolveOptions& options,
+                              const ode::MethodRecord& record, const Plan& plan) {
+  Candidate candidate = evaluate_method(scene, facts, options, record);
+  if (!candidate.why_not.empty()) return candidate;
   double stepped = 0.0, formulas = 0.0;
   for (const PiecePlan& piece : plan.pieces)
     (piece.method == "exact" ? formulas : stepped) += piece.method == "exact" ? piece.predicted_seconds : piece.turns;
@@ -22,24 +21,24 @@ Candidate judge_for_pieces(const Scene& scene, const Facts& facts, const SolveOp
   const auto predict = [&](double rtol) {
     return record.forecast.compute_seconds(rtol, stepped, facts.stiffness, per_call);
   };
-  one.predicted_seconds = (predict(one.rtol) + (options.certify ? predict(pair_ratio * one.rtol) : 0.0)) *
-                              find_factor(options.cost_factors, record.name) + formulas;
-  return one;
+  const double compared = options.certify ? predict(pair_ratio * candidate.rtol) : 0.0;
+  candidate.predicted_seconds =
+      (predict(candidate.rtol) + compared) * find_factor(options.cost_factors, record.name) + formulas;
+  return candidate;
 }
 
 }  // namespace
 
-PlanReport explain_pieces(const Scene& scene, const Pieces& pieces, const SolveOptions& options) {
-  PiecesPlan made = plan_pieces(scene, pieces, options);
-  PlanReport report;
-  report.plan = made.plan, report.facts = made.facts;
-  report.facts.turns = made.turns;
+PlanReport explain_pieces(const Decision& decision, const SolveOptions& options) {
+  const Scene& scene = decision.scene;
+  PlanReport report{.plan = decision.plan, .facts = decision.facts};
+  report.facts.turns = decision.turns;
   const std::vector<PiecePlan>& parts = report.plan.pieces;
   std::size_t formulas = 0;
-  for (const PiecePlan& one : parts) formulas += one.method == "exact";
+  for (const PiecePlan& piece : parts) formulas += piece.method == "exact";
   for (const ExactModel& model : exact_models()) {
     std::size_t held = 0;
-    for (const PiecePlan& one : parts) held += one.model == model.name;
+    for (const PiecePlan& piece : parts) held += piece.model == model.name;
     if (held == 0) continue;
     report.candidates.push_back(
         {.name = std::string(model.name),
@@ -48,7 +47,8 @@ PlanReport explain_pieces(const Scene& scene, const Pieces& pieces, const SolveO
   }
   if (formulas < parts.size()) {
     for (const ode::MethodRecord& record : methods()) {
-      if (record.adaptive) report.candidates.push_back(judge_for_pieces(scene, made.facts, options, record, made.plan));
+      if (!record.adaptive) continue;
+      report.candidates.push_back(evaluate_for_pieces(scene, decision.facts, options, record, decision.plan));
     }
   }
 
@@ -75,7 +75,7 @@ PlanReport explain_pieces(const Scene& scene, const Pieces& pieces, const SolveO
   }
   for (const AnyTorque& torque : scene.torques()) {
     if (traits(torque).vanishes) {
-      report.left_out.push_back(std::string(std::visit([](const auto& one) { return one.record().name; }, torque)) +
+      report.left_out.push_back(std::string(torque_name(torque)) +
                                 ": zero wherever the body goes.");
     }
   }

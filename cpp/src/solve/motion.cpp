@@ -41,18 +41,18 @@ State Motion::at(double time) const {
   if (time == start.t) return start;
   if (within != nullptr) return within->at(time);
   double y[64], q[4] = {NAN, NAN, NAN, NAN};
-  State state;
-  state.t = time;
+  State found;
+  found.t = time;
   if (closed_form) {
     const double since = time - start.t;
-    closed_form->at(&since, 1, state.omega.data(), q);
-    state.attitude = {q[0], q[1], q[2], q[3]};
-    return state;
+    closed_form->at(&since, 1, found.omega.data(), q);
+    found.attitude = {q[0], q[1], q[2], q[3]};
+    return found;
   }
   (time < start.t ? dense_backward : dense_forward)(time, y);
-  unpack(y, 1, state.omega.data(), q);
-  state.attitude = {q[0], q[1], q[2], q[3]};
-  return state;
+  unpack(y, 1, found.omega.data(), q);
+  found.attitude = {q[0], q[1], q[2], q[3]};
+  return found;
 }
 
 }  // namespace polhode

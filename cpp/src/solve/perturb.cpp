@@ -1,4 +1,4 @@
-#include "perturb.hpp"
+#include "solve/perturb.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -44,15 +44,15 @@ class Coin {
 template <class Torque>
 Torque perturb_torque(const Torque& torque, Coin& coin) {
   return std::visit(
-      [&]<class T>(const T& one) -> Torque {
+      [&]<class T>(const T& kind) -> Torque {
         if constexpr (std::is_same_v<T, torques::During>) {
-          return torques::During(perturb_torque(one.torque(), coin), one.windows());
-        } else if constexpr (requires { one.values(); }) {
-          TorqueValues values = one.values();
+          return T(perturb_torque(kind.torque(), coin), kind.windows());
+        } else if constexpr (requires { kind.values(); }) {
+          TorqueValues values = kind.values();
           for (TorqueValue& value : values) std::visit([&](auto& x) { coin(x); }, value);
           return T::from_values(values);
         } else {
-          return one;
+          return kind;
         }
       },
       torque);
@@ -78,14 +78,14 @@ AnyTorque perturb_windows(const AnyTorque& torque, double first, double last, do
 
 }  // namespace
 
-State shake(const State& state, double units, int seed) {
+State perturb_state(const State& state, double units, int seed) {
   Coin coin(static_cast<std::uint64_t>(seed));
   const double size = units * std::numeric_limits<double>::epsilon(), rate = state.omega.norm();
-  State moved = state;
-  for (int i = 0; i < 3; ++i) moved.omega[i] += (coin.toss() ? size : -size) * rate;
-  for (double* part : {&moved.attitude.x, &moved.attitude.y, &moved.attitude.z, &moved.attitude.w})
+  State perturbed = state;
+  for (int i = 0; i < 3; ++i) perturbed.omega[i] += (coin.toss() ? size : -size) * rate;
+  for (double* part : {&perturbed.attitude.x, &perturbed.attitude.y, &perturbed.attitude.z, &perturbed.attitude.w})
     *part += coin.toss() ? size : -size;
-  return moved;
+  return perturbed;
 }
 
 Scene perturb(const Scene& scene) {
@@ -95,19 +95,15 @@ Scene perturb(const Scene& scene) {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j <= i; ++j)
       I(i, j) = I(j, i) = cut ? Coin(std::bit_cast<std::uint64_t>(I(i, j))).move(I(i, j)) : coin.move(I(i, j));
-  SceneParts parts{.inertia_B = InertiaTensor::from_trusted(I, scene.inertia_B().physical())};
-  parts.omega = scene.omega();
+  SceneParts parts = scene.parts();
+  parts.inertia_B = InertiaTensor::from_trusted(I, scene.inertia_B().physical());
   coin(parts.omega);
   const Quat& q = scene.attitude();
   parts.attitude = {coin.move(q.x), coin.move(q.y), coin.move(q.z), coin.move(q.w)};
   const auto [least, most] = std::minmax_element(scene.times().begin(), scene.times().end());
-  for (const AnyTorque& torque : scene.torques()) {
-    parts.torques.push_back(perturb_windows(perturb_torque(torque, coin), std::min(*least, scene.t0()),
-                                            std::max(*most, scene.t0()), scene.t0()));
-  }
-  parts.times = scene.times();
-  parts.want = scene.want();
-  parts.t0 = scene.t0();
+  const double first = std::min(*least, scene.t0()), last = std::max(*most, scene.t0());
+  for (AnyTorque& torque : parts.torques)
+    torque = perturb_windows(perturb_torque(torque, coin), first, last, scene.t0());
   return Scene(std::move(parts));
 }
 

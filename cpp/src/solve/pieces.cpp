@@ -5,11 +5,10 @@
 #include <cmath>
 #include <memory>
 
+#include "method/samples.hpp"
 #include "polhode/core/error.hpp"
-#include "solve/answered.hpp"
-#include "solve/itinerary.hpp"
+#include "solve/custom_check.hpp"
 #include "solve/perturb.hpp"
-#include "solve/spot_check.hpp"
 
 namespace polhode {
 namespace {
@@ -23,7 +22,7 @@ const During* find_windows(const AnyTorque& torque) {
 
 AnyTorque drop_window(const AnyTorque& torque) {
   const auto* during = std::get_if<During>(&torque);
-  return during == nullptr ? torque : std::visit([](const auto& one) { return AnyTorque(one); }, during->torque());
+  return during == nullptr ? torque : std::visit([](const auto& lasting) { return AnyTorque(lasting); }, during->torque());
 }
 
 /// The first and the last of the times, the start among them.
@@ -45,21 +44,21 @@ std::vector<AnyTorque> find_acting(const Scene& scene, double begin, double end)
 
 bool is_exact(const Motion& motion) { return motion.plan.method == "exact"; }
 
-/// The rows of the joined motion, and what all pieces of one direction share.
-class Chain {
+/// Runs the pieces of each direction and joins their rows.
+class PieceRunner {
  public:
-  Chain(const Scene& scene, const SolveOptions& options, const RunPiece& run, bool shaken)
-      : scene_(scene), options_(options), run_(run), shaken_(shaken), answered_(scene.times().size(), 0) {
+  PieceRunner(const Scene& scene, const SolveOptions& options, const RunPiece& run, bool perturb_joins)
+      : scene_(scene), options_(options), run_(run), perturb_joins_(perturb_joins), reached_(scene.times().size(), 0) {
     const Wanted want = scene.want();
-    if (want.omega) motion_.omega.resize(3 * answered_.size());
-    if (want.attitude) motion_.attitude.resize(4 * answered_.size());
+    if (want.omega) motion_.omega.resize(3 * reached_.size());
+    if (want.attitude) motion_.attitude.resize(4 * reached_.size());
     motion_.start = scene.start();
     motion_.t_reached = scene.t0();
     motion_.has_dense = options.dense;
   }
 
-  /// False when a piece did not arrive.
-  bool follow(const std::vector<Piece>& pieces, const std::vector<std::size_t>& order, const Wanted& want) {
+  /// False when a piece did not reach its end.
+  bool run_direction(const std::vector<Piece>& pieces, const std::vector<std::size_t>& order, const Wanted& want) {
     State start = scene_.start();
     std::size_t next = 0;
     for (const Piece& piece : pieces) {
@@ -72,54 +71,54 @@ class Chain {
         times.push_back(t);
       }
       if (!last || times.empty()) times.push_back(piece.end);
-      const Scene one = make_piece_scene(scene_, piece, start, std::move(times), want);
-      if (one.torque_sum().acting > 0) require_true_claims(one);
-      Motion motion = run_(one, make_options(pieces.back().end));
+      const Scene part = make_piece_scene(scene_, piece, start, std::move(times), want);
+      if (part.torque_sum().acting > 0) require_true_claims(part);
+      Motion motion = run_(part, piece, make_options(pieces.back().end));
       add(motion);
-      place(one, motion, std::span(order).subspan(first, next - first));
-      const bool arrived = motion.status == Status::finished;
-      motion_.t_reached = arrived ? piece.end : find_reached(motion, piece);
-      if (arrived && !last) start = get_end(motion, piece.end, want);
+      place(part, motion, std::span(order).subspan(first, next - first));
+      const bool finished = motion.status == Status::finished;
+      motion_.t_reached = finished ? piece.end : find_reached(motion, piece);
+      if (finished && !last) start = get_end(motion, piece.end, want);
       motion_.status = motion.status;
-      motion_.message = arrived ? "" : motion.message;
+      motion_.message = finished ? "" : motion.message;
       if (motion.status == Status::max_steps) motion_.message = describe_max_steps();
       if (options_.dense) keep_dense(std::move(motion), piece);
-      if (!arrived) return motion_.status == Status::event;
+      if (!finished) return motion_.status == Status::event;
       if (!last && wants_to_stop(pieces.back().end)) return false;
     }
     return true;
   }
 
   Motion finish() {
-    keep_answered(scene_.times(), answered_, motion_);
+    drop_unreached(scene_.times(), reached_, motion_);
     return std::move(motion_);
   }
 
  private:
   SolveOptions make_options(double last) const {
-    SolveOptions one = options_;
-    one.max_steps = options_.max_steps - motion_.stats.steps;
+    SolveOptions made = options_;
+    made.max_steps = options_.max_steps - motion_.stats.steps;
     if (options_.progress)
-      one.progress = [this, last](double reached, double) { return options_.progress(reached, last); };
-    return one;
+      made.progress = [this, last](double reached, double) { return options_.progress(reached, last); };
+    return made;
   }
 
-  void add(const Motion& one) {
-    motion_.stats += one.stats;
-    motion_.events.insert(motion_.events.end(), one.events.begin(), one.events.end());
-    if (!std::isnan(one.error))
-      motion_.error = std::isnan(motion_.error) ? one.error : std::max(one.error, motion_.error);
+  void add(const Motion& part) {
+    motion_.stats += part.stats;
+    motion_.events.insert(motion_.events.end(), part.events.begin(), part.events.end());
+    if (!std::isnan(part.error))
+      motion_.error = std::isnan(motion_.error) ? part.error : std::max(part.error, motion_.error);
   }
 
   /// The piece's rows into their places; those that were not reached are not among them.
-  void place(const Scene& one, const Motion& motion, std::span<const std::size_t> order) {
+  void place(const Scene& part, const Motion& motion, std::span<const std::size_t> order) {
     std::size_t row = 0;
     for (std::size_t i = 0; i < order.size() && row < motion.t.size(); ++i) {
-      if (motion.t[row] != one.times()[i]) continue;
+      if (motion.t[row] != part.times()[i]) continue;
       if (!motion_.omega.empty()) std::copy_n(motion.omega.data() + 3 * row, 3, motion_.omega.data() + 3 * order[i]);
       if (!motion_.attitude.empty())
         std::copy_n(motion.attitude.data() + 4 * row, 4, motion_.attitude.data() + 4 * order[i]);
-      answered_[order[i]] = 1;
+      reached_[order[i]] = 1;
       ++row;
     }
   }
@@ -136,8 +135,8 @@ class Chain {
       const double* q = motion.attitude.data() + motion.attitude.size() - 4;
       end.attitude = {q[0], q[1], q[2], q[3]};
     }
-    ++joints_;
-    return shaken_ ? shake(end, is_exact(motion) ? 8.0 : 2.0, joints_) : end;
+    ++joins_;
+    return perturb_joins_ ? perturb_state(end, is_exact(motion) ? 8.0 : 2.0, joins_) : end;
   }
 
   std::string describe_max_steps() const {
@@ -156,8 +155,8 @@ class Chain {
   bool wants_to_stop(double last) {
     if (!options_.progress || (++asked_ & 15) != 0) return false;
     const auto now = std::chrono::steady_clock::now();
-    if (now - told_ < std::chrono::milliseconds(50)) return false;
-    told_ = now;
+    if (now - last_call_ < std::chrono::milliseconds(50)) return false;
+    last_call_ = now;
     if (options_.progress(motion_.t_reached, last)) return false;
     motion_.status = Status::stopped;
     motion_.message = "stopped by the progress callback at t = " + polhode::to_text(motion_.t_reached) + " s";
@@ -167,12 +166,12 @@ class Chain {
   const Scene& scene_;
   const SolveOptions& options_;
   const RunPiece& run_;
-  bool shaken_;
-  std::vector<unsigned char> answered_;
+  bool perturb_joins_;
+  std::vector<unsigned char> reached_;
   Motion motion_;
-  int joints_ = 0;
+  int joins_ = 0;
   unsigned asked_ = 0;
-  std::chrono::steady_clock::time_point told_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point last_call_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace
@@ -182,10 +181,10 @@ bool has_windows(const Scene& scene) {
                      [](const AnyTorque& torque) { return std::holds_alternative<During>(torque); });
 }
 
-Pieces cut(const Scene& scene, std::vector<double> more) {
+Pieces cut(const Scene& scene, std::vector<double> method_switches) {
   const auto [first, last] = find_span(scene);
   const double t0 = scene.t0();
-  std::vector<double> edges = std::move(more);
+  std::vector<double> edges = method_switches;
   for (const AnyTorque& torque : scene.torques()) {
     const During* during = find_windows(torque);
     if (during == nullptr) continue;
@@ -200,9 +199,10 @@ Pieces cut(const Scene& scene, std::vector<double> more) {
 
   Pieces pieces;
   pieces.whole = edges.empty();
-  const auto add = [&](std::vector<Piece>& one_way, double end) {
-    const double begin = one_way.empty() ? t0 : one_way.back().end;
-    one_way.push_back({begin, end, find_acting(scene, std::min(begin, end), std::max(begin, end))});
+  pieces.method_switches = std::move(method_switches);
+  const auto add = [&](std::vector<Piece>& direction, double end) {
+    const double begin = direction.empty() ? t0 : direction.back().end;
+    direction.push_back({begin, end, find_acting(scene, std::min(begin, end), std::max(begin, end))});
   };
   if (std::any_of(scene.times().begin(), scene.times().end(), [t0](double t) { return t >= t0; })) {
     for (const double t : edges) {
@@ -233,8 +233,9 @@ Scene make_piece_scene(const Scene& scene, const Piece& piece, const State& star
 
 Scene drop_windows(const Scene& scene) {
   const auto [first, last] = find_span(scene);
-  return make_piece_scene(scene, {first, last, find_acting(scene, first, last)}, scene.start(), scene.times(),
-                          scene.want());
+  SceneParts parts = scene.parts();
+  parts.torques = find_acting(scene, first, last);
+  return Scene(std::move(parts));
 }
 
 std::string describe_span(const Piece& piece) {
@@ -244,20 +245,33 @@ std::string describe_span(const Piece& piece) {
 
 bool carries_attitude(const Scene& scene, const Pieces& pieces, const SolveOptions& options) {
   bool uses = scene.want().attitude || !options.events.empty();
-  for (const auto* one_way : {&pieces.backward, &pieces.forward}) {
-    for (const Piece& piece : *one_way) uses |= summarize(piece.torques).uses_attitude;
-  }
+  for (const Piece* piece : pieces.all()) uses |= summarize(piece->torques).uses_attitude;
   return uses;
 }
 
+std::vector<Piece*> Pieces::all() {
+  std::vector<Piece*> list;
+  for (Piece& piece : backward) list.push_back(&piece);
+  for (Piece& piece : forward) list.push_back(&piece);
+  return list;
+}
+
+std::vector<const Piece*> Pieces::all() const {
+  std::vector<const Piece*> list;
+  for (const Piece& piece : backward) list.push_back(&piece);
+  for (const Piece& piece : forward) list.push_back(&piece);
+  return list;
+}
+
 Motion run_pieces(const Scene& scene, const Pieces& pieces, const SolveOptions& options, const RunPiece& run,
-                  bool shaken) {
+                  bool perturb_joins) {
   const Wanted want{true, carries_attitude(scene, pieces, options)};
-  Chain chain(scene, options, run, shaken);
-  const Itinerary itinerary(scene.times(), scene.t0());
-  if (chain.follow(pieces.backward, itinerary.backward, want)) chain.follow(pieces.forward, itinerary.forward, want);
-  Motion motion = chain.finish();
-  motion.plan = {"pieces", "", want.attitude ? "omega, attitude" : "omega"};
+  PieceRunner runner(scene, options, run, perturb_joins);
+  const SampleOrder order(scene.times(), scene.t0());
+  if (runner.run_direction(pieces.backward, order.backward, want))
+    runner.run_direction(pieces.forward, order.forward, want);
+  Motion motion = runner.finish();
+  motion.model = "pieces", motion.state = want.attitude ? "omega, attitude" : "omega";
   return motion;
 }
 

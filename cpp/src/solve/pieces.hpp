@@ -14,19 +14,23 @@ namespace polhode {
 struct Piece {
   double begin, end;
   std::vector<AnyTorque> torques;   ///< those that act, without their windows
+  PiecePlan plan = {};              ///< how it is integrated; without a method where nothing was planned
 };
 
 /// In the order in which they are run from the scene's start.
 struct Pieces {
   std::vector<Piece> backward, forward;
+  std::vector<double> method_switches = {};   ///< times at which it is cut besides the windows' ends
   bool whole = true;                ///< no window's end lies within the span: nothing is cut
   std::size_t size() const { return backward.size() + forward.size(); }
+  std::vector<Piece*> all();              ///< backward pieces first
+  std::vector<const Piece*> all() const;
 };
 
 bool has_windows(const Scene& scene);
 
-/// @param more  other times at which to cut
-Pieces cut(const Scene& scene, std::vector<double> more = {});
+/// @param method_switches  other times at which to cut
+Pieces cut(const Scene& scene, std::vector<double> method_switches = {});
 
 /// The scene of one piece: its torques, a start and times of its own.
 Scene make_piece_scene(const Scene& scene, const Piece& piece, const State& start, std::vector<double> times,
@@ -41,13 +45,13 @@ bool carries_attitude(const Scene& scene, const Pieces& pieces, const SolveOptio
 /// "from t = 10 to 20 s"
 std::string describe_span(const Piece& piece);
 
-/// How one piece is run; `piece` has the torques that act there, unwindowed, and starts where the last piece ended.
-using RunPiece = std::function<Motion(const Scene& piece, const SolveOptions& options)>;
+/// How one piece is run. `scene` has the torques that act there, unwindowed, and starts where the last piece ended.
+using RunPiece = std::function<Motion(const Scene& scene, const Piece& piece, const SolveOptions& options)>;
 
 /// All pieces one after another, joined: samples, events and dense output are those of one motion, `error` is the
-/// largest bound of a closed form. `shaken`: where one piece ends and the next begins the state is moved by a few units
-/// of rounding, for the run that a certificate compares with.
+/// largest bound of a closed form. `perturb_joins`: where one piece ends and the next begins the state is changed by a
+/// few units of rounding, for the run that a certificate compares with.
 Motion run_pieces(const Scene& scene, const Pieces& pieces, const SolveOptions& options, const RunPiece& run,
-                  bool shaken = false);
+                  bool perturb_joins = false);
 
 }  // namespace polhode

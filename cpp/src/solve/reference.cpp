@@ -30,9 +30,9 @@ Real evaluate(const Series& a, Real s) {
 }
 
 /// The series of a body's motion about one time; every method here works on coefficient n of all of them.
-class BodySeries {
+class LongDoubleSeries {
  public:
-  BodySeries(const Scene& scene, int order) : scene_(&scene), order_(order) {
+  LongDoubleSeries(const Scene& scene, int order) : scene_(&scene), order_(order) {
     for (Vector* v : {&w_, &L_, &row_x_, &row_y_, &row_z_})
       for (Series& s : *v) s.assign(static_cast<std::size_t>(order) + 1, 0);
     for (Series& s : q_) s.assign(static_cast<std::size_t>(order) + 1, 0);
@@ -210,7 +210,7 @@ void follow(const Scene& scene, const ReferenceOptions& options, const std::vect
         make_piece_scene(scene, piece, {piece.begin, scene.omega(), scene.attitude()}, {piece.end}, scene.want()));
   }
   std::size_t at = 0;
-  BodySeries body(scenes[at], options.order);
+  LongDoubleSeries body(scenes[at], options.order);
   Real t = scene.t0();
   std::size_t next = 0;
   for (long steps = 0; next < visit.size(); ++steps) {
@@ -234,7 +234,7 @@ void follow(const Scene& scene, const ReferenceOptions& options, const std::vect
     t += h;
     ++found.steps;
     if (std::fabs(left) <= size && at + 1 < pieces.size()) {
-      body = BodySeries(scenes[++at], options.order);
+      body = LongDoubleSeries(scenes[++at], options.order);
       body.restart(y);
       t = Real(pieces[at].begin);
     }

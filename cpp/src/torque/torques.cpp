@@ -6,6 +6,10 @@ TorqueTraits traits(const AnyTorque& torque) {
   return std::visit([](const auto& one) { return one.traits(); }, torque);
 }
 
+std::string_view torque_name(const AnyTorque& torque) {
+  return std::visit([](const auto& lasting) { return lasting.record().name; }, torque);
+}
+
 TorqueSum summarize(std::span<const AnyTorque> torques) {
   TorqueSum sum;
   bool one_pattern = true, turning = false, standing_still = true;

@@ -7,8 +7,8 @@
 #include "polhode/exact/free_motion.hpp"
 #include "polhode/ode/drive.hpp"
 #include "polhode/ode/methods.hpp"
-#include "polhode/solve/euler_problem.hpp"
-#include "polhode/solve/methods.hpp"
+#include "polhode/method/euler_problem.hpp"
+#include "polhode/method/methods.hpp"
 #include "polhode/solve/invariants.hpp"
 #include "polhode/solve/solve.hpp"
 

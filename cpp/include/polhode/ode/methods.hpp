@@ -8,7 +8,7 @@
 
 namespace polhode::ode {
 
-/// The methods for any y' = f(t, y): the conformance tests of `ode` follow. solve/methods.def lists all that turn a
+/// The methods for any y' = f(t, y): the conformance tests of `ode` follow. method/methods.def lists all that turn a
 /// body.
 using Methods = std::tuple<Rk45, Dop853, Rk4>;
 

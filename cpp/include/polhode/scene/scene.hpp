@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -28,28 +29,31 @@ struct SceneParts {
   std::string name = {};
 };
 
-/// What there is: a body, its start, its torques, and what is wanted. Checked here, once, and never changed.
+/// What there is: a body, its start, its torques, and what is wanted. Checked here, once, and never changed; copies
+/// share their parts.
 class Scene {
  public:
   /// @throws InvalidInput, naming what is wrong, for a body that cannot turn (a moment of zero), a start or times that
   ///         are not finite, no times at all, or nothing wanted
   explicit Scene(SceneParts parts);
 
-  const InertiaTensor& inertia_B() const { return parts_.inertia_B; }
-  const Vector3d& omega() const { return parts_.omega; }
-  const Quat& attitude() const { return parts_.attitude; }
-  const std::vector<AnyTorque>& torques() const { return parts_.torques; }
-  const std::vector<double>& times() const { return parts_.times; }
-  const Wanted& want() const { return parts_.want; }
-  double t0() const { return parts_.t0; }
-  const std::string& name() const { return parts_.name; }
+  const InertiaTensor& inertia_B() const { return parts_->inertia_B; }
+  const Vector3d& omega() const { return parts_->omega; }
+  const Quat& attitude() const { return parts_->attitude; }
+  const std::vector<AnyTorque>& torques() const { return parts_->torques; }
+  const std::vector<double>& times() const { return parts_->times; }
+  const Wanted& want() const { return parts_->want; }
+  double t0() const { return parts_->t0; }
+  const std::string& name() const { return parts_->name; }
 
-  State start() const { return {parts_.t0, parts_.omega, parts_.attitude}; }
+  State start() const { return {parts_->t0, parts_->omega, parts_->attitude}; }
   /// What all torques together depend on and keep.
   const TorqueSum& torque_sum() const { return torque_sum_; }
+  /// A copy of all parts, for a scene that differs in some of them.
+  SceneParts parts() const { return *parts_; }
 
  private:
-  SceneParts parts_;
+  std::shared_ptr<const SceneParts> parts_;
   TorqueSum torque_sum_;
 };
 

@@ -20,7 +20,7 @@ class ClosedForm {
   explicit ClosedForm(HeavyTop motion) : motion_(std::move(motion)) {}
 
   void at(const double* t, std::size_t n, double* omega, double* attitude) const {
-    std::visit([&](const auto& one) { one.at(t, n, omega, attitude); }, motion_);
+    std::visit([&](const auto& motion) { motion.at(t, n, omega, attitude); }, motion_);
   }
   std::string_view model() const;   ///< the name of its record
   double rate(const double* omega) const;   ///< how fast things change where omega is so [rad/s], for steps of events

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "polhode/solve/facts.hpp"
@@ -22,16 +23,19 @@ struct Candidate {
 struct PlanReport {
   Plan plan;
   Facts facts;
-  std::vector<Candidate> candidates;   ///< exact models first, then methods, in the order of their lists
-  std::vector<std::string> reasons;    ///< why this model and this method
-  std::vector<std::string> left_out;   ///< what is not modelled, and why that is safe
+  std::vector<Candidate> candidates = {};   ///< exact models first, then methods, in the order of their lists
+  std::vector<std::string> reasons = {};    ///< why this model and this method
+  std::vector<std::string> left_out = {};   ///< what is not modelled, and why that is safe
 };
 
-/// The least model and the cheapest method that reach the accuracy. @throws InvalidInput for wishes that contradict
-/// each other, or a method that does not take the scene.
-Plan make_plan(const Scene& scene, const Facts& facts, const SolveOptions& options);
+/// The least model and the cheapest method that reach the accuracy: what solve() would carry out.
+/// @throws InvalidInput for options that contradict each other, or a method that does not take the scene
+Plan make_plan(const Scene& scene, const SolveOptions& options);
 
-/// The same with every candidate judged and the reasons in words.
+/// The same with every candidate evaluated and the reasons in words.
 PlanReport explain_plan(const Scene& scene, const SolveOptions& options);
+
+/// Why a method does not take a scene, or "" when it does.
+std::string compute_refusal(std::string_view method, const Scene& scene);
 
 }  // namespace polhode

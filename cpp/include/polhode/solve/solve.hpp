@@ -1,24 +1,14 @@
 #pragma once
 
-#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "polhode/method/run_options.hpp"
 #include "polhode/solve/motion.hpp"
 
 namespace polhode {
-
-/// A function of time and state whose zeros are wanted.
-struct SceneEvent {
-  std::function<double(const State&)> function;
-  int direction = 0;       ///< +1: where it rises along the integration, -1: where it falls, 0: both
-  bool terminal = false;   ///< the run ends at its first zero
-};
-
-/// Euler's equations, or Lagrange's in the textbook's z-x-z angles (which fail where theta is 0 or pi).
-enum class Formulation { euler, lagrangian };
 
 /// How much slower than forecast each method or exact model is on this machine, by name; what is not there counts as 1.
 using CostFactors = std::map<std::string, double, std::less<>>;
@@ -26,7 +16,7 @@ using CostFactors = std::map<std::string, double, std::less<>>;
 struct SolveOptions {
   std::optional<double> accuracy = {};    ///< of every sample, 0 < accuracy <= 1; excludes rtol and atol
   std::optional<std::string> method = {}; ///< "exact" or a name of methods(); without it the plan's
-  bool certify = true;                    ///< bound the error by a second run; else it is only expected
+  bool certify = true;                    ///< bound the error; else it is only expected
   std::optional<double> rtol = {};        ///< relative tolerance of a step
   std::optional<double> atol = {};        ///< absolute tolerance of a step, in rad/s and in quaternion components
   std::optional<double> step = {};        ///< [s], for fixed-step methods alone
@@ -35,14 +25,14 @@ struct SolveOptions {
   Formulation formulation = Formulation::euler;
   std::vector<SceneEvent> events = {};
   const CostFactors* cost_factors = nullptr;   ///< for the choice between methods
-  /// Called about twenty times a second with the time reached and the last time; false ends the run.
-  std::function<bool(double reached, double last)> progress = {};
+  Progress progress = {};
 };
 
-/// Turns the body. @throws InvalidInput for options that contradict each other; what a torque throws comes through.
+/// Computes the rotational motion of a scene at its sample times.
+/// @throws InvalidInput for options that contradict each other; what a torque throws comes through.
 Motion solve(const Scene& scene, const SolveOptions& options = {});
 
-/// False when the run did not reach its end, or an invariant that should hold moved by more than was asked.
+/// False when the run did not reach its end, or an invariant that should hold drifted by more than was asked.
 bool succeeded(const Scene& scene, const Motion& motion);
 
 }  // namespace polhode

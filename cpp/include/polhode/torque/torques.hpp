@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 
 #include "polhode/torque/during.hpp"
 #include "polhode/torque/list.hpp"
@@ -29,6 +30,7 @@ struct TorqueSum {
 };
 
 TorqueTraits traits(const AnyTorque& torque);
+std::string_view torque_name(const AnyTorque& torque);   ///< of its record
 TorqueSum summarize(std::span<const AnyTorque> torques);
 
 }  // namespace polhode

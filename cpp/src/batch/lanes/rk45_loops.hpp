@@ -7,7 +7,7 @@
 #include "polhode/math/sincos_unfused.hpp"
 #include "polhode/ode/step_control.hpp"
 #include "polhode/ode/tableaus/dormand_prince54.hpp"
-#include "polhode/solve/euler_formulas.hpp"
+#include "polhode/method/euler_formulas.hpp"
 
 // Steps of rk45 with a body in each lane, for one lane type `Wide`; included once by each file that is built for one
 // instruction set. Operation by operation what ode::RungeKuttaStepper does with solve's EulerProblem, without fused

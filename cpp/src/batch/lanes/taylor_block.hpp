@@ -2,7 +2,7 @@
 
 #include "batch/lanes/clock.hpp"
 #include "polhode/ode/series.hpp"
-#include "polhode/solve/series_terms.hpp"
+#include "method/series/series_terms.hpp"
 
 namespace polhode {
 

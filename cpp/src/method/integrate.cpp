@@ -1,0 +1,152 @@
+#include "method/integrate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "method/samples.hpp"
+#include "polhode/core/error.hpp"
+#include "polhode/ode/drive.hpp"
+
+namespace polhode {
+namespace {
+
+State to_state(const Unpack& unpack, double t, const double* y) {
+  State state;
+  double attitude[4] = {NAN, NAN, NAN, NAN};
+  state.t = t;
+  unpack(y, 1, state.omega.data(), attitude);
+  state.attitude = {attitude[0], attitude[1], attitude[2], attitude[3]};
+  return state;
+}
+
+std::vector<ode::Event> make_events(std::span<const SceneEvent> events, const Unpack& unpack) {
+  std::vector<ode::Event> made;
+  for (const SceneEvent& event : events) {
+    made.push_back({[&](double t, const double* y) {
+                      const double value = event.function(to_state(unpack, t, y));
+                      if (std::isnan(value)) {
+                        throw InvalidInput("the event's function", "a number",
+                                           "nan at t = " + polhode::to_text(t) + " s");
+                      }
+                      return value;
+                    },
+                    event.direction, event.terminal});
+  }
+  return made;
+}
+
+/// Puts the rows of one direction of time where the trajectory wants them.
+class SampleRows {
+ public:
+  SampleRows(const Scene& scene, const Unpack& unpack, const std::vector<std::size_t>& order,
+             std::vector<unsigned char>& reached, Trajectory& trajectory)
+      : scene_(scene), unpack_(unpack), order_(order), reached_(reached), trajectory_(trajectory) {
+    for (std::size_t i = 0; i < order.size(); ++i) consecutive_ = consecutive_ && order[i] == order[0] + i;
+  }
+
+  void operator()(std::size_t first, std::span<const double> times, const double* rows) {
+    const Wanted want = scene_.want();
+    const std::size_t count = times.size();
+    const bool omega_in_place = consecutive_ && want.omega, attitude_in_place = consecutive_ && want.attitude;
+    if (!omega_in_place) omega_.resize(3 * count);
+    if (!attitude_in_place) attitude_.resize(4 * count);
+    double* w = omega_in_place ? trajectory_.omega.data() + 3 * order_[first] : omega_.data();
+    double* q = attitude_in_place ? trajectory_.attitude.data() + 4 * order_[first] : attitude_.data();
+    unpack_(rows, count, w, q);
+    for (std::size_t i = 0; i < count && times[i] == scene_.t0(); ++i) {
+      // Whatever variables the method integrates: the start is as it was given.
+      const Quat& start = scene_.attitude();
+      std::copy_n(scene_.omega().data(), 3, w + 3 * i);
+      q[4 * i] = start.x, q[4 * i + 1] = start.y, q[4 * i + 2] = start.z, q[4 * i + 3] = start.w;
+    }
+    if (consecutive_) {
+      std::fill_n(reached_.begin() + static_cast<std::ptrdiff_t>(order_[first]), count, 1);
+      return;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t row = order_[first + i];
+      if (want.omega) std::copy_n(w + 3 * i, 3, trajectory_.omega.data() + 3 * row);
+      if (want.attitude) std::copy_n(q + 4 * i, 4, trajectory_.attitude.data() + 4 * row);
+      reached_[row] = 1;
+    }
+  }
+
+ private:
+  const Scene& scene_;
+  const Unpack& unpack_;
+  const std::vector<std::size_t>& order_;
+  std::vector<unsigned char>& reached_;
+  Trajectory& trajectory_;
+  bool consecutive_ = true;
+  std::vector<double> omega_, attitude_;
+};
+
+struct EndingText {
+  Status status;
+  std::string message;
+};
+
+EndingText describe(ode::Ending ending, double t, long max_steps) {
+  const std::string at = polhode::to_text(t) + " s", when = " at t = " + at;
+  using ode::Ending;
+  switch (ending) {
+    case Ending::finished: break;
+    case Ending::event: return {Status::event, "ended by a terminal event" + when};
+    case Ending::max_steps:
+      return {Status::max_steps, "gave up after max_steps = " + std::to_string(max_steps) + " steps" + when};
+    case Ending::stopped: return {Status::stopped, "stopped by the progress callback" + when};
+    case Ending::underflow:
+      return {Status::failed, "the step became smaller than the spacing of the times" + when};
+    case Ending::not_finite: return {Status::failed, "the derivative is not finite just beyond t = " + at};
+    case Ending::no_solution:
+      return {Status::failed, "the implicit equations of a step have no solution near" + when + ": take shorter steps"};
+  }
+  return {Status::finished, ""};
+}
+
+}  // namespace
+
+Trajectory integrate(const Scene& scene, const RunOptions& options, const double* y0, const Unpack& unpack,
+                     const MakeStepper& make_stepper) {
+  Trajectory trajectory;
+  const std::vector<double>& times = scene.times();
+  if (scene.want().omega) trajectory.omega.resize(3 * times.size());
+  if (scene.want().attitude) trajectory.attitude.resize(4 * times.size());
+  trajectory.start = scene.start();
+  trajectory.t_reached = scene.t0();
+  trajectory.unpack = unpack;
+  trajectory.has_dense = options.dense;
+
+  const std::vector<ode::Event> events = make_events(options.events, unpack);
+  std::vector<unsigned char> reached(times.size(), 0);
+  // False when the other direction is not to be begun.
+  const auto integrate_direction = [&](const std::vector<std::size_t>& order, ode::DenseOutput& dense) {
+    if (order.empty()) return true;
+    std::vector<double> sorted(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) sorted[i] = times[order[i]];
+    const std::unique_ptr<ode::Stepper> stepper = make_stepper(y0, sorted.back());
+    SampleRows rows(scene, unpack, order, reached, trajectory);
+    ode::DriveResult result =
+        ode::drive(*stepper, std::span<const double>(sorted), std::ref(rows),
+                   ode::DriveOptions{options.max_steps, options.dense, std::span<const ode::Event>(events),
+                                     options.progress});
+    for (const ode::EventHit& hit : result.hits)
+      trajectory.events.push_back({hit.event, to_state(unpack, hit.t, hit.y.data())});
+    dense = std::move(result.dense);
+    trajectory.stats += stepper->counts();
+    trajectory.t_reached = result.t;
+    if (result.ending == ode::Ending::finished) return true;
+    EndingText text = describe(result.ending, result.t, options.max_steps);
+    trajectory.status = text.status, trajectory.message = std::move(text.message);
+    return trajectory.status == Status::event;
+  };
+  const SampleOrder order(times, scene.t0());
+  if (integrate_direction(order.backward, trajectory.dense_backward))
+    integrate_direction(order.forward, trajectory.dense_forward);
+
+  drop_unreached(times, reached, trajectory);
+  return trajectory;
+}
+
+}  // namespace polhode

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <memory>
+
+#include "polhode/method/run_options.hpp"
+#include "polhode/method/trajectory.hpp"
+#include "polhode/ode/stepper.hpp"
+#include "polhode/scene/scene.hpp"
+
+namespace polhode {
+
+/// From a function that unpacks one state of `dimension` numbers.
+template <int dimension, class UnpackOne>
+Unpack by_rows(UnpackOne unpack_one) {
+  return [unpack_one](const double* rows, std::size_t n, double* omega, double* attitude) {
+    for (std::size_t i = 0; i < n; ++i) unpack_one(rows + dimension * i, omega + 3 * i, attitude + 4 * i);
+  };
+}
+
+/// A stepper from the start state towards t_end.
+using MakeStepper = std::function<std::unique_ptr<ode::Stepper>(const double* y0, double t_end)>;
+
+/// Integrates a scene in both directions of time and collects samples, events and dense output, whatever the method and
+/// the variables.
+Trajectory integrate(const Scene& scene, const RunOptions& options, const double* y0, const Unpack& unpack,
+                     const MakeStepper& make_stepper);
+
+}  // namespace polhode

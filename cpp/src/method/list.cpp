@@ -1,0 +1,47 @@
+#include "polhode/method/methods.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "method/method.hpp"
+#include "polhode/core/error.hpp"
+
+namespace polhode {
+namespace {
+
+const std::vector<BodyMethod>& all() {
+  static const std::vector<BodyMethod> list = [] {
+    std::vector<BodyMethod> made;
+#define POLHODE_METHOD(name) made.push_back(name##_method);
+#include "polhode/method/methods.def"
+#undef POLHODE_METHOD
+    return made;
+  }();
+  return list;
+}
+
+}  // namespace
+
+const BodyMethod& find_body_method(std::string_view name) {
+  for (const BodyMethod& method : all()) {
+    if (method.record.name == name) return method;
+  }
+  std::string names;
+  for (const BodyMethod& method : all()) {
+    names.append(names.empty() ? "" : ", ").append(method.record.name);
+  }
+  throw InvalidInput("method", "one of " + names, "'" + std::string(name) + "'");
+}
+
+std::span<const ode::MethodRecord> methods() {
+  static const std::vector<ode::MethodRecord> records = [] {
+    std::vector<ode::MethodRecord> made;
+    for (const BodyMethod& method : all()) made.push_back(method.record);
+    return made;
+  }();
+  return records;
+}
+
+const ode::MethodRecord& find_method(std::string_view name) { return find_body_method(name).record; }
+
+}  // namespace polhode

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "polhode/method/trajectory.hpp"
+
+namespace polhode {
+
+/// The order in which the sample times are reached: those at or after the start forwards, the others backwards.
+struct SampleOrder {
+  std::vector<std::size_t> forward, backward;
+
+  SampleOrder(const std::vector<double>& times, double t0) {
+    forward.reserve(times.size());
+    for (std::size_t i = 0; i < times.size(); ++i) (times[i] >= t0 ? forward : backward).push_back(i);
+    const auto before = [&](std::size_t a, std::size_t b) { return times[a] < times[b]; };
+    if (!std::is_sorted(forward.begin(), forward.end(), before))
+      std::stable_sort(forward.begin(), forward.end(), before);
+    std::stable_sort(backward.begin(), backward.end(),
+                     [&](std::size_t a, std::size_t b) { return times[a] > times[b]; });
+  }
+};
+
+/// Sets the times of a trajectory that has a row for each of `times`, and removes the rows that were not reached.
+inline void drop_unreached(const std::vector<double>& times, const std::vector<unsigned char>& reached,
+                           Trajectory& trajectory) {
+  if (std::find(reached.begin(), reached.end(), 0) == reached.end()) {
+    trajectory.t = times;
+    return;
+  }
+  const bool omega = !trajectory.omega.empty(), attitude = !trajectory.attitude.empty();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (!reached[i]) continue;
+    trajectory.t.push_back(times[i]);
+    if (omega && kept != i) std::copy_n(trajectory.omega.data() + 3 * i, 3, trajectory.omega.data() + 3 * kept);
+    if (attitude && kept != i)
+      std::copy_n(trajectory.attitude.data() + 4 * i, 4, trajectory.attitude.data() + 4 * kept);
+    ++kept;
+  }
+  if (omega) trajectory.omega.resize(3 * kept);
+  if (attitude) trajectory.attitude.resize(4 * kept);
+}
+
+}  // namespace polhode

@@ -1,0 +1,314 @@
+#include "method/series/body_series.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "method/series/lanes/levels.hpp"
+#include "method/series/separatrix.hpp"
+#include "polhode/attitude/matrix.hpp"
+#include "polhode/core/simd.hpp"
+
+namespace polhode {
+namespace {
+
+using math::DD;
+
+/// Components in the body of a unit quaternion's rows of R: R^T e_x, R^T e_y or R^T e_z.
+Vector3d to_body(const double* q, const Vector3d& v_W) { return rotate({-q[0], -q[1], -q[2], q[3]}, v_W); }
+
+}  // namespace
+
+std::string compute_series_refusal(const Scene& scene) {
+  const torques::GravityGradient* first = nullptr;
+  for (const AnyTorque& torque : scene.torques()) {
+    if (std::holds_alternative<torques::Custom>(torque)) {
+      return "a Custom torque, whose derivatives are not known: dop853 and rk45 take it";
+    }
+    if (const auto* gradient = std::get_if<torques::GravityGradient>(&torque)) {
+      if (first != nullptr &&
+          (gradient->mean_motion() != first->mean_motion() || gradient->phase() != first->phase())) {
+        return "gravity gradients of two orbits: dop853 and rk45 take them";
+      }
+      first = gradient;
+    }
+  }
+  return "";
+}
+
+BodySeries::BodySeries(const Scene& scene, bool attitude) {
+  const InertiaTensor& inertia = scene.inertia_B();
+  const Quat& q_WB = scene.attitude();
+  Vector3d omega_P = scene.omega();
+  I_ = inertia.moments();
+  const bool triaxial = I_[0] < I_[1] && I_[1] < I_[2];
+  turned_ = !inertia.is_diagonal() || triaxial;
+  if (turned_) {
+    R_BP_ = inertia.axes();
+    turned_ = R_BP_ != Matrix3d::Identity();
+  } else {
+    I_ = inertia.matrix().diagonal();
+  }
+  Quat q_WP = q_WB;
+  if (turned_) {
+    const Quat q_BP = quat_from_matrix(R_BP_, "inertia.axes");
+    q_PB_ = conjugate(q_BP);
+    q_WP = q_WB * q_BP;
+    omega_P = R_BP_.transpose() * scene.omega();
+  }
+  if (triaxial) choose_variables(omega_P);
+  if (terms_.variables == RateVariables::plain) {
+    for (int i = 0; i < 3; ++i) {
+      const DD product = math::two_diff(I_[(i + 1) % 3], I_[(i + 2) % 3]) / DD(I_[i]);
+      terms_.product[i] = product.hi, terms_.product_low[i] = product.lo;
+      start_[i] = omega_P[i];
+    }
+  }
+  add_torques(scene);
+  attitude_ = attitude || terms_.gradient || terms_.fixed_vectors > 1;
+  if (attitude_) {
+    start_[4] = q_WP.x, start_[5] = q_WP.y, start_[6] = q_WP.z, start_[7] = q_WP.w;
+  } else if (terms_.fixed_vectors == 1) {
+    const Vector3d seen = rotate(conjugate(q_WP), space_[0]);
+    for (int i = 0; i < 3; ++i) start_[4 + i] = seen[i];
+  }
+  if (terms_.variables == RateVariables::separatrix && scene.torques().empty()) {
+    const DD u(start_[0], start_carry_[0]), v(start_[1], start_carry_[1]), w(start_[2]);
+    // u' = b w2 u, v' = -b w2 v, w2' = c (v - u)(v + u): a = c / b
+    balance_ = terms_.product[2] / terms_.product[0];
+    kept_[0] = u * v, kept_[1] = DD(balance_) * (u * u + v * v) + w * w;
+    // Squares of 1e-160 and 1e160 rad/s have no room; such rates go without.
+    const double size = std::abs(kept_[1].hi);
+    free_ = size > 1e-240 && size < 1e240;
+  }
+  find_invariants(scene);
+  kernel_ = find_series_kernel(terms_, attitude_);
+}
+
+void BodySeries::find_invariants(const Scene& scene) {
+  using Sees = SeriesInvariants::Sees;
+  vertical_ = !attitude_ && moment_P_ != Vector3d::Zero();
+  const Sees sees = attitude_ ? Sees::attitude : vertical_ ? Sees::vertical : Sees::nothing;
+  invariants_ = SeriesInvariants(scene, terms_, I_, moment_P_, gradients_, orbit_phase_, half_over_k_, sees);
+  invariants_.start(scene.t0(), start_, start_carry_);
+}
+
+void BodySeries::choose_variables(const Vector3d& w) {
+  const Separatrix separatrix(I_);
+  if (!separatrix.suits(w)) return;
+  k_ = separatrix.k().hi;
+  terms_.variables = RateVariables::separatrix;
+  half_over_k_ = separatrix.half_over_k();
+  terms_.to_rates[0] = half_over_k_.hi, terms_.to_rates[1] = 1.0, terms_.to_rates[2] = 0.5;
+  const DD product[3] = {separatrix.rate(), -separatrix.rate(), separatrix.middle()};
+  for (int i = 0; i < 3; ++i) terms_.product[i] = product[i].hi, terms_.product_low[i] = product[i].lo;
+  separatrix.from_rates(w.data(), start_, start_carry_);
+}
+
+void BodySeries::set_column(double* column, const Vector3d& torque_P) const {
+  const double a[3] = {torque_P[0] / I_[0], torque_P[1] / I_[1], torque_P[2] / I_[2]};
+  if (terms_.variables == RateVariables::plain) {
+    for (int i = 0; i < 3; ++i) column[i] += a[i];
+  } else {
+    column[0] += a[2] - k_ * a[0], column[1] += a[2] + k_ * a[0], column[2] += a[1];
+  }
+}
+
+void BodySeries::add_torques(const Scene& scene) {
+  const Matrix3d R_PB = R_BP_.transpose();
+  Vector3d moment = Vector3d::Zero(), space = Vector3d::Zero();
+  for (const AnyTorque& torque : scene.torques()) {
+    if (const auto* constant = std::get_if<torques::Constant>(&torque)) {
+      if (constant->frame() == torques::Constant::Frame::space) {
+        space += constant->torque();
+      } else {
+        set_column(terms_.torque, R_PB * constant->torque());
+      }
+    } else if (const auto* gravity = std::get_if<torques::Gravity>(&torque)) {
+      moment += gravity->weight() * gravity->arm();
+    } else if (const auto* damping = std::get_if<torques::Damping>(&torque)) {
+      const Matrix3d C_P = R_PB * damping->matrix() * R_BP_;
+      for (int j = 0; j < 3; ++j) set_column(terms_.damping[j], -C_P.col(j));
+      terms_.damped = true;
+    } else if (const auto* gradient = std::get_if<torques::GravityGradient>(&torque)) {
+      ++gradients_;
+      orbit_rate_ = gradient->mean_motion(), orbit_phase_ = gradient->phase();
+    }
+  }
+  // Gravity pulls with -moment x (R^T e_z), a space torque with R^T tau: linear in one vector each.
+  moment_P_ = R_PB * moment;
+  if (moment_P_ != Vector3d::Zero()) {
+    space_[terms_.fixed_vectors] = {0, 0, 1};
+    for (int j = 0; j < 3; ++j) set_column(terms_.pull[terms_.fixed_vectors][j], -moment_P_.cross(Vector3d::Unit(j)));
+    ++terms_.fixed_vectors;
+  }
+  if (const double size = space.cwiseAbs().maxCoeff(); size > 0.0) {
+    space_[terms_.fixed_vectors] = space / size;
+    for (int j = 0; j < 3; ++j) set_column(terms_.pull[terms_.fixed_vectors][j], size * Vector3d::Unit(j));
+    ++terms_.fixed_vectors;
+  }
+  if (gradients_ > 0) {
+    if (terms_.fixed_vectors == 1) terms_.fixed_vectors = 2;   // beside an orbit the kernels know none or two
+    terms_.gradient = true;
+    terms_.orbit_rate = orbit_rate_;
+    const double strength = 3.0 * gradients_ * orbit_rate_ * orbit_rate_;
+    double a[3];
+    for (int i = 0; i < 3; ++i) a[i] = strength * ((I_[(i + 2) % 3] - I_[(i + 1) % 3]) / I_[i]);
+    double *first = terms_.tidal[0], *second = terms_.tidal[1];
+    if (terms_.variables == RateVariables::plain) {
+      std::copy_n(a, 3, first);
+    } else {
+      first[0] = first[1] = a[2], first[2] = a[1];
+      second[0] = -k_ * a[0], second[1] = k_ * a[0];
+    }
+  }
+}
+
+std::string BodySeries::describe_state() const {
+  std::string state = terms_.variables == RateVariables::plain ? "omega" : "separatrix variables";
+  if (attitude_) return state + ", attitude";
+  return terms_.fixed_vectors == 1 ? state + ", vertical" : state;
+}
+
+void BodySeries::unpack(const double* rows, std::size_t n, double* omega, double* attitude) const {
+  for (const double* y = rows; y != rows + dimension * n; y += dimension, omega += 3, attitude += 4) {
+    double w[3];
+    compute_rates(y, turned_ ? w : omega);
+    if (turned_) {
+      for (int i = 0; i < 3; ++i) omega[i] = R_BP_(i, 0) * w[0] + R_BP_(i, 1) * w[1] + R_BP_(i, 2) * w[2];
+    }
+    if (!attitude_) continue;
+    const double size = y[4] * y[4] + y[5] * y[5] + y[6] * y[6] + y[7] * y[7];
+    const double s = std::abs(size - 1.0) < 1e-8 ? 1.5 - 0.5 * size : 1.0 / std::sqrt(size);
+    Quat q{s * y[4], s * y[5], s * y[6], s * y[7]};
+    if (turned_) q = q * q_PB_;
+    attitude[0] = q.x, attitude[1] = q.y, attitude[2] = q.z, attitude[3] = q.w;
+  }
+}
+
+BodySeries BodySeries::moved(double part) const {
+  BodySeries other = *this;
+  bool up = false;
+  const auto move = [&](double& x, double size) {
+    up = !up;
+    x += up ? part * size : -part * size;
+  };
+  SeriesTerms& terms = other.terms_;
+  const bool rounded = turned_ && R_BP_.cwiseAbs().maxCoeff() < 1.0;
+  for (int i = 0; i < 3; ++i) {
+    move(terms.product[i], rounded ? std::max(std::abs(terms.product[i]), I_.maxCoeff() / I_[i]) : terms.product[i]);
+  }
+  const auto move_column = [&](double* column) {
+    for (int i = 0; i < 3; ++i) move(column[i], column[i]);
+    up = !up;
+  };
+  move_column(terms.torque);
+  for (auto& column : terms.damping) move_column(column);
+  for (auto& vector : terms.pull)
+    for (auto& column : vector) move_column(column);
+  for (auto& column : terms.tidal) move_column(column);
+  move(terms.orbit_rate, terms.orbit_rate);
+  move(other.orbit_rate_, other.orbit_rate_);
+  move(other.orbit_phase_, other.orbit_phase_);
+  return other;
+}
+
+void BodySeries::measure_error(const double* y, const double* error, double* out) const {
+  double w[3], e[3];
+  compute_rates(y, w);
+  compute_rates(error, e);
+  out[0] = std::sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+  out[1] = std::sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
+  const double* q = error + 4;
+  out[2] = attitude_ ? 2 * std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]) : 0.0;
+}
+
+void BodySeries::compute_series(DD t, double unit, const double* y, const double*, int order, double* rows) const {
+  alignas(64) double vectors[16] = {};
+  int n = 0;
+  if (!attitude_) {
+    std::copy_n(y + 4, 3, vectors);
+  } else {
+    for (; n < terms_.fixed_vectors; ++n) {
+      const Vector3d seen = to_body(y + 4, space_[n]);
+      std::copy_n(seen.data(), 3, vectors + 4 * n);
+    }
+  }
+  if (terms_.gradient) {
+    // n t without its rounding: the angle's own error would grow with the number of orbits.
+    const DD product = math::two_prod(orbit_rate_, t.hi), angle = math::two_sum(product.hi, orbit_phase_);
+    const double low = angle.lo + product.lo + orbit_rate_ * t.lo;
+    const double s0 = std::sin(angle.hi), c0 = std::cos(angle.hi), s = s0 + c0 * low, c = c0 - s0 * low;
+    const Vector3d radius = to_body(y + 4, {c, s, 0}), tangent = to_body(y + 4, {-s, c, 0});
+    std::copy_n(radius.data(), 3, vectors + 4 * n);
+    std::copy_n(tangent.data(), 3, vectors + 4 * (n + 1));
+  }
+  kernel_(terms_, {y, vectors, unit}, order, rows);
+}
+
+double BodySeries::compute_time_scale(DD, const double* y) const {
+  double rate = std::max({std::abs(y[0]), std::abs(y[1]), std::abs(y[2]), orbit_rate_});
+  const auto grow = [&](const double* column, bool root) {
+    for (int i = 0; i < 3; ++i) rate = std::max(rate, root ? std::sqrt(std::abs(column[i])) : std::abs(column[i]));
+  };
+  grow(terms_.torque, true);
+  for (const auto& column : terms_.damping) grow(column, false);
+  for (const auto& vector : terms_.pull)
+    for (const auto& column : vector) grow(column, true);
+  for (const auto& column : terms_.tidal) grow(column, true);
+  return rate > 0.0 ? 1.0 / rate : 0x1p900;
+}
+
+void BodySeries::start_carry(double* carry) const { std::copy_n(start_carry_, 8, carry); }
+
+/// A free body keeps u v and a (u^2 + v^2) + w2^2, which are its energy and |L|^2 in other words. One Newton step back
+/// to them, in directions that leave to u and v their relative accuracy, from residuals without rounding.
+void BodySeries::correct_rates(double* y, double* carry) const {
+  const DD u(y[0], carry[0]), v(y[1], carry[1]), w(y[2], carry[2]);
+  const double uu = y[0] * y[0], vv = y[1] * y[1], ww = y[2] * y[2], uv = y[0] * y[1], sum = uu + vv;
+  const double split = sum > 0.0 ? (uu - vv) / sum : 0.0;
+  double turn = 0.0;   // u and v by this part of each
+  if (std::abs(uv) > 1e-250) {
+    turn = -0.5 * (u * v - kept_[0]).hi / uv;
+    if (!(std::abs(turn) < 0.1)) return;
+  }
+  const double lack = (DD(balance_) * (u * u + v * v) + w * w - kept_[1]).hi + 2.0 * balance_ * sum * turn;
+  const double slope = 2.0 * (balance_ * (uu - vv) * split + ww);
+  // Where the energy has its extreme for this u v it tells nothing of the rest.
+  const double step = slope > 1e-3 * (balance_ * sum + ww) ? -lack / slope : 0.0;
+  const double apart = step * split;
+  const double change[3] = {y[0] * (turn + apart), y[1] * (turn - apart), y[2] * step};
+  for (int i = 0; i < 3; ++i) {
+    const DD moved = math::two_sum(y[i], carry[i] + change[i]);
+    y[i] = moved.hi, carry[i] = moved.lo;
+  }
+}
+
+void BodySeries::correct(DD t, long step, double* y, double* carry) const {
+  if (free_) correct_rates(y, carry);
+  if (attitude_ || vertical_) keep_unit(y, carry);
+  // What a few steps leave is small, and the way back costs a fifth of a step.
+  if (invariants_.any() && step % 8 == 7) invariants_.restore(t, y, carry);
+}
+
+void BodySeries::keep_unit(double* y, double* carry) {
+  // |q| = 1, or the vertical's. The carry keeps no more than rounding: it is not turned along with q, and what is
+  // larger would grow.
+  double norm = 0.0, cross = 0.0;
+  for (int i = 4; i < 8; ++i) norm += y[i] * y[i], cross += y[i] * carry[i];
+  const double lack = 0.5 * (1.0 - norm) - cross;
+  for (int i = 4; i < 8; ++i) {
+    const DD sum = math::two_sum(y[i], carry[i] + lack * y[i]);
+    y[i] = sum.hi, carry[i] = sum.lo;
+  }
+}
+
+SeriesKernel find_series_kernel(const SeriesTerms& terms, bool attitude) {
+  SeriesKernel found = nullptr;
+  const SimdLevel level = simd_level();
+  if (level == SimdLevel::avx512) found = avx512_series_kernel(terms, attitude);
+  if (found == nullptr && level != SimdLevel::baseline) found = avx2_series_kernel(terms, attitude);
+  return found != nullptr ? found : baseline_series_kernel(terms, attitude);
+}
+
+}  // namespace polhode

@@ -1,0 +1,17 @@
+// Built with the flags of avx512 (cpp/CMakeLists.txt) where the compiler has them, else empty.
+#include "method/series/lanes/levels.hpp"
+
+#if defined(__AVX512DQ__)
+#define POLHODE_ISA isa_avx512
+#include "method/series/lanes/series_loops.hpp"
+
+namespace polhode {
+SeriesKernel avx512_series_kernel(const SeriesTerms& terms, bool attitude) {
+  return POLHODE_ISA::choose(terms, attitude);
+}
+}  // namespace polhode
+#else
+namespace polhode {
+SeriesKernel avx512_series_kernel(const SeriesTerms&, bool) { return nullptr; }
+}  // namespace polhode
+#endif

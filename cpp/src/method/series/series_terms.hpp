@@ -1,0 +1,26 @@
+#pragma once
+
+namespace polhode {
+
+/// Which numbers carry the rates of a body with principal axes 1, 2, 3: the rates themselves, or, in the middle of a
+/// triaxial body, u, v and w2 (separatrix.hpp).
+enum class RateVariables { plain, separatrix };
+
+/// Euler's equations with every polynomial torque, as the constants of their Taylor recurrences. Lanes of `r` are the
+/// rate variables (r0, r1, r2, 0); vectors are fixed in space, or turn with the orbit, and seen from the body.
+struct SeriesTerms {
+  RateVariables variables = RateVariables::plain;
+  double to_rates[4] = {1, 1, 1, 0};   ///< separatrix: w = (v - u, w2, u + v) times (1/2k, 1, 1/2)
+  double product[4] = {};              ///< r' = product * (u w2, v w2, (v - u)(v + u)), or (w2 w3, w3 w1, w1 w2) ...
+  double product_low[4] = {};          ///< ... and what rounding took from it
+  double torque[4] = {};               ///< + constant
+  double damping[3][4] = {};           ///< + sum_j damping[j] w_j
+  bool damped = false;
+  int fixed_vectors = 0;               ///< vectors fixed in space: none, one or two,
+  double pull[2][3][4] = {};           ///< + sum_j pull[i][j] * (vector i)_j
+  bool gradient = false;               ///< + tidal[0] * (u1 u2, u1 u2, u3 u1) + tidal[1] * (u2 u3, u2 u3, 0), or
+  double tidal[2][4] = {};             ///<   tidal[0] * (u2 u3, u3 u1, u1 u2); u points along the orbit's radius,
+  double orbit_rate = 0.0;             ///< which turns at this rate
+};
+
+}  // namespace polhode

@@ -1,0 +1,49 @@
+#include "method/steps/body_stepper.hpp"
+
+namespace polhode {
+namespace {
+
+/// The turn h w + h^2/2 a + h^3/12 a x w, a = w' at the start, with L kept in space: in the body it turns backwards.
+class Buss {
+ public:
+  static constexpr bool kick_within = false;
+  static constexpr int interior = 0;
+
+  Buss(const PrincipalBody& body, const Scene&) : body_(&body) {}
+
+  bool advance(double h, const double*, double* L, double* q) {
+    double w[3], a[3], aw[3], turn[3], p[4];
+    for (int i = 0; i < 3; ++i) w[i] = L[i] / body_->I[i];
+    cross(L, w, a);
+    for (int i = 0; i < 3; ++i) a[i] /= body_->I[i];
+    cross(a, w, aw);
+    for (int i = 0; i < 3; ++i) turn[i] = h * (w[i] + h * (0.5 * a[i] + h / 12 * aw[i]));
+    exponential(turn, p);
+    turn_by(p, q);
+    turn_back(p, L);
+    return true;
+  }
+
+ private:
+  const PrincipalBody* body_;
+};
+
+}  // namespace
+
+const BodyMethod buss_method{
+    {
+        .name = "buss",
+        .order = 2,
+        .dense_order = 3,
+        .adaptive = false,
+        .cheap = true,
+        .keeps = "|L|, L",
+        .doc =
+            "Buss's augmented second-order step: L in space is kept, the energy grows until the body turns about its "
+            "least axis.",
+        .source = "Buss 2000, J. Comput. Phys. 164, 377; JSBSim eBuss2",
+    },
+    &integrate_with<Buss>,
+};
+
+}  // namespace polhode

@@ -1,0 +1,41 @@
+#include "method/steps/body_stepper.hpp"
+
+namespace polhode {
+namespace {
+
+/// The term L x w is left out: without a torque w_B stays as it is, in body and so in space axes.
+class Ignore {
+ public:
+  static constexpr bool kick_within = true;
+  static constexpr int interior = 0;
+
+  Ignore(const PrincipalBody& body, const Scene&) : body_(&body) {}
+
+  bool advance(double h, const double* kick, double* L, double* q) {
+    double turn[3];
+    for (int i = 0; i < 3; ++i) L[i] += kick[i], turn[i] = h * (L[i] / body_->I[i]);
+    turn_by_vector(turn, q);
+    return true;
+  }
+
+ private:
+  const PrincipalBody* body_;
+};
+
+}  // namespace
+
+const BodyMethod ignore_method{
+    {
+        .name = "ignore",
+        .order = 0,
+        .dense_order = 3,
+        .adaptive = false,
+        .cheap = true,
+        .keeps = "energy, |L|",
+        .doc = "No gyroscopic term at all, as many engines do by default: the wrong equations, at any step.",
+        .source = "Bullet, Box2D, Jolt and others with the term switched off; Catto 2015, GDC, Numerical Methods",
+    },
+    &integrate_with<Ignore>,
+};
+
+}  // namespace polhode

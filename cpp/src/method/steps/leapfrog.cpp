@@ -1,0 +1,102 @@
+#include <string>
+
+#include "method/steps/body_stepper.hpp"
+
+namespace polhode {
+namespace {
+
+/// weight times arm of a gravity that acts along the axis of symmetry; 0 without a torque, NaN with any other.
+double find_weight_arm(const Scene& scene) {
+  if (scene.torques().empty()) return 0.0;
+  const auto* gravity = std::get_if<torques::Gravity>(&scene.torques().front());
+  if (scene.torques().size() != 1 || !gravity || gravity->arm()[0] != 0.0 || gravity->arm()[1] != 0.0) return NAN;
+  return gravity->weight() * gravity->arm()[2];
+}
+
+/// Stoermer-Verlet in the textbook's z-x-z angles of a symmetric body: phi and psi are cyclic, so theta moves in an
+/// effective potential. sin(theta) stands below each fraction.
+class Leapfrog {
+ public:
+  static constexpr bool kick_within = true;    // its one torque is within F; BodyStepper's kick stays unused
+  static constexpr int interior = 0;
+
+  Leapfrog(const PrincipalBody& body, const Scene& scene) : body_(&body) {
+    // The door knows that it fits: find_weight_arm is a number here. Scaled by the same powers of two as the moments.
+    const double e = body.I[2] / scene.inertia_B().matrix()(2, 2), unit = body.to_scaled_time(1.0);
+    M_ = find_weight_arm(scene) * e / unit / unit;
+  }
+
+  bool advance(double h, const double*, double* L, double* q) {
+    const double* I = body_->I;
+    if (!ready_) start(L, q);
+    p_ += 0.5 * h * force(theta_);
+    const double middle = theta_ + 0.5 * h * p_ / I[0], s = std::sin(middle), c = std::cos(middle);
+    const double r = (p_phi_ - p_psi_ * c) / (I[0] * s * s);
+    phi_ += h * r;
+    psi_ += h * (p_psi_ / I[2] - r * c);
+    theta_ += h * p_ / I[0];
+    p_ += 0.5 * h * force(theta_);
+
+    const double half = 0.5 * theta_, sum = 0.5 * (phi_ + psi_), difference = 0.5 * (phi_ - psi_);
+    q[0] = std::sin(half) * std::cos(difference), q[1] = std::sin(half) * std::sin(difference);
+    q[2] = std::cos(half) * std::sin(sum), q[3] = std::cos(half) * std::cos(sum);
+    const double across = (p_phi_ - p_psi_ * std::cos(theta_)) / std::sin(theta_);   // I1 phi' sin(theta)
+    L[0] = across * std::sin(psi_) + p_ * std::cos(psi_);
+    L[1] = across * std::cos(psi_) - p_ * std::sin(psi_);
+    L[2] = p_psi_;
+    return true;
+  }
+
+ private:
+  void start(const double* L, const double* q) {
+    const double sum = 2 * std::atan2(q[2], q[3]), difference = 2 * std::atan2(q[1], q[0]);
+    phi_ = 0.5 * (sum + difference), psi_ = 0.5 * (sum - difference);
+    theta_ = 2 * std::atan2(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
+    p_psi_ = L[2];
+    const double s = std::sin(theta_), across = L[0] * std::sin(psi_) + L[1] * std::cos(psi_);
+    p_phi_ = across * s + p_psi_ * std::cos(theta_);
+    p_ = L[0] * std::cos(psi_) - L[1] * std::sin(psi_);
+    ready_ = true;
+  }
+
+  /// p_theta' = -dV/dtheta of the effective potential
+  double force(double theta) const {
+    const double s = std::sin(theta), c = std::cos(theta);
+    return -(p_phi_ - p_psi_ * c) * (p_psi_ - p_phi_ * c) / (body_->I[0] * s * s * s) + M_ * s;
+  }
+
+  const PrincipalBody* body_;
+  bool ready_ = false;
+  double M_ = 0.0, phi_ = 0.0, theta_ = 0.0, psi_ = 0.0, p_ = 0.0, p_phi_ = 0.0, p_psi_ = 0.0;
+};
+
+std::string refuse(const Scene& scene) {
+  const Matrix3d& I = scene.inertia_B().matrix();
+  if (!scene.inertia_B().is_diagonal() || I(0, 0) != I(1, 1)) return "another body";
+  if (std::isnan(find_weight_arm(scene))) return "another torque";
+  const double s =
+      std::hypot(scene.attitude().x, scene.attitude().y) * std::hypot(scene.attitude().z, scene.attitude().w);
+  return s > 0.5e-8 ? "" : "a start at theta = 0 or pi";
+}
+
+}  // namespace
+
+const BodyMethod leapfrog_method{
+    {
+        .name = "leapfrog",
+        .order = 2,
+        .dense_order = 3,
+        .adaptive = false,
+        .cheap = true,
+        .keeps = "L_z",
+        .needs = "I1 = I2 about body z, no torque but gravity along it, and theta away from 0 and pi",
+        .doc = "Leapfrog in the textbook's z-x-z angles: p_phi and p_psi are kept, the energy's error stays bounded, "
+               "until "
+               "theta nears 0 or pi.",
+        .source = "Goldstein, Classical Mechanics, sec. 5.7; Hairer, Lubich & Wanner 2003, Acta Numerica 12, 399",
+    },
+    &integrate_with<Leapfrog>,
+    &refuse,
+};
+
+}  // namespace polhode

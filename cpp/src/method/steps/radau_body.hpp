@@ -1,0 +1,184 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <variant>
+
+#include "method/series/separatrix.hpp"
+#include "polhode/attitude/matrix.hpp"
+#include "polhode/method/euler_problem.hpp"
+
+namespace polhode::radau {
+
+/// Euler's equations as `radau` steps them. State: the rates in body axes and q_WB, or of a triaxial body, where they
+/// serve it, (u, v, w2) of series/separatrix.hpp and q_WP: then the free motion acts on them directly, so that u and v
+/// keep their own digits.
+class Body {
+ public:
+  static constexpr int N = 7;
+  using Plain = EulerProblem<SeveralTorques, false, true>;
+
+  explicit Body(const Scene& scene)
+      : I_B_(scene.inertia_B().matrix()), diagonal_(scene.inertia_B().is_diagonal()), all_{scene.torques()},
+        plain_(scene.inertia_B(), all_) {
+    Plain::pack(scene.start(), start_);
+    const InertiaTensor& inertia = scene.inertia_B();
+    const Vector3d& I = inertia.moments();
+    for (int i = 0; i < 3; ++i) I_[i] = I[i];
+    if (!(I[0] < I[1] && I[1] < I[2])) return;
+    const Matrix3d& R_BP = inertia.axes();
+    const Separatrix separatrix(I);
+    const Vector3d w_P = R_BP.transpose() * scene.omega();
+    if (!separatrix.suits(w_P)) return;
+    separatrix_ = separatrix;
+    R_BP_ = R_BP;
+    turned_ = R_BP != Matrix3d::Identity();
+    separatrix.from_rates(w_P.data(), start_, start_carry_);
+    Quat q_WP = scene.attitude();
+    if (turned_) {
+      const Quat q_BP = quat_from_matrix(R_BP, "inertia.axes");
+      q_PB_ = conjugate(q_BP);
+      q_WP = q_WP * q_BP;
+    }
+    start_[3] = q_WP.x, start_[4] = q_WP.y, start_[5] = q_WP.z, start_[6] = q_WP.w;
+    for (const AnyTorque& torque : scene.torques()) {
+      if (const auto* damping = std::get_if<torques::Damping>(&torque)) {
+        add_damping(R_BP.transpose() * damping->matrix() * R_BP);
+      } else {
+        linear_ = linear_ && !std::visit([](const auto& one) { return one.traits().uses_rates; }, torque);
+      }
+    }
+  }
+
+  const double* start() const { return start_; }
+  const double* start_carry() const { return start_carry_; }   ///< what rounding took from the rate variables
+  bool relative() const { return separatrix_.has_value(); }    ///< u and v are to be right by their own size
+  double half_over_k() const { return separatrix_ ? separatrix_->half_over_k().hi : 0.0; }   ///< 0: plain rates
+
+  /// w of rate variables.
+  static void to_rates(double half_over_k, const double* r, double* w) {
+    if (half_over_k == 0.0) {
+      std::copy_n(r, 3, w);
+    } else {
+      w[0] = (r[1] - r[0]) * half_over_k, w[1] = r[2], w[2] = (r[0] + r[1]) * 0.5;
+    }
+  }
+
+  void unpack(const double* y, double* omega, double* attitude) const {
+    if (!separatrix_) return Plain::unpack(y, omega, attitude);
+    double w[3];
+    separatrix_->to_rates(y, w);
+    to_body(w, omega);
+    const double n = y[3] * y[3] + y[4] * y[4] + y[5] * y[5] + y[6] * y[6];
+    const double s = std::abs(n - 1.0) < 1e-8 ? 1.5 - 0.5 * n : 1.0 / std::sqrt(n);
+    const Quat q{s * y[3], s * y[4], s * y[5], s * y[6]};
+    const Quat q_WB = turned_ ? q * q_PB_ : q;
+    attitude[0] = q_WB.x, attitude[1] = q_WB.y, attitude[2] = q_WB.z, attitude[3] = q_WB.w;
+  }
+
+  /// The derivative of the rate variables.
+  void compute_derivative(double t, const double* y, double* f) const {
+    if (!separatrix_) {
+      double all[N];
+      plain_.compute_derivative(t, y, all);
+      std::copy_n(all, 3, f);
+      return;
+    }
+    const double rate = separatrix_->rate().hi, u = y[0], v = y[1], w2 = y[2];
+    f[0] = rate * w2 * u, f[1] = -rate * w2 * v, f[2] = separatrix_->middle().hi * ((v - u) * (v + u));
+    if (!all_.torques.empty()) add_torques(t, y, f);
+  }
+
+  /// Its derivative by the rate variables, f = f(t, y) and `change` a small change of them; Newton only needs it
+  /// nearly. The count of right-hand sides it took.
+  int compute_jacobian(double t, const double* y, const double* f, double change, double (&J)[3][3]) const {
+    if (separatrix_ && linear_) {
+      const double rate = separatrix_->rate().hi, twice = 2 * separatrix_->middle().hi;
+      const double free[3][3] = {
+          {rate * y[2], 0, rate * y[0]}, {0, -rate * y[2], -rate * y[1]}, {-twice * y[0], twice * y[1], 0}};
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) J[i][j] = free[i][j] + damping_[i][j];
+      return 0;
+    }
+    for (int j = 0; j < 3; ++j) {
+      double moved[N], f_moved[3];
+      std::copy_n(y, N, moved);
+      moved[j] += change;
+      const double exact = moved[j] - y[j];
+      compute_derivative(t, moved, f_moved);
+      for (int i = 0; i < 3; ++i) J[i][j] = (f_moved[i] - f[i]) / exact;
+    }
+    return 3;
+  }
+
+  /// How large u and v count in a step of length h: by themselves, or by what a torque makes of them meanwhile.
+  void compute_sizes(double h, const double* y, const double* f, double* size) const {
+    if (!separatrix_) {
+      size[0] = size[1] = size[2] = std::abs(y[0]) + std::abs(y[1]) + std::abs(y[2]);
+      return;
+    }
+    const double all = size[2] = std::max(std::abs(y[0]), std::abs(y[1])) + std::abs(y[2]);
+    const double least = 0x1p-200 * all, turn = separatrix_->rate().hi * y[2];
+    for (int i = 0; i < 2; ++i) {
+      const double driven = std::abs(f[i] - (i == 0 ? turn : -turn) * y[i]);
+      const double damped =
+          std::abs(damping_[i][0] * y[0]) + std::abs(damping_[i][1] * y[1]) + std::abs(damping_[i][2] * y[2]);
+      size[i] = std::clamp(std::abs(h) * std::max(driven, damped), std::max(std::abs(y[i]), least), all);
+    }
+  }
+
+ private:
+  void to_body(const double* w, double* w_B) const {
+    if (!turned_) {
+      std::copy_n(w, 3, w_B);
+      return;
+    }
+    for (int i = 0; i < 3; ++i) w_B[i] = R_BP_(i, 0) * w[0] + R_BP_(i, 1) * w[1] + R_BP_(i, 2) * w[2];
+  }
+
+  /// w' = -C_P w / I: columns for the rates, then for (u, v, w2), of which each rate is a sum.
+  void add_damping(const Matrix3d& C_P) {
+    double column[3][3];
+    for (int j = 0; j < 3; ++j) {
+      const double a[3] = {-C_P(0, j) / I_[0], -C_P(1, j) / I_[1], -C_P(2, j) / I_[2]};
+      separatrix_->from_vector(a, column[j]);
+    }
+    for (int i = 0; i < 3; ++i) {
+      const double across = column[0][i] * separatrix_->half_over_k().hi, along = 0.5 * column[2][i];
+      damping_[i][0] += along - across, damping_[i][1] += along + across, damping_[i][2] += column[1][i];
+    }
+  }
+
+  void add_torques(double t, const double* y, double* f) const {
+    double w[3], w_B[3], q_WB[4], tau_B[3] = {0, 0, 0}, a[3], change[3];
+    separatrix_->to_rates(y, w);
+    to_body(w, w_B);
+    std::copy_n(y + 3, 4, q_WB);
+    if (turned_) {
+      const Quat q = Quat{y[3], y[4], y[5], y[6]} * q_PB_;
+      q_WB[0] = q.x, q_WB[1] = q.y, q_WB[2] = q.z, q_WB[3] = q.w;
+    }
+    const TorqueInput in{t, w_B, q_WB, I_B_, diagonal_};
+    all_.add(in, tau_B);
+    for (int i = 0; i < 3; ++i) {
+      const double tau = turned_ ? R_BP_(0, i) * tau_B[0] + R_BP_(1, i) * tau_B[1] + R_BP_(2, i) * tau_B[2] : tau_B[i];
+      a[i] = tau / I_[i];
+    }
+    separatrix_->from_vector(a, change);
+    for (int i = 0; i < 3; ++i) f[i] += change[i];
+  }
+
+  Matrix3d I_B_, R_BP_ = Matrix3d::Identity();
+  bool diagonal_, turned_ = false;
+  bool linear_ = true;          ///< in the rates, apart from the free motion
+  double I_[3];
+  Quat q_PB_ = {};
+  std::optional<Separatrix> separatrix_;
+  double damping_[3][3] = {};   ///< of (u, v, w2), nearly: the slow direction of a stiff one is not for rounding
+  SeveralTorques all_;
+  Plain plain_;
+  double start_[N], start_carry_[3] = {};
+};
+
+}  // namespace polhode::radau

@@ -1,0 +1,36 @@
+#include "polhode/ode/tracked_taylor.hpp"
+
+#include <memory>
+#include <optional>
+
+#include "method/method.hpp"
+#include "method/series/body_series.hpp"
+
+namespace polhode {
+namespace {
+
+Trajectory integrate_taylor(const Scene& scene, const RunOptions& options) {
+  // Shared with the motion, whose dense output needs it to be read.
+  const auto series = std::make_shared<const BodySeries>(scene, scene.want().attitude || !options.events.empty());
+  const Unpack unpack = [series](const double* rows, std::size_t n, double* omega, double* attitude) {
+    series->unpack(rows, n, omega, attitude);
+  };
+  std::optional<BodySeries> moved;
+  if (options.trace != nullptr) moved = series->moved(ode::TrackedTaylor<BodySeries>::compute_move(*options.trace));
+  const auto make = [&](const double* y, double t_end) -> std::unique_ptr<ode::Stepper> {
+    if (moved) {
+      return std::make_unique<ode::TrackedTaylor<BodySeries>>(*series, *moved, scene.t0(), y, t_end, options.tolerances,
+                                                              *options.trace);
+    }
+    return std::make_unique<ode::Taylor::Stepper<BodySeries>>(*series, scene.t0(), y, t_end, options.tolerances);
+  };
+  Trajectory trajectory = integrate(scene, options, series->start(), unpack, make);
+  trajectory.model = "euler", trajectory.state = series->describe_state();
+  return trajectory;
+}
+
+}  // namespace
+
+const BodyMethod taylor_method{ode::Taylor::record, &integrate_taylor, &compute_series_refusal, true, true};
+
+}  // namespace polhode

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <limits>
+
+#include "method/method.hpp"
+#include "solve/decision.hpp"
+
+namespace polhode {
+
+inline constexpr double unknown_error = std::numeric_limits<double>::infinity();
+
+/// One run, or one pair of runs, towards a certificate.
+struct Attempt {
+  Motion motion;
+  double error = unknown_error;          ///< bound on the error of all samples
+  double holds_until = unknown_error;    ///< how far from the start the accuracy holds [s]; infinity: to the end
+
+  bool finished() const { return motion.status == Status::finished || motion.status == Status::event; }
+};
+
+/// Runs a decision's method and adds up what all runs cost.
+class CountedRuns {
+ public:
+  CountedRuns(const Decision& decision, const SolveOptions& options)
+      : decision_(decision), options_(options), method_(find_body_method(decision.plan.method)) {}
+
+  const Decision& decision() const { return decision_; }
+  const SolveOptions& options() const { return options_; }
+  const BodyMethod& method() const { return method_; }
+  const ode::Counts& stats() const { return stats_; }
+  int runs() const { return runs_; }
+
+  Motion run(const Scene& scene, const SolveOptions& options, double rtol, bool perturb_joins = false,
+             ode::ErrorTrace* trace = nullptr);
+
+ private:
+  const Decision& decision_;
+  const SolveOptions& options_;
+  const BodyMethod& method_;
+  ode::Counts stats_;
+  int runs_ = 0;
+};
+
+}  // namespace polhode

@@ -1,0 +1,162 @@
+#include "solve/candidates.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "method/method.hpp"
+#include "polhode/core/error.hpp"
+#include "solve/options.hpp"
+#include "solve/pieces.hpp"
+
+namespace polhode {
+namespace {
+
+// Costs of a closed form [s], by benchmarks/planner/fit.py.
+constexpr double free_start = 1.5e-6, free_sample = 8e-9, top_start = 3.6e-6, top_sample = 9e-9;
+// What carrying the error costs, as a part of the run itself.
+constexpr double carried_cost = 1.35, carried_cost_stiff = 1.9;
+
+/// Those that reach the accuracy by their time, then the others by their error.
+bool is_better(const Candidate& a, const Candidate& b, double accuracy) {
+  const double enough = forecast_slack * accuracy;
+  const bool a_reaches = a.predicted_error <= enough, b_reaches = b.predicted_error <= enough;
+  if (a_reaches != b_reaches) return a_reaches;
+  return a_reaches ? a.predicted_seconds < b.predicted_seconds : a.predicted_error < b.predicted_error;
+}
+
+}  // namespace
+
+std::string compute_refusal(std::string_view name, const Scene& scene) {
+  const BodyMethod& method = find_body_method(name);
+  if (!method.refuse) return "";
+  if (!has_windows(scene)) return method.refuse(scene);
+  const Pieces pieces = cut(scene);
+  for (const Piece* piece : pieces.all()) {
+    const std::string why = method.refuse(make_piece_scene(scene, *piece, scene.start(), {piece->end}, scene.want()));
+    if (!why.empty()) return pieces.whole ? why : why + ", " + describe_span(*piece);
+  }
+  return "";
+}
+
+double get_accuracy(const SolveOptions& options) { return options.accuracy.value_or(default_accuracy); }
+
+bool carries_attitude(const Scene& scene, const Facts& facts, const SolveOptions& options) {
+  return scene.want().attitude || facts.torques.uses_attitude || !options.events.empty();
+}
+
+double find_seconds_per_call(const Scene& scene) {
+  double seconds = 0.0;
+  for (const AnyTorque& torque : scene.torques()) {
+    const auto* during = std::get_if<torques::During>(&torque);
+    const bool custom = during != nullptr ? std::holds_alternative<torques::Custom>(during->torque())
+                                          : std::holds_alternative<torques::Custom>(torque);
+    if (custom) seconds += custom_call_seconds;
+  }
+  return seconds;
+}
+
+Candidate evaluate_method(const Scene& scene, const Facts& facts, const SolveOptions& options,
+                          const ode::MethodRecord& record) {
+  Candidate candidate{.name = std::string(record.name)};
+  const ode::Forecast& forecast = record.forecast;
+  if (!record.adaptive) {
+    candidate.why_not = "takes steps of one fixed length, whose error is not in hand";
+    return candidate;
+  }
+  if (!forecast.known()) {
+    candidate.why_not = "nothing is known beforehand about its error";
+    return candidate;
+  }
+  if (options.formulation != Formulation::euler && find_body_method(record.name).of_bodies) {
+    candidate.why_not = "steps the body itself, not its angles";
+    return candidate;
+  }
+  candidate.why_not = compute_refusal(record.name, scene);
+  if (!candidate.why_not.empty()) return candidate;
+  const double accuracy = get_accuracy(options);
+  const double coarse = forecast.find_rtol(accuracy, facts.turns);
+  candidate.rtol = std::max(coarse / pair_ratio, record.least_rtol);
+  const double per_call = find_seconds_per_call(scene);
+  candidate.predicted_seconds = forecast.compute_seconds(candidate.rtol, facts.turns, facts.stiffness, per_call);
+  // The coarser run of the pair is there only to be compared with.
+  const double compared = std::max(coarse, pair_ratio * record.least_rtol);
+  if (options.certify && find_body_method(record.name).carries_error) {
+    candidate.predicted_seconds *= facts.is_stiff_for_series() ? carried_cost_stiff : carried_cost;
+  } else if (options.certify) {
+    candidate.predicted_seconds += forecast.compute_seconds(compared, facts.turns, facts.stiffness, per_call);
+  }
+  candidate.predicted_seconds *= find_factor(options.cost_factors, record.name);
+  // What the certificate will claim is the error of the coarser run.
+  const double shown = options.certify ? compared : candidate.rtol;
+  candidate.predicted_error = forecast.compute_error(shown, facts.turns);
+  return candidate;
+}
+
+Candidate evaluate_closed_form(const Scene& scene, const ClosedForm& form, const Facts& facts,
+                               const SolveOptions& options) {
+  Candidate candidate{.name = std::string(form.model()), .exact = true};
+  candidate.predicted_error = compute_closed_form_error(scene, facts, form);
+  candidate.predicted_seconds =
+      predict_closed_form(candidate.name, static_cast<double>(scene.times().size()), options.cost_factors);
+  return candidate;
+}
+
+double find_atol(const ode::MethodRecord& record, const Scene& scene, double rtol) {
+  if (!record.implicit) return 0.0;
+  double span = 0.0;
+  for (const double t : scene.times()) span = std::max(span, std::abs(t - scene.t0()));
+  // At most 1: the same number is allowed in the quaternion's components.
+  return rtol * std::min({1.0, scene.omega().norm(), 1.0 / span});
+}
+
+double predict_closed_form(std::string_view model, double samples, const CostFactors* factors) {
+  return (model == "heavy_top" ? top_start + top_sample * samples : free_start + free_sample * samples) *
+         find_factor(factors, model);
+}
+
+double find_factor(const CostFactors* factors, std::string_view name) {
+  if (factors == nullptr) return 1.0;
+  const auto found = factors->find(name);
+  return found == factors->end() ? 1.0 : found->second;
+}
+
+Candidate choose_method(const Scene& scene, const Facts& facts, const SolveOptions& options) {
+  if (options.method) return evaluate_method(scene, facts, options, find_method(*options.method));
+  std::optional<Candidate> best;
+  for (const ode::MethodRecord& record : methods()) {
+    Candidate candidate = evaluate_method(scene, facts, options, record);
+    if (!candidate.why_not.empty()) continue;
+    if (!best || is_better(candidate, *best, get_accuracy(options))) best = std::move(candidate);
+  }
+  if (!best) throw InvalidInput("scene", "one that some method takes", "one that none does");
+  return *best;
+}
+
+Plan make_method_plan(const Scene& scene, const Facts& facts, const SolveOptions& options) {
+  const Candidate chosen = choose_method(scene, facts, options);
+  const bool lagrangian = options.formulation == Formulation::lagrangian;
+  return {.model = lagrangian ? "lagrangian" : "euler",
+          .method = chosen.name,
+          .state = lagrangian                                  ? "phi, theta, psi and their rates"
+                   : carries_attitude(scene, facts, options) ? "omega, attitude"
+                                                             : "omega",
+          .accuracy = get_accuracy(options),
+          .certify = options.certify,
+          .rtol = chosen.rtol,
+          .predicted_error = chosen.predicted_error,
+          .predicted_seconds = chosen.predicted_seconds};
+}
+
+Plan make_exact_plan(const Scene& scene, const ClosedForm& form, const Facts& facts, const SolveOptions& options) {
+  const Candidate chosen = evaluate_closed_form(scene, form, facts, options);
+  return {.model = chosen.name,
+          .method = "exact",
+          .state = scene.want().attitude ? "omega, attitude" : "omega",
+          .accuracy = get_accuracy(options),
+          .certify = options.certify,
+          .predicted_error = chosen.predicted_error,
+          .predicted_seconds = chosen.predicted_seconds};
+}
+
+}  // namespace polhode

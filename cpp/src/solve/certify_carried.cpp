@@ -1,0 +1,33 @@
+#include "solve/certify_carried.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "polhode/ode/tracked_taylor.hpp"
+
+namespace polhode {
+
+Attempt run_carried(CountedRuns& runs, double rtol, double safety, double most, double& given_up) {
+  const double accuracy = runs.decision().plan.accuracy;
+  ode::ErrorTrace trace{.asked = accuracy / safety,
+                        .most = most,
+                        .all_terms = runs.decision().facts.is_stiff_for_series()};
+  Attempt attempt{.motion = runs.run(runs.decision().scene, runs.options(), rtol, false, &trace)};
+  Motion& motion = attempt.motion;
+  motion.rtol_used = rtol;
+  given_up = trace.given_up;
+  if (!attempt.finished() || motion.t.empty()) return attempt;
+  double size = 0.0;
+  for (std::size_t i = 0; i + 2 < motion.omega.size(); i += 3) {
+    size = std::max(size, std::hypot(motion.omega[i], motion.omega[i + 1], motion.omega[i + 2]));
+  }
+  const double rates = motion.omega.empty() || trace.moved == 0.0 ? 0.0 : trace.moved / size;
+  const double error = std::max(rates, motion.attitude.empty() ? 0.0 : trace.turned);
+  // What is carried along grows without end; two attitudes are no farther apart than half a turn.
+  attempt.error = safety * std::min(error, std::numbers::pi);
+  attempt.holds_until = attempt.error <= accuracy ? unknown_error : trace.parting;
+  return attempt;
+}
+
+}  // namespace polhode

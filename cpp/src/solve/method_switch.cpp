@@ -1,0 +1,151 @@
+#include "solve/method_switch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "method/method.hpp"
+#include "solve/candidates.hpp"
+#include "solve/options.hpp"
+#include "solve/pilot.hpp"
+
+namespace polhode {
+namespace {
+
+constexpr double least_stiffness = 300.0;   // decay x span below which no implicit step has ever paid
+constexpr double required_gain = 0.7;       // of the cost of the better method alone
+constexpr double pilot_share = 0.2;         // of an explicit run's steps that the pilot run may take
+constexpr double start_up_steps = 30.0;     // that Radau takes until its step is as long as it will be
+constexpr int log_samples = 80, per_decade = 8;   // of time from the start: a fast transient is seen whatever the span
+constexpr int even_samples = 24;
+
+/// The pilot run of a damped body until it is at rest; work is in radians and e-foldings of |omega|.
+struct DampedRun {
+  std::vector<double> t, work;
+  double angle = 0.0;    ///< turned [rad]
+  double steps = 0.0;    ///< of the pilot run
+};
+
+std::optional<DampedRun> run_pilot(const Decision& decision, const SolveOptions& options, long most_steps) {
+  const Scene& scene = decision.scene;
+  const Facts& facts = decision.facts;
+  SceneParts parts = scene.parts();
+  parts.times.clear(), parts.name.clear();
+  for (int i = log_samples; i > 0; --i)
+    parts.times.push_back(scene.t0() + facts.after * std::pow(10.0, -static_cast<double>(i) / per_decade));
+  for (int i = 1; i <= even_samples; ++i) parts.times.push_back(scene.t0() + facts.after * i / even_samples);
+  std::sort(parts.times.begin(), parts.times.end());
+  parts.want = {true, carries_attitude(scene, facts, options)};
+  SolveOptions limited;
+  limited.max_steps = most_steps;
+  limited.progress = options.progress;
+  const double absolute = find_atol(radau_method.record, scene, pilot_rtol);
+  const Trajectory trajectory =
+      radau_method.integrate(Scene(std::move(parts)), to_run_options(limited, {pilot_rtol, absolute}));
+  if (trajectory.status != Status::finished) return std::nullopt;
+  const double start_rate = scene.omega().norm();
+  const PilotRun pilot = measure_rotation(trajectory, scene.t0(), start_rate);
+  DampedRun run;
+  run.steps = static_cast<double>(trajectory.stats.steps);
+  const double least = 1e-3 * get_accuracy(options) * std::min(start_rate, 1 / facts.after);
+  double t = scene.t0(), rate = start_rate, work = 0.0;
+  for (std::size_t i = 0; i < pilot.t.size() && pilot.rate[i] > least; ++i) {
+    const double turned = 0.5 * (rate + pilot.rate[i]) * (pilot.t[i] - t);
+    run.angle += turned;
+    work += turned + std::abs(std::log(pilot.rate[i] / rate));
+    t = pilot.t[i], rate = pilot.rate[i];
+    run.t.push_back(t), run.work.push_back(work);
+  }
+  return run;
+}
+
+}  // namespace
+
+bool plan_damped(Decision& decision, const SolveOptions& options) {
+  const Scene& scene = decision.scene;
+  const Facts& facts = decision.facts;
+  if (!method_is_free(options) || facts.before > 0 || facts.stiffness < least_stiffness) return false;
+  if (!compute_refusal("taylor", scene).empty()) return false;
+  const ode::MethodRecord &first = taylor_method.record, &second = radau_method.record;
+  const ode::Forecast &explicitly = first.forecast, &implicitly = second.forecast;
+  const std::optional<DampedRun> run =
+      run_pilot(decision, options, static_cast<long>(pilot_share * facts.stiffness / explicitly.stability));
+  if (!run || run->t.empty()) return false;
+
+  const double accuracy = get_accuracy(options), turns = run->angle / (2 * std::numbers::pi);
+  const double coarse = explicitly.find_rtol(accuracy, turns), scale = implicitly.find_rtol(accuracy, turns) / coarse;
+  // Cost of a radian, or of a radian or an e-folding; a certificate takes two runs of both.
+  const auto cost_per_radian = [&](const ode::MethodRecord& record, double rtol) {
+    const ode::Forecast& forecast = record.forecast;
+    double seconds = 0.0;
+    for (const double tolerance : {rtol, rtol / pair_ratio}) {
+      if (tolerance == rtol && !options.certify) continue;
+      const double raised = std::max(tolerance, record.least_rtol);
+      seconds += forecast.compute_seconds(raised, 1e6 / (2 * std::numbers::pi), 0.0, 0.0) / 1e6;
+    }
+    return seconds * find_factor(options.cost_factors, record.name);
+  };
+  const double radian = cost_per_radian(first, coarse), implicit_radian = cost_per_radian(second, coarse * scale);
+  const double stable =
+      radian / (explicitly.steps_per_radian * std::pow(coarse, -explicitly.power)) * facts.decay / explicitly.stability;
+  const double step = implicit_radian / (implicitly.steps_per_radian * std::pow(coarse * scale, -implicitly.power));
+  const double start_up = start_up_steps * step;
+  const double all = run->work.back(), end = scene.t0() + facts.after;
+
+  double best = std::numeric_limits<double>::infinity(), when = end, spent = 0.0, t = scene.t0(), work = 0.0,
+         before = 0.0;
+  for (std::size_t i = 0; i < run->t.size(); ++i) {
+    spent += std::max((run->work[i] - work) * radian, (run->t[i] - t) * stable);
+    t = run->t[i], work = run->work[i];
+    const double total = spent + (all - work) * implicit_radian + start_up;
+    if (t < end && total < best) best = total, when = t, before = spent;
+  }
+  // Turns about a principal axis cost Radau's rates no steps: the pilot run has counted those that are needed.
+  const double counted = step * run->steps * std::pow(coarse * scale / pilot_rtol, -implicitly.power);
+  const double taylor_alone = spent + (end - t) * stable,
+               radau_alone = std::min(all * implicit_radian + start_up, counted);
+  Plan& plan = decision.plan;
+  decision.facts.turns = decision.turns = turns;
+  plan = make_method_plan(scene, facts, options);
+  if (radau_alone < required_gain * taylor_alone && plan.method != second.name) {
+    SolveOptions by_radau = options;
+    by_radau.method = std::string(second.name);
+    plan = make_method_plan(scene, facts, by_radau);
+    plan.predicted_seconds = radau_alone;
+  }
+  if (!(best < required_gain * std::min(taylor_alone, radau_alone))) return true;
+
+  const bool mostly_first = before >= 0.5 * best;
+  plan.method = mostly_first ? first.name : second.name;
+  plan.predicted_seconds = best;
+  const double main_coarse = mostly_first ? coarse : coarse * scale;
+  const ode::MethodRecord& main = mostly_first ? first : second;
+  plan.rtol = std::max(main_coarse / pair_ratio, main.least_rtol);
+  plan.predicted_error = main.forecast.compute_error(
+      options.certify ? std::max(main_coarse, pair_ratio * main.least_rtol) : plan.rtol, turns);
+  std::vector<std::string> names;
+  for (const AnyTorque& torque : scene.torques()) names.emplace_back(torque_name(torque));
+  double turns_before = 0.0;
+  for (std::size_t i = 0; i < run->t.size() && run->t[i] <= when; ++i) turns_before = run->work[i] / all * turns;
+  plan.pieces = {{.begin = scene.t0(),
+                  .end = when,
+                  .torques = names,
+                  .model = "euler",
+                  .method = std::string(first.name),
+                  .turns = turns_before,
+                  .predicted_seconds = before,
+                  .rtol_scale = mostly_first ? 1.0 : 1 / scale},
+                 {.begin = when,
+                  .end = end,
+                  .torques = names,
+                  .model = "euler",
+                  .method = std::string(second.name),
+                  .turns = turns - turns_before,
+                  .predicted_seconds = best - before,
+                  .rtol_scale = mostly_first ? scale : 1.0}};
+  decision.pieces = cut(scene, {when});
+  for (std::size_t i = 0; i < 2; ++i) decision.pieces.forward[i].plan = plan.pieces[i];
+  return true;
+}
+
+}  // namespace polhode

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <vector>
+
+#include "polhode/method/trajectory.hpp"
+
+namespace polhode {
+
+/// What a low-accuracy run shows of the rotation ahead: |omega| and the angle turned, sample by sample.
+struct PilotRun {
+  std::vector<double> t, rate;    ///< [s], [rad/s]
+  std::vector<double> angle;      ///< integral of |omega| since the start by trapezoids [rad]
+  double revolutions() const;     ///< over all samples
+};
+
+inline constexpr double pilot_rtol = 1e-4;   ///< the tolerance of pilot runs
+
+/// @param t0, rate0  time and |omega| of the start
+PilotRun measure_rotation(const Trajectory& trajectory, double t0, double rate0);
+
+}  // namespace polhode

@@ -1,0 +1,209 @@
+#include "solve/plan_pieces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "method/method.hpp"
+#include "polhode/core/error.hpp"
+#include "solve/candidates.hpp"
+#include "solve/exact_run.hpp"
+#include "solve/options.hpp"
+#include "solve/pilot.hpp"
+
+namespace polhode {
+namespace {
+
+constexpr int rate_samples = 16;        // of |omega| in a piece, to estimate its revolutions
+constexpr long pilot_steps = 20'000;    // a piece that needs more is planned by its start
+
+/// Plans one piece after another as a pilot run reaches them.
+class PiecePlanner {
+ public:
+  PiecePlanner(Decision& decision, const SolveOptions& options)
+      : decision_(decision),
+        scene_(decision.scene),
+        options_(options),
+        pieces_(decision.pieces.all()),
+        sorted_(decision.scene.times()) {
+    std::sort(sorted_.begin(), sorted_.end());
+  }
+
+  void plan() {
+    if (options_.method == "exact") require_closed_forms();
+    run_pilot();
+    choose_tolerances();
+    Plan& plan = decision_.plan;
+    plan = {.model = options_.formulation == Formulation::euler ? "pieces" : "lagrangian",
+            .method = main_ == nullptr ? "exact" : std::string(main_->name),
+            .state = carries_attitude(scene_, decision_.pieces, options_) ? "omega, attitude" : "omega",
+            .accuracy = get_accuracy(options_),
+            .certify = options_.certify,
+            .predicted_seconds = 0.0};
+    decision_.facts = sum_facts();
+    for (Piece* piece : pieces_) {
+      piece->plan.predicted_seconds *= options_.certify ? 2 : 1;
+      plan.predicted_seconds += piece->plan.predicted_seconds;
+      decision_.turns += piece->plan.turns;
+      plan.pieces.push_back(piece->plan);
+    }
+    if (main_ == nullptr) {
+      plan.predicted_error = 20 * std::numeric_limits<double>::epsilon() * (1 + decision_.turns);
+    } else {
+      const double compared = std::max(coarse_, pair_ratio * main_->least_rtol);
+      plan.rtol = std::max(coarse_ / pair_ratio, main_->least_rtol);
+      plan.predicted_error = main_->forecast.compute_error(options_.certify ? compared : plan.rtol, turns_);
+    }
+    std::sort(plan.pieces.begin(), plan.pieces.end(),
+              [](const PiecePlan& a, const PiecePlan& b) { return a.begin < b.begin; });
+  }
+
+ private:
+  void require_closed_forms() const {
+    for (const Piece* piece : pieces_) {
+      const Scene part = make_piece_scene(scene_, *piece, scene_.start(), {piece->end}, scene_.want());
+      const Facts facts = compute_facts(part);
+      if (find_closed_form(part, facts)) continue;
+      throw InvalidInput("method 'exact'", "used where every piece between the windows' ends has a closed form",
+                         exact_models().back().refuse(part, facts) + ", " + describe_span(*piece),
+                         "no closed form is known for it; leave method out");
+    }
+  }
+
+  /// Pieces that the pilot run did not reach are planned from the scene's start.
+  void run_pilot() {
+    SceneParts parts = scene_.parts();
+    parts.times.clear();
+    for (const Piece* piece : pieces_) {
+      for (int i = 1; i <= rate_samples; ++i)
+        parts.times.push_back(i == rate_samples ? piece->end
+                                                : piece->begin + (piece->end - piece->begin) * i / rate_samples);
+    }
+    parts.want = {true, false};
+    SolveOptions options;
+    options.formulation = options_.formulation;
+    options.progress = options_.progress;
+    run_pieces(Scene(std::move(parts)), decision_.pieces, options,
+               [this](const Scene& part, const Piece&, const SolveOptions& piece_options) {
+                 return run_pilot_piece(part, piece_options);
+               });
+    while (facts_.size() < pieces_.size()) {
+      const Piece& piece = *pieces_[facts_.size()];
+      State start = scene_.start();
+      start.t = piece.begin;
+      plan_piece(make_piece_scene(scene_, piece, start, {piece.end}, scene_.want()));
+    }
+  }
+
+  /// Pieces are run in the order of pieces_.
+  Motion run_pilot_piece(const Scene& part, const SolveOptions& options) {
+    PiecePlan& plan = plan_piece(part);
+    Facts& facts = facts_.back();
+    if (plan.method == "exact") {
+      const std::optional<ClosedForm> form = find_closed_form(part, facts);
+      return run_closed_form(part, facts, options, *form, make_exact_plan(part, *form, facts, options_));
+    }
+    SolveOptions limited = options;
+    limited.max_steps = pilot_steps;
+    Motion motion(find_body_method(plan.method).integrate(part, to_run_options(limited, {pilot_rtol})));
+    if (motion.status == Status::finished)
+      plan.turns = facts.turns = measure_rotation(motion, part.t0(), part.omega().norm()).revolutions();
+    return motion;
+  }
+
+  PiecePlan& plan_piece(const Scene& part) {
+    PiecePlan& plan = pieces_[facts_.size()]->plan;
+    const Facts facts = compute_facts(part);
+    const auto [begin, end] = std::minmax({part.t0(), part.times().back()});
+    plan = {.begin = begin, .end = end, .model = "euler", .turns = facts.turns};
+    for (const AnyTorque& torque : part.torques()) {
+      if (!traits(torque).vanishes) plan.torques.emplace_back(torque_name(torque));
+    }
+    std::optional<ClosedForm> form;
+    if (method_is_free(options_) || options_.method == "exact") form = find_closed_form(part, facts);
+    if (form) {
+      plan.model = form->model(), plan.method = "exact";
+      const auto samples = std::upper_bound(sorted_.begin(), sorted_.end(), plan.end) -
+                           std::lower_bound(sorted_.begin(), sorted_.end(), plan.begin);
+      plan.predicted_seconds = predict_closed_form(plan.model, static_cast<double>(samples), options_.cost_factors);
+    } else {
+      plan.method = choose_method(part, facts, options_).name;
+      if (options_.formulation == Formulation::lagrangian) plan.model = "lagrangian";
+    }
+    facts_.push_back(facts);
+    return plan;
+  }
+
+  /// The tolerance that the whole chain asks for: an error in the rates of one piece is an error in the phase of all
+  /// that follow, so that each counts n (1 + (n + 2 after) / secular) where one alone has n (1 + n / secular).
+  void choose_tolerances() {
+    double most = -1.0;
+    const double accuracy = get_accuracy(options_);
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      const PiecePlan& plan = pieces_[i]->plan;
+      if (plan.method == "exact") continue;
+      const ode::MethodRecord& record = find_method(plan.method);
+      const double seconds = predict(record, record.forecast.find_rtol(accuracy, facts_[i].turns), facts_[i]);
+      if (seconds > most || std::isnan(seconds)) most = seconds, main_ = &record;
+    }
+    if (main_ == nullptr) return;
+    double after = 0.0, sum = 0.0;
+    const double secular = main_->forecast.secular;
+    for (std::size_t i = pieces_.size(); i-- > 0;) {
+      if (i + 1 == decision_.pieces.backward.size()) after = 0.0;   // the other way from the start
+      const double n = pieces_[i]->plan.turns;
+      if (pieces_[i]->plan.method != "exact") sum += n * (1 + (n + 2 * after) / secular);
+      after += n;
+    }
+    turns_ = secular / 2 * (std::sqrt(1 + 4 * sum / secular) - 1);
+    coarse_ = main_->forecast.known() ? main_->forecast.find_rtol(accuracy, turns_) : accuracy / 10;
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      PiecePlan& plan = pieces_[i]->plan;
+      if (plan.method == "exact") continue;
+      const ode::MethodRecord& record = find_method(plan.method);
+      if (record.forecast.known() && main_->forecast.known())
+        plan.rtol_scale = record.forecast.find_rtol(accuracy, turns_) / coarse_;
+      plan.predicted_seconds =
+          predict(record, plan.rtol_scale * coarse_, facts_[i]) * find_factor(options_.cost_factors, record.name);
+    }
+  }
+
+  double predict(const ode::MethodRecord& record, double rtol, const Facts& facts) const {
+    const double least = std::max(rtol, record.least_rtol);
+    return record.forecast.compute_seconds(least, facts.turns, facts.stiffness, find_seconds_per_call(scene_));
+  }
+
+  Facts sum_facts() const {
+    Facts all = compute_facts(scene_);
+    std::vector<AnyTorque> acting;
+    for (const AnyTorque& torque : scene_.torques()) {
+      const auto* during = std::get_if<torques::During>(&torque);
+      const double first = scene_.t0() - all.before, last = scene_.t0() + all.after;
+      const auto meets = [=](const torques::Window& window) { return window.begin < last && window.end > first; };
+      if (during == nullptr || std::any_of(during->windows().begin(), during->windows().end(), meets))
+        acting.push_back(torque);
+    }
+    all.torques = summarize(acting);
+    all.turns = turns_, all.stiffness = 0.0, all.decay = 0.0, all.may_spin_up = false;
+    for (const Facts& facts : facts_) {
+      all.stiffness += facts.stiffness;
+      all.decay = std::max(all.decay, facts.decay);
+    }
+    return all;
+  }
+
+  Decision& decision_;
+  const Scene& scene_;
+  const SolveOptions& options_;
+  const std::vector<Piece*> pieces_;   // in the order of the run, backward pieces first
+  std::vector<double> sorted_;
+  std::vector<Facts> facts_;           // of the pieces that have been planned
+  const ode::MethodRecord* main_ = nullptr;
+  double turns_ = 0.0, coarse_ = 0.0;
+};
+
+}  // namespace
+
+void plan_pieces(Decision& decision, const SolveOptions& options) { PiecePlanner(decision, options).plan(); }
+
+}  // namespace polhode

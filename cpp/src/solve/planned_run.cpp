@@ -1,0 +1,104 @@
+#include "solve/planned_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "method/method.hpp"
+#include "polhode/core/error.hpp"
+#include "solve/candidates.hpp"
+#include "solve/distance.hpp"
+#include "solve/exact_run.hpp"
+#include "solve/options.hpp"
+#include "solve/perturb.hpp"
+
+namespace polhode {
+namespace {
+
+/// Rates too small to affect any sample are set to zero where a piece begins: a torque that acts anew would take its
+/// first step by their size, far below the spacing of the times.
+std::optional<Scene> zero_negligible_rates(const Scene& piece, const Scene& whole, double rtol) {
+  double span = 0.0;
+  for (const double t : whole.times()) span = std::max(span, std::abs(t - whole.t0()));
+  const double rate = piece.omega().norm();
+  if (piece.t0() == whole.t0() || rate == 0.0 || !(rate < 0.01 * rtol * std::min(whole.omega().norm(), 1 / span)))
+    return std::nullopt;
+  SceneParts parts = piece.parts();
+  parts.omega.setZero();
+  return Scene(std::move(parts));
+}
+
+void copy_plans(const std::vector<Piece>& from, std::vector<Piece>& to) {
+  for (std::size_t i = 0; i < to.size() && !from.empty(); ++i) to[i].plan = from[std::min(i, from.size() - 1)].plan;
+}
+
+}  // namespace
+
+Motion run_planned(const Decision& decision, const Scene& scene, const SolveOptions& options, double rtol,
+                   bool perturb_joins) {
+  Pieces pieces = cut(scene, decision.pieces.method_switches);
+  copy_plans(decision.pieces.backward, pieces.backward);
+  copy_plans(decision.pieces.forward, pieces.forward);
+  const auto run_piece = [&](const Scene& part, const Piece& piece, const SolveOptions& piece_options) -> Motion {
+    std::string name = piece.plan.method;
+    if (name == "exact") {
+      const Facts facts = compute_facts(part);
+      if (const std::optional<ClosedForm> form = find_closed_form(part, facts))
+        return run_closed_form(part, facts, piece_options, *form, make_exact_plan(part, *form, facts, piece_options));
+      name = choose_method(part, facts, piece_options).name;   // perturbed inputs may have lost the closed form
+    }
+    const BodyMethod& method = find_body_method(name);
+    const double scaled = std::max(rtol * piece.plan.rtol_scale, method.record.least_rtol);
+    const std::optional<Scene> at_rest = zero_negligible_rates(part, scene, scaled);
+    const Scene& start = at_rest ? *at_rest : part;
+    Motion motion(
+        method.integrate(start, to_run_options(piece_options, {scaled, find_atol(method.record, scene, scaled)})));
+    // Its first step was below the times' spacing.
+    const bool stuck = motion.status == Status::failed && motion.stats.steps == 0;
+    if (!stuck || name == "taylor" || !compute_refusal("taylor", start).empty()) return motion;
+    const double least = taylor_method.record.least_rtol;
+    return Motion(taylor_method.integrate(start, to_run_options(piece_options, {std::max(rtol, least)})));
+  };
+  return run_pieces(scene, pieces, options, run_piece, perturb_joins);
+}
+
+Motion solve_exact_pieces(const Decision& decision, const SolveOptions& options) {
+  const Scene& scene = decision.scene;
+  Motion motion = run_planned(decision, scene, options, 0.0, false);
+  motion.plan = decision.plan;
+  motion.asked = decision.plan.accuracy;
+  constexpr std::size_t most = 256;   // samples that are compared: the error grows along the span
+  const std::size_t n = motion.t.size(), stride = std::max<std::size_t>(1, n / most);
+  SceneParts parts = scene.parts();
+  parts.times.clear();
+  std::vector<double> omega, attitude;
+  for (std::size_t i = (n - 1) % stride; i < n; i += stride) {
+    parts.times.push_back(motion.t[i]);
+    if (!motion.omega.empty()) omega.insert(omega.end(), &motion.omega[3 * i], &motion.omega[3 * i] + 3);
+    if (!motion.attitude.empty())
+      attitude.insert(attitude.end(), &motion.attitude[4 * i], &motion.attitude[4 * i] + 4);
+  }
+  if (!parts.times.empty()) {
+    SolveOptions comparison = options;
+    comparison.dense = false, comparison.events.clear(), comparison.progress = {};
+    const Motion other = run_planned(decision, perturb(Scene(std::move(parts))), comparison, 0.0, true);
+    const auto data = [](const std::vector<double>& v) { return v.empty() ? nullptr : v.data(); };
+    motion.error +=
+        1.5 * compute_distance(other.t.size(), data(omega), data(attitude), data(other.omega), data(other.attitude));
+  }
+  ++motion.runs;
+  motion.error_kind = motion.error <= motion.asked ? "bounded" : "limit";
+  if (motion.message.empty()) {
+    motion.message = "evaluated at every time by the closed forms of " + std::to_string(decision.pieces.size()) +
+                     " pieces; what rounding at their ends does bounds the error";
+  }
+  if (motion.error > motion.asked && motion.status == Status::finished) {
+    motion.message.append("; float64 allows ")
+        .append(to_text(motion.error))
+        .append(", not the ")
+        .append(to_text(motion.asked));
+    motion.message += " asked";
+  }
+  return motion;
+}
+
+}  // namespace polhode
