@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "batch/lanes/clock.hpp"
+#include "batch/lanes/lane_state.hpp"
 #include "polhode/ode/method_record.hpp"
 #include "polhode/solve/solve.hpp"
 

@@ -8,7 +8,7 @@
 #include <mutex>
 #include <utility>
 
-#include "batch/ride.hpp"
+#include "batch/lane_scheduler.hpp"
 #include "polhode/batch/parallel.hpp"
 #include "polhode/core/error.hpp"
 #include "solve/options.hpp"

@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "heavy_top_setup.hpp"
+#include "exact/heavy_top_start.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/exact/heavy_top_kernels.hpp"
 

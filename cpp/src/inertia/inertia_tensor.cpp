@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "inertia/door.hpp"
+#include "inertia/validation.hpp"
 #include "polhode/core/error.hpp"
 
 namespace polhode {

@@ -3,7 +3,7 @@
 #include <limits>
 #include <string>
 
-#include "inertia/door.hpp"
+#include "inertia/validation.hpp"
 #include "polhode/core/error.hpp"
 
 namespace polhode {

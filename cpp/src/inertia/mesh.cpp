@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "inertia/door.hpp"
 #include "inertia/lanes/levels.hpp"
 #include "inertia/mesh_faces.hpp"
+#include "inertia/validation.hpp"
 #include "polhode/core/error.hpp"
 
 namespace polhode {

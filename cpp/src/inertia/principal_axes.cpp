@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include "inertia/door.hpp"
 #include "inertia/jacobi.hpp"
+#include "inertia/validation.hpp"
 
 namespace polhode {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "batch/lanes/clock.hpp"
+#include "batch/lanes/lane_state.hpp"
 #include "polhode/ode/series.hpp"
 #include "method/series/series_terms.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exact/heavy_top_setup.hpp"
+#include "exact/heavy_top_start.hpp"
 #include "exact/lanes/heavy_top_complex.hpp"
 
 namespace polhode::POLHODE_ISA {

@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "inertia/door.hpp"
+#include "inertia/validation.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/inertia/shapes.hpp"
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "batch/rider.hpp"
+#include "batch/lane_job.hpp"
 #include "polhode/ode/problem.hpp"
 
 namespace polhode {

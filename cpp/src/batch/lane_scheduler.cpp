@@ -1,4 +1,4 @@
-#include "batch/ride.hpp"
+#include "batch/lane_scheduler.hpp"
 
 #include <algorithm>
 

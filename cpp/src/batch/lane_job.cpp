@@ -1,4 +1,4 @@
-#include "batch/rider.hpp"
+#include "batch/lane_job.hpp"
 
 #include <algorithm>
 #include <cmath>

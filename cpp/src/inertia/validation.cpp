@@ -1,4 +1,4 @@
-#include "inertia/door.hpp"
+#include "inertia/validation.hpp"
 
 #include <algorithm>
 #include <cmath>
