@@ -10,16 +10,16 @@
 #include "polhode/batch/parallel.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/exact/free_motion.hpp"
-#include "rows.hpp"
+#include "batch/rows.hpp"
 
 namespace polhode {
 namespace {
 
-constexpr std::size_t block = 64;  // bodies set up together: their constants stay in the cache
+constexpr std::size_t block = 64;  // bodies that are set up together, so that their constants stay in the cache
 
 bool finite(const double* values, std::size_t n) { return within(values, n); }
 
-/// The door for one body of finite numbers; its largest |omega_i| comes back.
+/// Checks one body, whose numbers are finite. Returns its largest |omega_i|.
 double check_body(const FreeMotionBatch& b, std::size_t body) {
   const double *I = b.moments + 3 * body, *w = b.omega + 3 * body, *q = b.attitude + 4 * body;
   const double largest = std::max({I[0], I[1], I[2]}), smallest = std::min({I[0], I[1], I[2]});
@@ -52,7 +52,7 @@ void check_times(const double* t, std::size_t n, double reach, double speed, std
   }
 }
 
-/// One run of bodies, on one thread.
+/// A range of bodies, evaluated on one thread.
 class Run {
  public:
   Run(const FreeMotionBatch& batch, const exact::TimeGrid& shared, double reach, double* omega, double* attitude)
@@ -61,7 +61,7 @@ class Run {
               omega,   attitude},
         reach_(reach) {}
 
-  /// Bodies [first, last); returns how many rows are poisoned.
+  /// Writes bodies [first, last). Returns the number of poisoned rows.
   std::size_t operator()(std::size_t first, std::size_t last) {
     std::size_t poisoned = 0;
     for (std::size_t begin = first; begin < last; begin += block)
@@ -73,12 +73,12 @@ class Run {
   std::size_t do_block(std::size_t begin, std::size_t end) {
     const exact::FreeKernels& kernels = exact::free_kernels();
     const std::size_t n = end - begin;
-    bool sound[block];
+    bool all_finite[block];
     for (std::size_t i = 0; i < n; ++i) {
       const std::size_t body = begin + i;
-      sound[i] =
+      all_finite[i] =
           finite(b_.moments + 3 * body, 3) && finite(b_.omega + 3 * body, 3) && finite(b_.attitude + 4 * body, 4);
-      if (!sound[i]) continue;
+      if (!all_finite[i]) continue;
       const double* t = rows_.times_of(body);
       check_times(t, b_.times, b_.own_times ? kernels.times.reach(t, b_.times) : reach_, check_body(b_, body), body);
     }
@@ -94,11 +94,11 @@ class Run {
     std::size_t poisoned = 0, next = 0;
     for (std::size_t i = 0; i < n; ++i) {
       const std::size_t body = begin + i;
-      const bool by_itself = next < remaining && left[next] == i;
-      if (by_itself) ++next;
-      if (!sound[i]) {
+      const bool singly = next < remaining && left[next] == i;
+      if (singly) ++next;
+      if (!all_finite[i]) {
         poisoned += rows_.poison(body, 0, b_.times);
-      } else if (by_itself) {
+      } else if (singly) {
         const FreeMotion motion = single(body);
         poisoned += rows_.each_run(body, [&](const exact::TimeGrid& t, double* w, double* q) { motion.at(t, w, q); });
       } else {
@@ -127,15 +127,15 @@ class Run {
 std::size_t free_motion(const FreeMotionBatch& given, double* omega, double* attitude, int threads) {
   if (given.bodies == 0 || given.times == 0) return 0;
   FreeMotionBatch batch = given;
-  batch.own_times = given.own_times && given.bodies > 1;  // one body's are those of all
+  batch.own_times = given.own_times && given.bodies > 1;  // the times of a single body are shared times
   std::atomic<std::size_t> poisoned{0};
   const std::size_t states = batch.bodies * batch.times;
   const std::size_t common = batch.own_times ? 0 : batch.times;
   const SharedTimes shared(exact::free_kernels().times, batch.t, common, batch.bodies > 1);
   if (batch.bodies == 1 && batch.times > 4096) {
-    // One body: its times are cut, at blocks of the grid.
-    const std::size_t team = thread_count(threads, states, 20000);
-    parallel_for(batch.times, team, 8 * exact::TimeGrid::block, [&](std::size_t begin, std::size_t end) {
+    // One body: its times are divided among threads, at blocks of the grid.
+    const std::size_t workers = thread_count(threads, states, 20000);
+    parallel_for(batch.times, workers, 8 * exact::TimeGrid::block, [&](std::size_t begin, std::size_t end) {
       FreeMotionBatch piece = batch;
       piece.t = batch.t + begin, piece.times = end - begin;
       const exact::TimeGrid times = shared.grid.piece(begin, end - begin);
@@ -144,8 +144,8 @@ std::size_t free_motion(const FreeMotionBatch& given, double* omega, double* att
     });
     return poisoned;
   }
-  const std::size_t team = thread_count(threads, states, 2000);
-  parallel_for(batch.bodies, team, block, [&](std::size_t begin, std::size_t end) {
+  const std::size_t workers = thread_count(threads, states, 2000);
+  parallel_for(batch.bodies, workers, block, [&](std::size_t begin, std::size_t end) {
     poisoned += Run(batch, shared.grid, shared.reach, omega, attitude)(begin, end);
   });
   return poisoned;

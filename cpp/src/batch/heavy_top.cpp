@@ -6,7 +6,7 @@
 #include "polhode/core/error.hpp"
 #include "polhode/exact/heavy_top.hpp"
 #include "polhode/exact/heavy_top_kernels.hpp"
-#include "rows.hpp"
+#include "batch/rows.hpp"
 
 namespace polhode {
 namespace {
@@ -20,7 +20,7 @@ HeavyTop make_top(const HeavyTopBatch& b, std::size_t body) {
   }
 }
 
-/// Tops [first, last) at times [from, from + count) of each; returns how many rows are poisoned.
+/// Writes tops [first, last). Returns the number of poisoned rows.
 std::size_t run(const HeavyTopBatch& b, const Rows& rows, std::size_t first, std::size_t last) {
   std::size_t poisoned = 0;
   for (std::size_t body = first; body < last; ++body) {
@@ -41,13 +41,13 @@ std::size_t run(const HeavyTopBatch& b, const Rows& rows, std::size_t first, std
 std::size_t heavy_top(const HeavyTopBatch& given, double* omega, double* attitude, int threads) {
   if (given.bodies == 0 || given.times == 0) return 0;
   HeavyTopBatch batch = given;
-  batch.own_times = given.own_times && given.bodies > 1;  // one top's are those of all
+  batch.own_times = given.own_times && given.bodies > 1;  // the times of a single top are shared times
   std::atomic<std::size_t> poisoned{0};
   const std::size_t common = batch.own_times ? 0 : batch.times;
   const SharedTimes shared(exact::heavy_top_kernels().times, batch.t, common, batch.bodies > 1);
   const bool finite = !batch.own_times && std::isfinite(shared.reach);
   if (batch.bodies == 1 && batch.times > 4096) {
-    // One top: its times are cut, at blocks of the grid.
+    // One top: its times are divided among threads, at blocks of the grid.
     parallel_for(batch.times, thread_count(threads, batch.times, 20000), 8 * exact::TimeGrid::block,
                  [&](std::size_t begin, std::size_t end) {
                    const exact::TimeGrid piece = shared.grid.piece(begin, end - begin);

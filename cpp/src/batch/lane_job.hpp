@@ -10,43 +10,45 @@
 
 namespace polhode {
 
-/// A body on its way through a lane: backwards to the times before its start, then forwards, as solve() goes.
-class Rider {
+/// The run of one body in a lane: backward to the times before its start, then forward, in the order of solve().
+class LaneJob {
  public:
-  Rider(Scene scene, const LaneMethod& method);
+  LaneJob(Scene scene, const LaneMethod& method);
 
   const Scene& scene() const { return scene_; }
-  const LaneBody& body() const { return *body_; }
+  const LaneProblem& problem() const { return *problem_; }
   const std::string& kind() const { return kind_; }
   Motion& motion() { return motion_; }
 
-  /// Takes its place for the next leg; false when there is none left.
-  bool board(LaneTeam& team, int lane);
+  /// Loads the lane for the next direction; false when none is left.
+  bool start_next_direction(LaneIntegrator& integrator, int lane);
   /// Whether another sample lies in the last step.
-  bool has_sample(const LaneClock& clock, int lane) const;
-  double sample_time() const { return scene_.times()[(*leg_)[next_]]; }
-  void take_sample(LaneClock& clock, int lane, const double* y);
-  /// After its lane has called; false when the leg is over.
-  bool go_on(const LaneClock& clock, int lane);
-  void stop(const LaneClock& clock, int lane);
-  void never_begin();
-  /// Leaves out the rows that were not reached, as solve() does.
+  bool has_sample(const LaneState& state, int lane) const;
+  double sample_time() const { return scene_.times()[(*direction_)[next_]]; }
+  void take_sample(LaneState& state, int lane, const double* y);
+  /// Called when the lane needed the host; false when the direction is done or has failed.
+  bool continues(const LaneState& state, int lane);
+  /// Ends a running job because the caller stopped the batch.
+  void stop(const LaneState& state, int lane);
+  /// The same for a job that has not started.
+  void cancel();
+  /// Removes the rows that were not reached, as solve() does.
   void finish();
 
  private:
-  void count(const LaneClock& clock, int lane);
+  void count(const LaneState& state, int lane);
   void fail(Status status, const std::string& why, const char* when = " at t = ");
   void write(std::size_t row, const double* omega, const double* attitude);
 
   Scene scene_;
-  std::unique_ptr<LaneBody> body_;
+  std::unique_ptr<LaneProblem> problem_;
   std::string kind_;
   SampleOrder itinerary_;
   Motion motion_;
-  std::vector<unsigned char> answered_;
-  const std::vector<std::size_t>* leg_ = nullptr;
-  int legs_ = 0;
-  std::size_t next_ = 0;
+  std::vector<unsigned char> reached_;                     ///< one flag a row
+  const std::vector<std::size_t>* direction_ = nullptr;    ///< rows in the order of integration
+  int directions_started_ = 0;
+  std::size_t next_ = 0;                                   ///< index into *direction_
 };
 
 }  // namespace polhode

@@ -9,48 +9,49 @@
 
 namespace polhode {
 
-class LaneTeam;
+class LaneIntegrator;
 
-/// A body as one of the methods steps it in a lane.
-class LaneBody {
+/// One body, prepared for one lane method.
+class LaneProblem {
  public:
-  virtual ~LaneBody() = default;
+  virtual ~LaneProblem() = default;
 
-  /// Bodies of one kind ride together: what the kernels are compiled for, or ask of all lanes alike.
+  /// Problems of one kind can share an integrator. Kernels are compiled for a kind, or need it equal in all lanes.
   virtual std::string kind() const = 0;
   virtual std::string describe_state() const = 0;   ///< for the plan
-  /// w_B and, where it is carried, q_WB of a sample.
+  /// Writes w_B and, where the attitude is carried, q_WB of a sample.
   virtual void unpack(const double* y, double* omega, double* attitude) const = 0;
-  /// Lanes for bodies of its kind.
-  virtual std::unique_ptr<LaneTeam> make_team(const ode::Tolerances& tolerances) const = 0;
+  /// An integrator for problems of this kind.
+  virtual std::unique_ptr<LaneIntegrator> make_integrator(const ode::Tolerances& tolerances) const = 0;
 };
 
-/// Eight lanes of one method. Riders take their places in it; who, and what becomes of them, it does not know.
-class LaneTeam {
+/// Steps eight problems of one kind with one method. It knows neither the samples nor the queue of bodies: see
+/// run_in_lanes().
+class LaneIntegrator {
  public:
-  static constexpr int width = LaneClock::width;
+  static constexpr int width = LaneState::width;
 
-  virtual ~LaneTeam() = default;
+  virtual ~LaneIntegrator() = default;
 
-  virtual LaneClock& clock() = 0;
-  /// The body's constants and its start; its times are on the clock already.
-  virtual void seat(int lane, const LaneBody& body) = 0;
-  /// Nothing that could be slow or not finite in a lane without a rider.
-  virtual void leave_empty(int lane) = 0;
-  /// Steps until one of the riding calls, at most so many times: a sample lies in its last step, it cannot go on, or it
-  /// has made its steps. The bits of those that call.
+  virtual LaneState& state() = 0;
+  /// Puts a problem into a lane: its constants and its start. The lane's times are already in the state.
+  virtual void load(int lane, const LaneProblem& problem) = 0;
+  /// Empties a lane. What remains in it must be finite and must not slow the others down.
+  virtual void clear(int lane) = 0;
+  /// Steps all lanes until an active one needs the host, at most `rounds` times. A lane needs the host when a sample
+  /// lies in its last step, when it cannot continue, or when it has made max_steps. Returns the bits of these lanes.
   virtual unsigned advance(int rounds) = 0;
-  /// Where a time lies within a lane's last step, as `sample` asks for it.
-  virtual double find_place(int lane, double t) const = 0;
-  virtual void sample(const double* places, double (*y)[width]) = 0;
+  /// Converts a time to the position within a lane's last step that `sample` takes.
+  virtual double find_position(int lane, double t) const = 0;
+  virtual void sample(const double* positions, double (*y)[width]) = 0;
 };
 
 /// A method that steps bodies side by side.
 struct LaneMethod {
   const ode::MethodRecord& record;
-  bool (*takes)(const Scene& scene);   ///< what it does not take goes by itself
-  /// The scene outlives the body.
-  std::unique_ptr<LaneBody> (*make_body)(const Scene& scene);
+  bool (*accepts)(const Scene& scene);   ///< other scenes are solved one by one
+  /// The scene must outlive the problem.
+  std::unique_ptr<LaneProblem> (*make_problem)(const Scene& scene);
 };
 
 extern const LaneMethod taylor_lanes, rk45_lanes;

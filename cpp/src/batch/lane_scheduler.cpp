@@ -5,76 +5,78 @@
 namespace polhode {
 namespace {
 
-constexpr int width = LaneTeam::width;
-constexpr int rounds_between_questions = 1024;
+constexpr int width = LaneIntegrator::width;
+constexpr int rounds_between_polls = 1024;
 
-void ride_together(const std::vector<Rider*>& riders, const ode::Tolerances& tolerances, long max_steps,
-                   const std::function<bool()>& stopped) {
-  const std::unique_ptr<LaneTeam> team = riders.front()->body().make_team(tolerances);
-  LaneClock& clock = team->clock();
-  clock.most_steps = static_cast<double>(max_steps);
+/// Runs jobs of one kind.
+void run_kind(const std::vector<LaneJob*>& jobs, const ode::Tolerances& tolerances, long max_steps,
+              const std::function<bool()>& stopped) {
+  const std::unique_ptr<LaneIntegrator> integrator = jobs.front()->problem().make_integrator(tolerances);
+  LaneState& state = integrator->state();
+  state.max_steps = static_cast<double>(max_steps);
 
-  Rider* in[width] = {};
-  std::size_t waiting = 0;
-  const auto fill = [&](int lane) {
-    while (in[lane] != nullptr || waiting < riders.size()) {
-      if (in[lane] == nullptr) in[lane] = riders[waiting++];
-      if (in[lane]->board(*team, lane)) return;
-      in[lane] = nullptr;
+  LaneJob* job_in[width] = {};
+  std::size_t next_job = 0;
+  const auto refill = [&](int lane) {
+    while (job_in[lane] != nullptr || next_job < jobs.size()) {
+      if (job_in[lane] == nullptr) job_in[lane] = jobs[next_job++];
+      if (job_in[lane]->start_next_direction(*integrator, lane)) return;
+      job_in[lane] = nullptr;
     }
-    clock.riding &= ~(1u << lane);
-    team->leave_empty(lane);
+    state.active &= ~(1u << lane);
+    integrator->clear(lane);
   };
-  for (int lane = 0; lane < width; ++lane) fill(lane);
+  for (int lane = 0; lane < width; ++lane) refill(lane);
 
-  alignas(64) double places[width] = {}, y[8][width];
-  for (long question = rounds_between_questions; clock.riding != 0;) {
-    if (clock.rounds >= question) {
-      question = clock.rounds + rounds_between_questions;
+  alignas(64) double positions[width] = {}, y[8][width];
+  for (long next_poll = rounds_between_polls; state.active != 0;) {
+    if (state.rounds >= next_poll) {
+      next_poll = state.rounds + rounds_between_polls;
       if (stopped()) {
         for (int lane = 0; lane < width; ++lane)
-          if (in[lane] != nullptr) in[lane]->stop(clock, lane);
-        for (; waiting < riders.size(); ++waiting) riders[waiting]->never_begin();
+          if (job_in[lane] != nullptr) job_in[lane]->stop(state, lane);
+        for (; next_job < jobs.size(); ++next_job) jobs[next_job]->cancel();
         return;
       }
     }
-    const unsigned calls = team->advance(rounds_between_questions);
-    for (unsigned have = calls; have != 0;) {   // a sample of each that has one, then the next
+    const unsigned ready = integrator->advance(rounds_between_polls);
+    for (unsigned sampling = ready; sampling != 0;) {   // each pass takes one sample of every lane that has one
       for (int lane = 0; lane < width; ++lane) {
-        if ((have >> lane & 1u) == 0) continue;
-        if (!in[lane]->has_sample(clock, lane)) {
-          have &= ~(1u << lane);
+        if ((sampling >> lane & 1u) == 0) continue;
+        if (!job_in[lane]->has_sample(state, lane)) {
+          sampling &= ~(1u << lane);
         } else {
-          places[lane] = team->find_place(lane, in[lane]->sample_time());
+          positions[lane] = integrator->find_position(lane, job_in[lane]->sample_time());
         }
       }
-      if (have == 0) break;
-      team->sample(places, y);
+      if (sampling == 0) break;
+      integrator->sample(positions, y);
       for (int lane = 0; lane < width; ++lane) {
-        if ((have >> lane & 1u) == 0) continue;
+        if ((sampling >> lane & 1u) == 0) continue;
         double column[8];
         for (int i = 0; i < 8; ++i) column[i] = y[i][lane];
-        in[lane]->take_sample(clock, lane, column);
+        job_in[lane]->take_sample(state, lane, column);
       }
     }
     for (int lane = 0; lane < width; ++lane)
-      if ((calls >> lane & 1u) != 0 && !in[lane]->go_on(clock, lane)) fill(lane);
+      if ((ready >> lane & 1u) != 0 && !job_in[lane]->continues(state, lane)) refill(lane);
   }
 }
 
 }  // namespace
 
-void ride(const std::vector<std::unique_ptr<Rider>>& riders, const ode::Tolerances& tolerances, long max_steps,
-          const std::function<bool()>& stopped) {
-  std::vector<Rider*> order;
-  for (const auto& rider : riders) order.push_back(rider.get());
-  std::stable_sort(order.begin(), order.end(), [](const Rider* a, const Rider* b) { return a->kind() < b->kind(); });
+void run_in_lanes(const std::vector<std::unique_ptr<LaneJob>>& jobs, const ode::Tolerances& tolerances, long max_steps,
+                  const std::function<bool()>& stopped) {
+  std::vector<LaneJob*> order;
+  for (const auto& job : jobs) order.push_back(job.get());
+  std::ranges::stable_sort(order, {}, &LaneJob::kind);
   for (auto begin = order.begin(); begin != order.end();) {
-    const auto end = std::find_if(begin, order.end(), [&](const Rider* r) { return r->kind() != (*begin)->kind(); });
-    ride_together({begin, end}, tolerances, max_steps, stopped);
+    const auto end =
+        std::find_if(begin, order.end(), [&](const LaneJob* job) { return job->kind() != (*begin)->kind(); });
+    run_kind({begin, end}, tolerances, max_steps, stopped);
     begin = end;
   }
-  for (const auto& rider : riders) rider->finish();
+  for (const auto& job : jobs) job->finish();
 }
 
 }  // namespace polhode

@@ -9,9 +9,9 @@
 
 namespace polhode {
 
-/// Steps of all riders, eight side by side, each with its own time, step and error; a lane is taken by the next rider
-/// as soon as it is free. A rider's answer depends on nothing but itself. `stopped` is asked now and then.
-void ride(const std::vector<std::unique_ptr<Rider>>& riders, const ode::Tolerances& tolerances, long max_steps,
-          const std::function<bool()>& stopped);
+/// Runs all jobs, eight side by side, each with its own time, step and error. A lane that becomes free takes the next
+/// job. A job's result does not depend on the other jobs. `stopped` is polled every 1024 rounds.
+void run_in_lanes(const std::vector<std::unique_ptr<LaneJob>>& jobs, const ode::Tolerances& tolerances, long max_steps,
+                  const std::function<bool()>& stopped);
 
 }  // namespace polhode

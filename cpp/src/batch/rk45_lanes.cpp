@@ -14,7 +14,7 @@
 namespace polhode {
 namespace {
 
-using Row = LaneClock::Row;
+using Row = LaneState::Row;
 
 Rk45Kernels find_kernels(bool diagonal, bool attitude) {
   Rk45Kernels found = {nullptr, nullptr};
@@ -28,36 +28,36 @@ void put(Row* rows, int lane, const double* values, int n) {
   for (int i = 0; i < n; ++i) rows[i][lane] = values[i];
 }
 
-/// A torque as the lanes have it, if they do: its kind, and its numbers when `values` is given.
+/// The kind of a torque, and its numbers if `values` is given; nothing for a torque that lanes do not have.
 std::optional<LaneTorque::Kind> describe(const AnyTorque& torque, double* values = nullptr) {
   using Kind = LaneTorque::Kind;
   const auto give = [values](const double* numbers, int n) {
     if (values != nullptr) std::copy_n(numbers, n, values);
   };
-  if (const auto* one = std::get_if<torques::Constant>(&torque)) {
-    give(one->torque().data(), 3);
-    return one->frame() == torques::Constant::Frame::space ? Kind::space_constant : Kind::body_constant;
+  if (const auto* constant = std::get_if<torques::Constant>(&torque)) {
+    give(constant->torque().data(), 3);
+    return constant->frame() == torques::Constant::Frame::space ? Kind::space_constant : Kind::body_constant;
   }
-  if (const auto* one = std::get_if<torques::Gravity>(&torque)) {
-    give(one->moment().data(), 3);
+  if (const auto* gravity = std::get_if<torques::Gravity>(&torque)) {
+    give(gravity->moment().data(), 3);
     return Kind::weight;
   }
-  if (const auto* one = std::get_if<torques::GravityGradient>(&torque)) {
-    const double numbers[3] = {one->mean_motion(), one->phase(), one->strength()};
+  if (const auto* gradient = std::get_if<torques::GravityGradient>(&torque)) {
+    const double numbers[3] = {gradient->mean_motion(), gradient->phase(), gradient->strength()};
     give(numbers, 3);
     return Kind::gradient;
   }
-  if (const auto* one = std::get_if<torques::Damping>(&torque)) {
-    give(one->matrix().data(), 9);
+  if (const auto* damping = std::get_if<torques::Damping>(&torque)) {
+    give(damping->matrix().data(), 9);
     return Kind::damping;
   }
   return std::nullopt;
 }
 
-/// Euler's equations, as run_euler() has them.
-class EulerBody final : public LaneBody {
+/// Euler's equations, in the form of run_euler().
+class EulerLaneProblem final : public LaneProblem {
  public:
-  explicit EulerBody(const Scene& scene)
+  explicit EulerLaneProblem(const Scene& scene)
       : scene_(scene),
         diagonal_(scene.inertia_B().is_diagonal()),
         attitude_(scene.want().attitude || scene.torque_sum().uses_attitude) {}
@@ -79,16 +79,16 @@ class EulerBody final : public LaneBody {
               : EulerProblem<NoTorque, true, false>::unpack(y, omega, attitude);
   }
 
-  std::unique_ptr<LaneTeam> make_team(const ode::Tolerances& tolerances) const override;
+  std::unique_ptr<LaneIntegrator> make_integrator(const ode::Tolerances& tolerances) const override;
 
  private:
   const Scene& scene_;
   bool diagonal_, attitude_;
 };
 
-class Rk45Team final : public LaneTeam {
+class Rk45Integrator final : public LaneIntegrator {
  public:
-  Rk45Team(const EulerBody& first, const ode::Tolerances& tolerances)
+  Rk45Integrator(const EulerLaneProblem& first, const ode::Tolerances& tolerances)
       : kernels_(find_kernels(first.diagonal(), first.attitude())),
         tolerances_(tolerances),
         torques_(first.scene().torques().size()) {
@@ -97,10 +97,10 @@ class Rk45Team final : public LaneTeam {
     b_.torques = torques_.data(), b_.torque_count = static_cast<int>(torques_.size());
   }
 
-  LaneClock& clock() override { return b_; }
+  LaneState& state() override { return b_; }
 
-  void seat(int lane, const LaneBody& rider) override {
-    const auto& body = static_cast<const EulerBody&>(rider);
+  void load(int lane, const LaneProblem& problem) override {
+    const auto& body = static_cast<const EulerLaneProblem&>(problem);
     for (std::size_t i = 0; i < torques_.size(); ++i) {
       double values[9] = {};
       describe(body.scene().torques()[i], values);
@@ -115,17 +115,17 @@ class Rk45Team final : public LaneTeam {
     b_.rejected[lane] = b_.not_finite[lane] = 0.0;
   }
 
-  void leave_empty(int lane) override {
+  void clear(int lane) override {
     for (int i = 0; i < 7; ++i) b_.y[i][lane] = b_.f[i][lane] = 0.0;
     b_.time[lane] = b_.t_end[lane] = b_.step[lane] = 0.0;
   }
 
   unsigned advance(int rounds) override { return kernels_.advance(b_, rounds); }
-  double find_place(int lane, double t) const override { return (t - b_.time_old[lane]) / b_.step_taken[lane]; }
-  void sample(const double* places, double (*y)[width]) override { kernels_.sample(b_, places, y); }
+  double find_position(int lane, double t) const override { return (t - b_.time_old[lane]) / b_.step_taken[lane]; }
+  void sample(const double* positions, double (*y)[width]) override { kernels_.sample(b_, positions, y); }
 
  private:
-  /// The body's constants, its start, its derivative there and the first step.
+  /// Fills a lane: constants, start, derivative at the start, first step.
   template <bool diagonal, bool attitude>
   void start(int lane, const Scene& scene) {
     using Problem = EulerProblem<SeveralTorques, diagonal, attitude>;
@@ -148,19 +148,19 @@ class Rk45Team final : public LaneTeam {
   std::vector<LaneTorque> torques_;
 };
 
-std::unique_ptr<LaneTeam> EulerBody::make_team(const ode::Tolerances& tolerances) const {
-  return std::make_unique<Rk45Team>(*this, tolerances);
+std::unique_ptr<LaneIntegrator> EulerLaneProblem::make_integrator(const ode::Tolerances& tolerances) const {
+  return std::make_unique<Rk45Integrator>(*this, tolerances);
 }
 
-/// A callable serves one body at a time, and windows of time cut a span into pieces.
-bool takes_all(const Scene& scene) {
+/// Not a callable, which serves one body at a time, nor a torque with windows, which cut the span into pieces.
+bool accepts_all(const Scene& scene) {
   return std::ranges::all_of(scene.torques(), [](const AnyTorque& torque) { return describe(torque).has_value(); });
 }
 
 }  // namespace
 
-const LaneMethod rk45_lanes{ode::Rk45::record, &takes_all, [](const Scene& scene) -> std::unique_ptr<LaneBody> {
-                              return std::make_unique<EulerBody>(scene);
+const LaneMethod rk45_lanes{ode::Rk45::record, &accepts_all, [](const Scene& scene) -> std::unique_ptr<LaneProblem> {
+                              return std::make_unique<EulerLaneProblem>(scene);
                             }};
 
 }  // namespace polhode

@@ -11,7 +11,7 @@
 
 namespace polhode {
 
-/// Every |value| <= most: no for NaN and, at the default, for infinity.
+/// Whether every |value| <= most. False for NaN and, with the default, for infinity.
 inline bool within(const double* values, std::size_t n, double most = std::numeric_limits<double>::max()) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < n; ++i) count += std::abs(values[i]) <= most;
@@ -23,10 +23,10 @@ inline std::string row_name(const char* what, std::size_t body) {
   return std::string(what) + "[" + std::to_string(body) + "]";
 }
 
-/// Times that all bodies share, looked at once.
+/// Times that all bodies share, analysed once.
 class SharedTimes {
  public:
-  /// With `keep`, what every body needs of a grid is kept; without, it is found again on the way.
+  /// With `keep`, the offsets of a grid are stored for all bodies; without, each evaluation computes them.
   SharedTimes(const exact::TimeKernels& kernels, const double* t, std::size_t n, bool keep)
       : grid(t, n), reach(kernels.reach(t, n)) {
     if (!std::isfinite(reach)) grid = any_times(t, n);
@@ -45,18 +45,18 @@ class SharedTimes {
   }
 
   exact::TimeGrid grid;
-  double reach;  ///< the largest |t|; infinity where one is not finite
+  double reach;  ///< the largest |t|; infinity if a time is not finite
 
  private:
   std::vector<double> rest_, largest_;
 };
 
-/// Where the results of a batch go: omega (bodies, times, 3) and attitude (bodies, times, 4); either may be null.
+/// The output rows of a batch: omega (bodies, times, 3) and attitude (bodies, times, 4); either may be null.
 struct Rows {
   const double* t;
   std::size_t times;
   const exact::TimeGrid* shared;  ///< the times of all bodies; null where each has its own
-  bool finite;                    ///< the shared times are
+  bool finite;                    ///< whether the shared times are
   double *omega, *attitude;
 
   const double* times_of(std::size_t body) const { return t + (shared ? 0 : body * times); }
@@ -74,8 +74,8 @@ struct Rows {
     return count;
   }
 
-  /// evaluate(times, omega, attitude) for each run of finite times; the rows between are poisoned and counted. Times of
-  /// which some are not finite are no grid, wherever threads cut them.
+  /// Calls evaluate(times, omega, attitude) for each run of finite times. Poisons the other rows and returns their
+  /// number. Times that are not all finite are never taken as a grid: bits must not depend on how threads divide them.
   template <class Evaluate>
   std::size_t each_run(std::size_t body, const Evaluate& evaluate) const {
     const double* own = times_of(body);

@@ -17,23 +17,23 @@
 namespace polhode {
 namespace {
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double not_reached = std::numeric_limits<double>::quiet_NaN();
 
-/// The rows that were reached go to their places; those that were not are left NaN.
-void place(const Scene& scene, const Motion& motion, double* omega, double* attitude) {
+/// Copies the rows that were reached to their places; the others become NaN.
+void store_rows(const Scene& scene, const Motion& motion, double* omega, double* attitude) {
   const std::vector<double>& times = scene.times();
   std::size_t row = 0;
   for (std::size_t i = 0; i < times.size(); ++i) {
-    const bool there = row < motion.t.size() && motion.t[row] == times[i];
+    const bool reached = row < motion.t.size() && motion.t[row] == times[i];
     for (std::size_t k = 0; omega != nullptr && k < 3; ++k)
-      omega[3 * i + k] = there ? motion.omega[3 * row + k] : nothing;
+      omega[3 * i + k] = reached ? motion.omega[3 * row + k] : not_reached;
     for (std::size_t k = 0; attitude != nullptr && k < 4; ++k)
-      attitude[4 * i + k] = there ? motion.attitude[4 * row + k] : nothing;
-    row += there;
+      attitude[4 * i + k] = reached ? motion.attitude[4 * row + k] : not_reached;
+    row += reached;
   }
 }
 
-/// What the lanes cover: taylor and rk45, which is what solve() takes by itself, by a step's tolerance.
+/// The lane method for these options, or null. Lanes have taylor and rk45, which is also the default for tolerances.
 const LaneMethod* find_lane_method(const SolveOptions& options) {
   if (!(options.rtol || options.atol) || options.step || options.formulation != Formulation::euler) return nullptr;
   const std::string name = options.method.value_or("rk45");
@@ -47,31 +47,32 @@ const LaneMethod* find_lane_method(const SolveOptions& options) {
 std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeScene& make_scene,
                                    const SolveOptions& options, double* omega, double* attitude, int threads) {
   std::vector<ManyResult> results(n);
-  if (omega != nullptr) std::fill_n(omega, 3 * n * times, nothing);
-  if (attitude != nullptr) std::fill_n(attitude, 4 * n * times, nothing);
+  if (omega != nullptr) std::fill_n(omega, 3 * n * times, not_reached);
+  if (attitude != nullptr) std::fill_n(attitude, 4 * n * times, not_reached);
   if (options.dense || !options.events.empty()) {
     throw InvalidInput("solve_many", "used without dense output and events", "one of them", "solve() has them");
   }
   std::atomic<std::size_t> next{0}, done{0};
   std::atomic<bool> stopped{false};
-  std::mutex told;
-  const auto tell = [&](double, double) {
-    const std::lock_guard lock(told);
+  std::mutex reporting;
+  const auto report = [&](double, double) {
+    const std::lock_guard lock(reporting);
     if (!stopped && !options.progress(static_cast<double>(done.load()), static_cast<double>(n))) stopped = true;
     return !stopped.load();
   };
-  SolveOptions one = options;
-  if (options.progress) one.progress = tell;
+  SolveOptions single = options;
+  if (options.progress) single.progress = report;
 
-  const auto keep = [&](std::size_t body, const Scene& scene, const Motion& motion, bool beside_others) {
-    place(scene, motion, omega ? omega + 3 * times * body : nullptr, attitude ? attitude + 4 * times * body : nullptr);
+  const auto store = [&](std::size_t body, const Scene& scene, const Motion& motion, bool lane) {
+    store_rows(scene, motion, omega ? omega + 3 * times * body : nullptr,
+               attitude ? attitude + 4 * times * body : nullptr);
     results[body] = {motion.status, motion.message, motion.plan.method, motion.t_reached, motion.error,
-                     motion.stats.steps, succeeded(scene, motion), beside_others};
+                     motion.stats.steps, succeeded(scene, motion), lane};
     ++done;
   };
-  const auto guarded = [&](std::size_t body, const auto& piece) {
+  const auto guarded = [&](std::size_t body, const auto& work) {
     try {
-      piece();
+      work();
     } catch (const InvalidInput& error) {
       stopped = true;
       throw InvalidInput("body " + std::to_string(body), "one that solve() takes", error.what());
@@ -82,49 +83,49 @@ std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeS
   };
   const LaneMethod* lanes = find_lane_method(options);
   std::vector<unsigned char> in_lanes(n, 0);
-  const auto one_by_one = [&](std::size_t, std::size_t) {
-    // Bodies are taken one by one as threads come free: a long run holds up nobody, and no answer depends on it.
+  const auto solve_singly = [&](std::size_t, std::size_t) {
+    // Each free thread takes the next body, so a long run delays no other. No result depends on the order.
     for (std::size_t body = next++; body < n && !stopped; body = next++) {
       if (in_lanes[body] != 0) continue;
       guarded(body, [&] {
         const Scene scene = make_scene(body);
-        keep(body, scene, solve(scene, one), false);
+        store(body, scene, solve(scene, single), false);
       });
     }
   };
-  const std::size_t threads_there = thread_count(threads, n, 2);
-  const std::size_t chunk = std::clamp<std::size_t>(n / (2 * threads_there), 64, 512);
-  const auto side_by_side = [&](std::size_t, std::size_t) {
+  const std::size_t thread_limit = thread_count(threads, n, 2);
+  const std::size_t chunk = std::clamp<std::size_t>(n / (2 * thread_limit), 64, 512);
+  const auto solve_in_lanes = [&](std::size_t, std::size_t) {
     const StepTolerances step = choose_tolerances(lanes->record, options);
     for (std::size_t begin = next.fetch_add(chunk); begin < n && !stopped; begin = next.fetch_add(chunk)) {
-      std::vector<std::unique_ptr<Rider>> riders;
+      std::vector<std::unique_ptr<LaneJob>> jobs;
       std::vector<std::size_t> bodies;
       const std::size_t end = std::min(n, begin + chunk);
       for (std::size_t body = begin; body < end; ++body) {
         guarded(body, [&] {
           Scene scene = make_scene(body);
           check_options(scene, options);
-          if (has_windows(scene) || !lanes->takes(scene)) return;
+          if (has_windows(scene) || !lanes->accepts(scene)) return;
           if (scene.torque_sum().acting > 0) require_finite_start(scene);
-          riders.push_back(std::make_unique<Rider>(std::move(scene), *lanes));
+          jobs.push_back(std::make_unique<LaneJob>(std::move(scene), *lanes));
           bodies.push_back(body), in_lanes[body] = 1;
         });
       }
-      const auto wants_to_stop = [&] { return one.progress ? !one.progress(0.0, 0.0) : stopped.load(); };
-      guarded(begin, [&] { ride(riders, step.tolerances, options.max_steps, wants_to_stop); });
+      const auto stop_requested = [&] { return single.progress ? !single.progress(0.0, 0.0) : stopped.load(); };
+      guarded(begin, [&] { run_in_lanes(jobs, step.tolerances, options.max_steps, stop_requested); });
       for (std::size_t i = 0; i < bodies.size(); ++i) {
-        Rider& rider = *riders[i];
-        describe_end(step, rider.motion());
-        keep(bodies[i], rider.scene(), rider.motion(), true);
+        LaneJob& job = *jobs[i];
+        describe_end(step, job.motion());
+        store(bodies[i], job.scene(), job.motion(), true);
       }
     }
   };
   if (lanes != nullptr) {
-    const std::size_t team = std::min(threads_there, (n + chunk - 1) / chunk);
-    parallel_for(team, team, 1, side_by_side);
+    const std::size_t workers = std::min(thread_limit, (n + chunk - 1) / chunk);
+    parallel_for(workers, workers, 1, solve_in_lanes);
     next = 0;
   }
-  if (std::ranges::find(in_lanes, 0) != in_lanes.end()) parallel_for(threads_there, threads_there, 1, one_by_one);
+  if (std::ranges::find(in_lanes, 0) != in_lanes.end()) parallel_for(thread_limit, thread_limit, 1, solve_singly);
   for (std::size_t i = 0; stopped && i < n; ++i) {
     if (results[i].message.empty())
       results[i].status = Status::stopped, results[i].message = "not begun: stopped by the progress callback";

@@ -10,7 +10,7 @@
 namespace polhode {
 namespace {
 
-using Row = LaneClock::Row;
+using Row = LaneState::Row;
 
 TaylorKernels find_kernels(const SeriesTerms& terms, bool attitude) {
   TaylorKernels found = {nullptr, nullptr};
@@ -20,7 +20,7 @@ TaylorKernels find_kernels(const SeriesTerms& terms, bool attitude) {
   return found.step != nullptr ? found : baseline_taylor_lanes(terms, attitude);
 }
 
-/// One order for all lanes, by measured time: with bodies side by side a step costs nearly the square of its order.
+/// One order for all lanes, fitted to measured times: in lanes the cost of a step grows as about its order squared.
 int choose_lane_order(double tolerance) {
   const int order = static_cast<int>(std::ceil(1.0 - 0.65 * std::log(tolerance)));
   return std::clamp(order, ode::Taylor::least_order, ode::most_series_order - 2);
@@ -30,9 +30,9 @@ void put(Row* rows, int lane, const double* values, int n) {
   for (int i = 0; i < n; ++i) rows[i][lane] = values[i];
 }
 
-class TaylorBody final : public LaneBody {
+class TaylorLaneProblem final : public LaneProblem {
  public:
-  explicit TaylorBody(const Scene& scene) : series_(scene, scene.want().attitude) {}
+  explicit TaylorLaneProblem(const Scene& scene) : series_(scene, scene.want().attitude) {}
 
   const BodySeries& series() const { return series_; }
 
@@ -52,25 +52,25 @@ class TaylorBody final : public LaneBody {
   void unpack(const double* y, double* omega, double* attitude) const override {
     series_.unpack(y, 1, omega, attitude);
   }
-  std::unique_ptr<LaneTeam> make_team(const ode::Tolerances& tolerances) const override;
+  std::unique_ptr<LaneIntegrator> make_integrator(const ode::Tolerances& tolerances) const override;
 
  private:
   BodySeries series_;
 };
 
-class TaylorTeam final : public LaneTeam {
+class TaylorIntegrator final : public LaneIntegrator {
  public:
-  TaylorTeam(const BodySeries& first, const ode::Tolerances& tolerances)
+  TaylorIntegrator(const BodySeries& first, const ode::Tolerances& tolerances)
       : kernels_(find_kernels(first.terms(), first.has_attitude())), gradient_(first.terms().gradient) {
     b_.order = choose_lane_order(tolerances.rtol + tolerances.atol);
     b_.rtol = tolerances.rtol, b_.atol = tolerances.atol;
     b_.damped = first.terms().damped, b_.balanced = first.keeps_balance();
   }
 
-  LaneClock& clock() override { return b_; }
+  LaneState& state() override { return b_; }
 
-  void seat(int lane, const LaneBody& body) override {
-    const BodySeries& series = static_cast<const TaylorBody&>(body).series();
+  void load(int lane, const LaneProblem& problem) override {
+    const BodySeries& series = static_cast<const TaylorLaneProblem&>(problem).series();
     put_constants(lane, series);
     double carry[8];
     series.start_carry(carry);
@@ -81,38 +81,39 @@ class TaylorTeam final : public LaneTeam {
     b_.unit[lane] = math::power_of_two_below(std::clamp(unit, 0x1p-900, 0x1p900));
   }
 
-  void leave_empty(int lane) override {
+  void clear(int lane) override {
     for (int i = 0; i < 8; ++i) b_.y[i][lane] = b_.carry[i][lane] = 0.0;
     b_.t_end[lane] = b_.time[lane] = b_.time_low[lane] = 0.0, b_.unit[lane] = 1.0;
   }
 
   unsigned advance(int rounds) override {
-    unsigned calls = 0;
-    for (int round = 0; round < rounds && calls == 0; ++round, ++b_.rounds) {
+    unsigned ready = 0;
+    for (int round = 0; round < rounds && ready == 0; ++round, ++b_.rounds) {
       for (int lane = 0; lane < width && gradient_; ++lane) put_orbit(lane);
       kernels_.step(b_);
       for (int lane = 0; lane < width; ++lane)
-        if ((b_.riding >> lane & 1u) != 0 && wants_to_call(lane)) calls |= 1u << lane;
+        if ((b_.active >> lane & 1u) != 0 && needs_host(lane)) ready |= 1u << lane;
     }
-    return calls;
+    return ready;
   }
 
-  double find_place(int lane, double t) const override {
+  double find_position(int lane, double t) const override {
     return ((t - b_.time_old[lane]) - b_.time_old_low[lane]) / b_.unit_old[lane];
   }
 
-  void sample(const double* places, double (*y)[width]) override { kernels_.sample(b_, places, y); }
+  void sample(const double* positions, double (*y)[width]) override { kernels_.sample(b_, positions, y); }
 
  private:
-  static constexpr int most_attempts = 8;   // in a unit of time that is smaller each time
+  static constexpr int most_attempts = 8;   // each in a smaller unit of time
 
-  bool wants_to_call(int lane) {
+  /// After a step of the lane; counts it if it was accepted.
+  bool needs_host(int lane) {
     if (b_.outcome[lane] == double{lane_not_finite}) return ++attempts_[lane] > most_attempts;
     if (b_.outcome[lane] == double{lane_underflow}) return true;
     attempts_[lane] = 0;
     const double reached = b_.time[lane], next = b_.next_sample[lane];
     const bool due = b_.t_end[lane] >= b_.time_old[lane] ? next <= reached : next >= reached;
-    return ++b_.steps[lane] >= b_.most_steps || due;
+    return ++b_.steps[lane] >= b_.max_steps || due;
   }
 
   void put_constants(int lane, const BodySeries& series) {
@@ -129,7 +130,7 @@ class TaylorTeam final : public LaneTeam {
     b_.balance[lane] = series.balance();
   }
 
-  /// Where the orbit stands, without the rounding of n t (BodySeries::compute_series).
+  /// Sine and cosine of the orbit's angle n t + phase, with n t in two parts (as BodySeries::compute_series).
   void put_orbit(int lane) {
     const double rate = b_.orbit_rate[lane];
     const math::DD product = math::two_prod(rate, b_.time[lane]), angle = math::two_sum(product.hi, phase_[lane]);
@@ -145,14 +146,14 @@ class TaylorTeam final : public LaneTeam {
   int attempts_[width] = {};
 };
 
-std::unique_ptr<LaneTeam> TaylorBody::make_team(const ode::Tolerances& tolerances) const {
-  return std::make_unique<TaylorTeam>(series_, tolerances);
+std::unique_ptr<LaneIntegrator> TaylorLaneProblem::make_integrator(const ode::Tolerances& tolerances) const {
+  return std::make_unique<TaylorIntegrator>(series_, tolerances);
 }
 
 }  // namespace
 
 const LaneMethod taylor_lanes{
     ode::Taylor::record, [](const Scene& scene) { return compute_series_refusal(scene).empty(); },
-    [](const Scene& scene) -> std::unique_ptr<LaneBody> { return std::make_unique<TaylorBody>(scene); }};
+    [](const Scene& scene) -> std::unique_ptr<LaneProblem> { return std::make_unique<TaylorLaneProblem>(scene); }};
 
 }  // namespace polhode

@@ -15,10 +15,10 @@ struct FreeMotionBatch {
 };
 
 /// Writes omega (bodies, times, 3) and attitude (bodies, times, 4); either may be null. The bits of the result do not
-/// depend on the number of threads (0: as many as the machine has, for work that pays for them).
+/// depend on the number of threads (0: chosen by the machine and the amount of work).
 ///
-/// A row with an input that is not finite comes out as NaN; returns how many rows did. Throws InvalidInput, with the
-/// number of the body, for moments no body has, attitudes that are not unit and |omega t| > 1e25 rad.
+/// A row with an input that is not finite becomes NaN; returns the number of such rows. Throws InvalidInput, with the
+/// number of the body, for impossible moments, attitudes that are not unit and |omega t| > 1e25 rad.
 std::size_t free_motion(const FreeMotionBatch& batch, double* omega, double* attitude, int threads = 0);
 
 }  // namespace polhode

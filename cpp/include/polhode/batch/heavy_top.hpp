@@ -4,7 +4,7 @@
 
 namespace polhode {
 
-/// Lagrange's tops, many at many times, on plain C-contiguous arrays.
+/// Many heavy symmetric tops at many times, on plain C-contiguous arrays.
 struct HeavyTopBatch {
   std::size_t bodies = 0, times = 0;
   const double* moments = nullptr;     ///< (bodies, 3) about the pivot, two of them equal [kg m^2]
@@ -16,9 +16,9 @@ struct HeavyTopBatch {
 };
 
 /// Writes omega (bodies, times, 3) and attitude (bodies, times, 4); either may be null. The bits of the result do not
-/// depend on the number of threads (0: as many as the machine has, for work that pays for them).
+/// depend on the number of threads (0: chosen by the machine and the amount of work).
 ///
-/// A row with an input that is not finite comes out as NaN; returns how many rows did. Throws InvalidInput, with the
+/// A row with an input that is not finite becomes NaN; returns the number of such rows. Throws InvalidInput, with the
 /// number of the body, for what HeavyTop refuses.
 std::size_t heavy_top(const HeavyTopBatch& batch, double* omega, double* attitude, int threads = 0);
 

@@ -9,7 +9,7 @@
 
 namespace polhode {
 
-/// What becomes of one body among many.
+/// The result of one body among many.
 struct ManyResult {
   Status status = Status::finished;
   std::string message;
@@ -18,18 +18,22 @@ struct ManyResult {
   double error = 0.0;         ///< NaN: not estimated
   long steps = 0;
   bool success = false;
-  bool lanes = false;         ///< stepped side by side with others, not by itself
+  bool lanes = false;         ///< stepped in a lane beside other bodies, not alone
 };
 
-/// The scene of body i; called from several threads at once.
+/// Makes the scene of a body. It is called from several threads at once.
 using MakeScene = std::function<Scene(std::size_t body)>;
 
-/// Solves n scenes with `times` times each. With a tolerance and method "rk45" (to the bits of solve()) or "taylor"
-/// eight bodies are stepped side by side in the lanes of registers, each with its own time, step and error; else, and
-/// with a Custom torque, every one as solve() does by itself. A result depends neither on the number of threads (0: as
-/// many as the machine has), nor on the other bodies, nor on how they are divided. Writes omega (n, times, 3) and
-/// attitude (n, times, 4), either may be null; rows that were not reached are NaN. A body whose run fails does so
-/// alone; `options.progress` gets the number of bodies done and n, and ends all by returning false.
+/// Solves n scenes with `times` times each.
+///
+/// With a tolerance and the method "rk45" or "taylor", eight bodies are stepped side by side in the lanes of registers,
+/// each with its own time, step and error. rk45 in lanes gives the bits of solve(). All other scenes, and those with a
+/// Custom torque or windows of time, are solved one by one as by solve(). A result depends neither on the number of
+/// threads (0: as many as the machine has) nor on the other bodies.
+///
+/// Writes omega (n, times, 3) and attitude (n, times, 4); either may be null. Rows that were not reached are NaN. A run
+/// that fails does not affect the other bodies. `options.progress` gets the number of bodies done and n; it stops the
+/// batch by returning false.
 /// @throws InvalidInput, with the number of the body, for what solve() refuses
 std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeScene& make_scene,
                                    const SolveOptions& options, double* omega, double* attitude, int threads = 0);

@@ -5,9 +5,9 @@
 
 namespace polhode::POLHODE_ISA {
 
-using Row = LaneClock::Row;
+using Row = LaneState::Row;
 
-/// One of the passes over a block: its lanes from `at` on, as many as a register holds.
+/// One pass over a block: the lanes from `at` on, as many as a register holds.
 struct Pass {
   int at;
   POLHODE_INLINE Wide load(const Row& row) const { return Wide::load(row + at); }

@@ -4,36 +4,36 @@
 
 namespace polhode {
 
-/// One torque of eight bodies: what torque/formulas.hpp asks for, number by number.
+/// One torque of eight bodies: the arguments of its formula in torque/formulas.hpp, one row a number.
 struct alignas(64) LaneTorque {
   enum class Kind { body_constant, space_constant, weight, gradient, damping };
-  LaneClock::Row values[9] = {};
+  LaneState::Row values[9] = {};
   Kind kind = Kind::body_constant;
 };
 
-/// Eight bodies in steps of rk45, each with its own constants.
-struct Rk45Block : LaneClock {
-  // of all eight
+/// Eight bodies stepped by rk45, each with its own constants.
+struct Rk45Block : LaneState {
+  // common to all lanes
   double rtol = 0.0, atol = 0.0;
   int torque_count = 0;
   const LaneTorque* torques = nullptr;
 
-  // constants of a body: the tensor and its inverse by columns, or what principal axes leave of them
+  // constants of a body: the tensor and its inverse by columns; for a diagonal tensor
+  // `difference` and `inverse_moment` replace the inverse
   alignas(64) Row inertia[9] = {};
   Row inverse[9] = {}, difference[3] = {}, inverse_moment[3] = {};
 
-  // state: (w, q) and its derivative, the step to be tried, and what ode::StepControl keeps
+  // state: (w, q), its derivative, the next step to try, and the memory of ode::StepControl
   Row y[7] = {}, f[7] = {}, step = {}, log_previous = {}, rejected = {}, not_finite = {};
-  // the last step that a lane called after: its begin, its length and its continuous extension
+  // the last step that needed the host: its start, its length and its continuous extension
   Row time_old = {}, step_taken = {}, segment[5][7] = {};
 };
 
 struct Rk45Kernels {
-  /// Steps until a lane with a body calls, at most so many times: because a sample lies behind it, because it cannot go
-  /// on, or because it has made its steps. The bits of those that call.
+  /// As LaneIntegrator::advance.
   unsigned (*advance)(Rk45Block& block, int rounds);
-  /// y at the fractions s of the last step, in the lanes that called.
-  void (*sample)(const Rk45Block& block, const double* s, double (*y)[LaneClock::width]);
+  /// y at the fractions s of the last step, for the lanes that needed the host.
+  void (*sample)(const Rk45Block& block, const double* s, double (*y)[LaneState::width]);
 };
 
 /// Null where the compiler could not build the level.

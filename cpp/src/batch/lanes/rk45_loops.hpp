@@ -9,16 +9,16 @@
 #include "polhode/ode/tableaus/dormand_prince54.hpp"
 #include "polhode/method/euler_formulas.hpp"
 
-// Steps of rk45 with a body in each lane, for one lane type `Wide`; included once by each file that is built for one
-// instruction set. Operation by operation what ode::RungeKuttaStepper does with solve's EulerProblem, without fused
-// ones: the same bits.
+// Steps of rk45 with a body in each lane, for one lane type `Wide`. Each file that is built for one instruction set
+// includes this header once. The operations are those of ode::RungeKuttaStepper on EulerProblem, none of them fused:
+// the bits are the same.
 namespace polhode::POLHODE_ISA {
 
 using Mask = math::Mask<Wide>;
 
 POLHODE_INLINE bool any(Mask mask) { return bits(mask) != 0; }
 
-/// As GravityGradient has them: beyond what the polynomials take they are the library's, lane by lane.
+/// The same as in GravityGradient: polynomials, and the library's functions beyond their range, lane by lane.
 POLHODE_INLINE void sincos_lanes(Wide angle, Wide& sine, Wide& cosine) {
   math::sincos_unfused(angle, sine, cosine);
   const Mask within = abs(angle) <= Wide(math::most_unfused_angle);
@@ -29,17 +29,17 @@ POLHODE_INLINE void sincos_lanes(Wide angle, Wide& sine, Wide& cosine) {
   sine = select(within, sine, Wide::load(s)), cosine = select(within, cosine, Wide::load(c));
 }
 
-/// The torques' sum for eight bodies.
+/// Adds all torques to tau.
 template <bool diagonal>
 POLHODE_INLINE void add_torques(const Rk45Block& b, Pass pass, Wide t, const Wide* w, const Wide* q, Wide* tau) {
   for (int k = 0; k < b.torque_count; ++k) {
-    const LaneTorque& one = b.torques[k];
+    const LaneTorque& torque = b.torques[k];
     const auto values = [&]<int n>(Wide (&v)[n]) __attribute__((always_inline)) {
-      for (int i = 0; i < n; ++i) v[i] = pass.load(one.values[i]);
+      for (int i = 0; i < n; ++i) v[i] = pass.load(torque.values[i]);
     };
     Wide v[3];
     values(v);
-    switch (one.kind) {
+    switch (torque.kind) {
       case LaneTorque::Kind::body_constant:
         for (int i = 0; i < 3; ++i) tau[i] = tau[i] + v[i];
         break;
@@ -72,7 +72,7 @@ POLHODE_INLINE void add_torques(const Rk45Block& b, Pass pass, Wide t, const Wid
 struct LaneControl {
   using Constants = ode::StepControl;
 
-  /// log2(x) of 2^-1022 <= x < 2^1023; beyond, the factors below are at their bounds anyway.
+  /// log2(x) for 2^-1022 <= x < 2^1023; beyond, the factors below are at their bounds anyway.
   static POLHODE_INLINE Wide log2(Wide x) {
     const Wide exponent = exponent_of_power(power_of_two_below(x)), m = x * power_of_two(-exponent) - Wide(1.0);
     return exponent + m * (Wide(1.4249) + m * (Wide(-0.5797) + m * Wide(0.1548)));
@@ -86,7 +86,7 @@ struct LaneControl {
     return power_of_two(whole) * (Wide(1.0) + f * (Wide(0.6951) + f * (Wide(0.2276) + f * Wide(0.0773))));
   }
 
-  /// log2 of max(error, the least that is remembered).
+  /// log2 of max(error, least_error).
   static POLHODE_INLINE Wide remember(Wide error, Wide log_error) {
     const Wide least(Constants::least_error);
     return select(error < least, log2(least), log_error);
@@ -100,17 +100,17 @@ class Rk45Lanes {
 
  public:
   static unsigned advance(Rk45Block& b, int rounds) {
-    unsigned calls = 0;
-    for (int round = 0; round < rounds && calls == 0; ++round) {
-      for (int at = 0; at < LaneClock::width; at += Wide::width) calls |= Rk45Lanes(b, Pass{at}).step() << at;
-      calls &= b.riding;
+    unsigned ready = 0;
+    for (int round = 0; round < rounds && ready == 0; ++round) {
+      for (int at = 0; at < LaneState::width; at += Wide::width) ready |= Rk45Lanes(b, Pass{at}).step() << at;
+      ready &= b.active;
       ++b.rounds;
     }
-    return calls;
+    return ready;
   }
 
-  static void sample(const Rk45Block& b, const double* fraction, double (*out)[LaneClock::width]) {
-    for (int at = 0; at < LaneClock::width; at += Wide::width) {
+  static void sample(const Rk45Block& b, const double* fraction, double (*out)[LaneState::width]) {
+    for (int at = 0; at < LaneState::width; at += Wide::width) {
       const Pass pass{at};
       const Wide s = Wide::load(fraction + at), r = Wide(1.0) - s;
       for (int i = 0; i < N; ++i) {
@@ -164,7 +164,7 @@ class Rk45Lanes {
     return sum;
   }
 
-  /// One step, or one that is rejected; the bits of the lanes that call.
+  /// Tries one step in each lane. Returns the bits of the lanes that need the host.
   POLHODE_INLINE unsigned step() {
     const Wide zero(0.0), one(1.0), t = load(b_.time), t_end = load(b_.t_end), tried = load(b_.step);
     const Wide rest = t_end - t;
@@ -190,9 +190,9 @@ class Rk45Lanes {
     pass_.store(b_.outcome, select(moves, select(reached == t_end, Wide(lane_arrived), Wide(lane_stepped)), stuck));
 
     const unsigned all = (1u << Wide::width) - 1;
-    const unsigned calls = (bits(due) | (all & ~bits(moves)) | (bits(accepted) & bits(Wide(b_.most_steps) <= steps)));
-    if (calls != 0) put_segment(t, h);
-    // The next step begins with the last stage and with |q| = 1; both scale alike (EulerProblem::restore).
+    const unsigned ready = (bits(due) | (all & ~bits(moves)) | (bits(accepted) & bits(Wide(b_.max_steps) <= steps)));
+    if (ready != 0) put_segment(t, h);
+    // The next step starts from the last stage and from |q| = 1; one factor scales both (EulerProblem::restore).
     if constexpr (attitude) {
       const Wide scale = compute_unit_scale(y_new_ + 3);
       for (int i = 3; i < 7; ++i) y_new_[i] = y_new_[i] * scale, k_[last_stage][i] = k_[last_stage][i] * scale;
@@ -201,10 +201,10 @@ class Rk45Lanes {
       pass_.store(b_.y[i], select(accepted, y_new_[i], y_[i]));
       pass_.store(b_.f[i], select(accepted, k_[last_stage][i], k_[0][i]));
     }
-    return calls;
+    return ready;
   }
 
-  /// The step to be tried next, as ode::StepControl has it.
+  /// Chooses the next step to try, as ode::StepControl does.
   POLHODE_INLINE void choose_step(Wide norm, Wide h, Wide tried, Wide rest, Mask last, Mask accepted) {
     using Control = ode::StepControl;
     constexpr double integral = Control::integral(Tableau::error_order);

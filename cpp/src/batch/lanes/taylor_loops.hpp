@@ -2,12 +2,12 @@
 
 #include "batch/lanes/taylor_step.hpp"
 
-// Taylor steps of bodies side by side, for one lane type `Wide`; included once by each file that is built for one
-// instruction set. The recurrences are those of solve/lanes/series_loops.hpp, with a body in each lane.
+// Taylor steps with a body in each lane, for one lane type `Wide`. Each file that is built for one instruction set
+// includes this header once. The recurrences are those of solve/lanes/series_loops.hpp, with a body in each lane.
 namespace polhode::POLHODE_ISA {
 
-/// Sum over 0 <= j <= n of left_j right_{n-j} for several products; those with the newest coefficients come last,
-/// since they are the ones to wait for. `term(j, i)` adds left_j right_i.
+/// Sum over 0 <= j <= n of left_j right_{n-j} for several products. `term(j, i)` adds left_j right_i. The products with
+/// the newest coefficients come last, because these are ready last.
 template <class Term>
 POLHODE_INLINE void sum_products(int n, const Term& term) {
   for (int j = 1; j < n; ++j) term(j, n - j);
@@ -15,7 +15,7 @@ POLHODE_INLINE void sum_products(int n, const Term& term) {
   if (n > 0) term(n, 0);
 }
 
-/// In a register from here on: GCC would load a factor anew for each product, and loads are what the loop waits for.
+/// Keeps a value in a register. GCC would load the factor again for each product, and loads limit this loop.
 POLHODE_INLINE Wide held(Wide a) {
 #if defined(__AVX512DQ__) && defined(__GNUC__)
   asm("" : "+v"(a.v));
@@ -26,7 +26,7 @@ POLHODE_INLINE Wide held(Wide a) {
 template <bool separatrix, bool attitude, int fixed, bool gradient>
 class LaneSeries {
   static constexpr int vectors = fixed + (gradient ? 2 : 0), kept = vectors > 0 ? vectors : 1;
-  static constexpr bool seen = !attitude && fixed == 1;   // a vector in the quaternion's place
+  static constexpr bool vector_only = !attitude && fixed == 1;   // a vector in place of the quaternion
 
  public:
   static void step(TaylorBlock& block) {
@@ -40,7 +40,7 @@ class LaneSeries {
       Wide rates[5][3];
       for (int k = 0; k < 5; ++k)
         for (int i = 0; i < 3; ++i) rates[k][i] = series.rate(i, row[k]);
-      finish_step<attitude, seen>(block, Pass{at}, rates);
+      finish_step<attitude, vector_only>(block, Pass{at}, rates);
     }
   }
 
@@ -49,26 +49,26 @@ class LaneSeries {
 
   POLHODE_INLINE Wide load(const Row& row) const { return pass_.load(row); }
 
-  // Where a coefficient is kept: the rates, the left factors of the rates' products, vectors.
+  // Where the coefficients are stored.
   static POLHODE_INLINE auto& rate_rows(const TaylorBlock& b, int i) {
     return !separatrix || i == 1 ? b.c[separatrix ? 2 : i] : b.side[i];
   }
   POLHODE_INLINE auto& rate_rows(int i) const { return rate_rows(b_, i); }
-  POLHODE_INLINE auto& vector_rows(int v, int i) const { return seen ? b_.c[4 + i] : b_.vector[v][i]; }
+  POLHODE_INLINE auto& vector_rows(int v, int i) const { return vector_only ? b_.c[4 + i] : b_.vector[v][i]; }
   POLHODE_INLINE Wide rate(int i, int n) const { return load(rate_rows(i)[n]); }
 
   POLHODE_INLINE void put_rates(int n, const Wide (&r)[3]) {
     for (int i = 0; i < 3; ++i) pass_.store(b_.c[i][n], r[i]);
-    if constexpr (separatrix) {   // of v - u and w3 = (v + u) / 2
-      const Wide apart = r[1] - r[0];
-      pass_.store(b_.side[1][n], apart);
-      pass_.store(b_.side[0][n], apart * load(b_.to_rates));
+    if constexpr (separatrix) {   // the coefficients of v - u and of w3 = (v + u) / 2
+      const Wide difference = r[1] - r[0];
+      pass_.store(b_.side[1][n], difference);
+      pass_.store(b_.side[0][n], difference * load(b_.to_rates));
       pass_.store(b_.side[2][n], (r[0] + r[1]) * Wide(0.5));
     }
   }
 
-  /// R^T s of the quaternion at the step's begin.
-  POLHODE_INLINE void put_seen(int v, const Wide (&q)[4], Wide s0, Wide s1, Wide s2) {
+  /// R^T s, with the rotation at the start of the step.
+  POLHODE_INLINE void put_vector(int v, const Wide (&q)[4], Wide s0, Wide s1, Wide s2) {
     const Wide two(2.0), x = -q[0], y = -q[1], z = -q[2], w = q[3];
     const Wide t0 = two * (y * s2 - z * s1), t1 = two * (z * s0 - x * s2), t2 = two * (x * s1 - y * s0);
     pass_.store(vector_rows(v, 0)[0], madd(w, t0, s0) + (y * t2 - z * t1));
@@ -81,7 +81,7 @@ class LaneSeries {
     const Wide r[3] = {load(b_.y[0]) * unit, load(b_.y[1]) * unit, load(b_.y[2]) * unit};
     put_rates(0, r);
     for (int i = 0; i < 3; ++i) {
-      // separatrix: the third product is here (v - u) w3, half of (v - u)(v + u)
+      // separatrix: the third product is (v - u) w3 here, half of (v - u)(v + u)
       const Wide factor(separatrix && i == 2 ? 2.0 : 1.0);
       product_[i] = load(b_.product[i]) * factor, product_low_[i] = load(b_.product_low[i]) * factor;
       torque_[i] = load(b_.torque[i]) * square;
@@ -95,21 +95,22 @@ class LaneSeries {
     for (int i = 4; i < 8; ++i) pass_.store(b_.c[i][0], load(b_.y[i]));
     if constexpr (attitude) {
       const Wide q[4] = {load(b_.y[4]), load(b_.y[5]), load(b_.y[6]), load(b_.y[7])};
-      for (int v = 0; v < fixed; ++v) put_seen(v, q, load(b_.space[v][0]), load(b_.space[v][1]), load(b_.space[v][2]));
+      for (int v = 0; v < fixed; ++v)
+        put_vector(v, q, load(b_.space[v][0]), load(b_.space[v][1]), load(b_.space[v][2]));
       if constexpr (gradient) {
         const Wide c = load(b_.orbit_cos), s = load(b_.orbit_sin), zero(0.0);
-        put_seen(fixed, q, c, s, zero), put_seen(fixed + 1, q, -s, c, zero);
+        put_vector(fixed, q, c, s, zero), put_vector(fixed + 1, q, -s, c, zero);
       }
     }
   }
 
-  /// Of the rates' products, and two for each component of q w: chains of fused operations that need not wait for each
-  /// other.
+  /// Sums of the rates' products (p) and of the components of q w (a and o, two each). They are chains of fused
+  /// operations that do not wait for each other.
   struct Sums {
     Wide p[3], a[4], o[4];
   };
 
-  /// Nearly all of the work.
+  /// Nearly all of the work is done here.
   static POLHODE_INLINE void sum_rates(const TaylorBlock& b, Pass pass, int n, Sums& sums) {
     const Wide zero(0.0);
     Wide p[3] = {zero, zero, zero}, a[4] = {zero, zero, zero, zero}, o[4] = {zero, zero, zero, zero};
@@ -135,8 +136,8 @@ class LaneSeries {
     for (int i = 0; i < 4; ++i) sums.a[i] = a[i], sums.o[i] = o[i];
   }
 
-  /// Row n + 1 from the rows before. `early`: what the first coefficients lose to a rounded constant is lost at every
-  /// step alike, and adds up: there the constants keep their low parts.
+  /// Computes row n + 1 from the rows before it. In the first rows (`early`) the constants keep their low parts: an
+  /// error of theirs would be the same in every step and add up.
   template <bool early>
   POLHODE_INLINE void advance(int n) {
     const Wide zero(0.0), count(n + 1.0), inverse(1.0 / (n + 1));
@@ -189,7 +190,7 @@ class LaneSeries {
     }
   }
 
-  /// v' = v x w of what is fixed in space; the orbit's radius and tangent turn into each other as well.
+  /// v' = v x w for vectors fixed in space. The orbit's radius and tangent rotate into each other besides.
   template <bool early>
   POLHODE_INLINE void advance_vectors(int n) {
     const Wide count(n + 1.0), inverse(1.0 / (n + 1)), zero(0.0);

@@ -4,7 +4,7 @@
 #include "batch/lanes/taylor_block.hpp"
 #include "polhode/math/double_double.hpp"
 
-// What is the same for every set of torques: how far a series may be used, its sum, and what holds after a step.
+// What every set of torques shares: the step length, the sum of the series, and the corrections after a step.
 namespace polhode::POLHODE_ISA {
 
 using WideDD = math::DoubleDouble<Wide>;
@@ -21,7 +21,7 @@ POLHODE_INLINE Wide rough_exp2(Wide x) {
   return power_of_two(n) * madd(f, madd(f, madd(f, Wide(0.0558), Wide(0.2402)), Wide(0.6931)), Wide(1.0));
 }
 
-/// The coefficients' sum at s without the first one; it begins with the carry.
+/// The sum of the series at s, without its first coefficient and with the carry.
 POLHODE_INLINE void sum_series(const TaylorBlock& b, Pass pass, Wide s, Wide unit, const Row (&carry)[8],
                                Wide (&out)[8]) {
   constexpr int used[7] = {0, 1, 2, 4, 5, 6, 7};
@@ -29,13 +29,13 @@ POLHODE_INLINE void sum_series(const TaylorBlock& b, Pass pass, Wide s, Wide uni
   for (int i = 0; i < 7; ++i) sum[i] = pass.load(b.c[used[i]][b.order]);
   for (int k = b.order - 1; k > 0; --k)
     for (int i = 0; i < 7; ++i) sum[i] = madd(sum[i], s, pass.load(b.c[used[i]][k]));
-  const Wide per_unit = s / unit;   // rates are carried in their own unit
+  const Wide per_unit = s / unit;   // the coefficients of the rates are multiplied by the unit, the carry is not
   out[3] = Wide(0.0);
   for (int i = 0; i < 7; ++i) out[used[i]] = madd(sum[i], i < 3 ? per_unit : s, pass.load(carry[used[i]]));
 }
 
-/// How much of its unit of time a lane's series may be used for, as ode::Taylor has it (Jorba & Zou 2005), for one
-/// block of the state whose first `heads` coefficients tell its size. size: of rows 0, 1, 2, order - 1, order.
+/// log2 of the step length in units of the lane's time, by the rule of ode::Taylor (Jorba & Zou 2005). It is for one
+/// block of the state, whose first `heads` coefficients give its size. size: of rows 0, 1, 2, order - 1, order.
 template <int heads>
 POLHODE_INLINE Wide log_step(const Wide (&size)[5], Wide tolerance, int order) {
   const Wide zero(0.0), none(1100.0);
@@ -57,7 +57,7 @@ POLHODE_INLINE Wide log_step(const Wide (&size)[5], Wide tolerance, int order) {
   return least + select(part < zero, part, zero);
 }
 
-/// One Newton step of a free body back to its energy and |L|: BodySeries::correct_rates in lanes.
+/// One Newton step that brings a free body back to its energy and |L|: BodySeries::correct_rates in lanes.
 POLHODE_INLINE void balance_rates(const TaylorBlock& b, Pass pass, Wide (&y)[8], Wide (&carry)[8]) {
   const Wide zero(0.0), balance = pass.load(b.balance);
   const WideDD u(y[0], carry[0]), v(y[1], carry[1]), w(y[2], carry[2]);
@@ -65,19 +65,19 @@ POLHODE_INLINE void balance_rates(const TaylorBlock& b, Pass pass, Wide (&y)[8],
                           {pass.load(b.kept[1]), pass.load(b.kept_low[1])}};
   const Wide uu = y[0] * y[0], vv = y[1] * y[1], ww = y[2] * y[2], uv = y[0] * y[1], sum = uu + vv;
   const Wide split = select(sum > zero, (uu - vv) / sum, zero);
-  const Wide turn = select(abs(uv) > Wide(1e-250), Wide(-0.5) * (u * v - kept[0]).hi / uv, zero);
-  const Wide lack = (WideDD(balance) * (u * u + v * v) + w * w - kept[1]).hi + Wide(2.0) * balance * sum * turn;
+  const Wide scaling = select(abs(uv) > Wide(1e-250), Wide(-0.5) * (u * v - kept[0]).hi / uv, zero);
+  const Wide lack = (WideDD(balance) * (u * u + v * v) + w * w - kept[1]).hi + Wide(2.0) * balance * sum * scaling;
   const Wide slope = Wide(2.0) * (balance * (uu - vv) * split + ww);
-  // Where the energy has its extreme for this u v it tells nothing of the rest.
-  const Wide step = select(slope > Wide(1e-3) * (balance * sum + ww), -lack / slope, zero), apart = step * split;
-  const Wide change[3] = {y[0] * (turn + apart), y[1] * (turn - apart), y[2] * step};
+  // Where the energy is extreme for this u v, its slope vanishes and it cannot be corrected.
+  const Wide step = select(slope > Wide(1e-3) * (balance * sum + ww), -lack / slope, zero), shift = step * split;
+  const Wide change[3] = {y[0] * (scaling + shift), y[1] * (scaling - shift), y[2] * step};
   for (int i = 0; i < 3; ++i) {
-    const WideDD moved = math::two_sum(y[i], carry[i] + select(abs(turn) < Wide(0.1), change[i], zero));
-    y[i] = moved.hi, carry[i] = moved.lo;
+    const WideDD corrected = math::two_sum(y[i], carry[i] + select(abs(scaling) < Wide(0.1), change[i], zero));
+    y[i] = corrected.hi, carry[i] = corrected.lo;
   }
 }
 
-/// |q| = 1, as BodySeries::correct.
+/// Brings the attitude back to |q| = 1, as BodySeries::correct does.
 POLHODE_INLINE void balance_attitude(Wide (&y)[8], Wide (&carry)[8]) {
   Wide norm(0.0), cross(0.0);
   for (int i = 4; i < 8; ++i) norm = madd(y[i], y[i], norm), cross = madd(y[i], carry[i], cross);
@@ -88,12 +88,12 @@ POLHODE_INLINE void balance_attitude(Wide (&y)[8], Wide (&carry)[8]) {
   }
 }
 
-/// Steps by the coefficients that are there: `rates` of the rows 0, 1, 2, order - 1 and order, for their sizes.
+/// Makes a step with the coefficients in the block. `rates`: those of rows 0, 1, 2, order - 1, order, for their sizes.
 template <bool attitude, bool vector>
 POLHODE_INLINE void finish_step(TaylorBlock& b, Pass pass, const Wide (&rates)[5][3]) {
   const Wide zero(0.0), unit = pass.load(b.unit);
   const int row[5] = {0, 1, 2, b.order - 1, b.order};
-  Wide size[5], probe(0.0);   // the probe stays zero unless something is not finite: comparisons let that pass
+  Wide size[5], probe(0.0);   // the probe stays zero while all is finite; comparisons would miss a NaN
   for (int k = 0; k < 5; ++k) {
     for (const Wide& w : rates[k]) probe = madd(zero, w, probe);
     size[k] = larger(larger(abs(rates[k][0]), abs(rates[k][1])), abs(rates[k][2]));
@@ -140,7 +140,7 @@ POLHODE_INLINE void finish_step(TaylorBlock& b, Pass pass, const Wide (&rates)[5
   const WideDD after = select(last, WideDD(t_end), WideDD(time, time_low) + h);
   pass.store(b.time_old, time), pass.store(b.time_old_low, time_low), pass.store(b.unit_old, unit);
   pass.store(b.time, select(finite, after.hi, time)), pass.store(b.time_low, select(finite, after.lo, time_low));
-  // A step cut short by the end says little about the next one; one without numbers is tried again in a smaller unit.
+  // A step shortened by t_end says little about the next one. A step that is not finite is tried in a smaller unit.
   const Wide next = select(reach < Wide(0x1p900), larger(reach, Wide(0x1p-900)), Wide(0x1p900));
   pass.store(b.unit, select(finite, power_of_two_below(next), larger(unit * Wide(0x1p-16), Wide(0x1p-900))));
 }
