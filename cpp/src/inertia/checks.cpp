@@ -27,7 +27,7 @@ bool symmetric(const double* m) {
 
 double mean(double a, double b) { return a == b ? a : 0.5 * a + 0.5 * b; }
 
-std::uint8_t judge(Vector3d moments, double* margin) {
+std::uint8_t find_flaws(Vector3d moments, double* margin) {
   std::sort(moments.data(), moments.data() + 3);
   const double largest = std::max(std::abs(moments[0]), std::abs(moments[2]));
   if (largest == 0) {
@@ -36,10 +36,10 @@ std::uint8_t judge(Vector3d moments, double* margin) {
   }
   const Vector3d part = moments / largest;
   *margin = part[0] + part[1] - part[2];
-  std::uint8_t found = 0;
-  if (part[0] < -InertiaTensor::tolerance) found |= flaw_not_positive;
-  if (*margin < -InertiaTensor::tolerance) found |= flaw_triangle;
-  return found;
+  std::uint8_t flaws = 0;
+  if (part[0] < -InertiaTensor::tolerance) flaws |= flaw_not_positive;
+  if (*margin < -InertiaTensor::tolerance) flaws |= flaw_triangle;
+  return flaws;
 }
 
 }  // namespace
@@ -65,7 +65,7 @@ void check_inertia(const double* I_B, std::size_t count, double* margins, std::u
       if (flaws[first + lane] & flaw_not_finite) {
         margin = std::numeric_limits<double>::quiet_NaN();
       } else {
-        flaws[first + lane] |= judge(solver.moments(lane), &margin);
+        flaws[first + lane] |= find_flaws(solver.moments(lane), &margin);
       }
     }
   }

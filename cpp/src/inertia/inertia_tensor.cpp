@@ -18,7 +18,7 @@ Matrix3d diagonal(const Vector3d& d) {
 }  // namespace
 
 InertiaTensor::InertiaTensor(const Matrix3d& I_B, bool physical)
-    : InertiaTensor(inertia::symmetric_at_the_door(I_B, "inertia"), physical, Trusted{}) {
+    : InertiaTensor(inertia::symmetrized(I_B, "inertia"), physical, Trusted{}) {
   inertia::check_moments(I_B_, principal_, physical_, "inertia");
   principal_.moments = principal_.moments.cwiseMax(0.0);
 }
@@ -31,7 +31,7 @@ InertiaTensor InertiaTensor::from_moments(const Vector3d& moments, bool physical
 }
 
 InertiaTensor InertiaTensor::from_trusted(const Matrix3d& I_B, bool physical) {
-  InertiaTensor tensor(inertia::symmetric_at_the_door(I_B, "inertia"), physical, Trusted{});
+  InertiaTensor tensor(inertia::symmetrized(I_B, "inertia"), physical, Trusted{});
   tensor.principal_.moments = tensor.principal_.moments.cwiseMax(0.0);
   return tensor;
 }

@@ -11,7 +11,7 @@
 namespace polhode::inertia {
 
 /// Jacobi's rotations for N symmetric 3x3 matrices side by side (Jacobi1846; GolubVanLoan, 8.5). The plain loops over
-/// lanes have no branches and become vector instructions. A lane that has converged turns by exactly zero, so its
+/// lanes have no branches and become vector instructions. A lane that has converged is rotated by exactly zero, so its
 /// result depends neither on its neighbours nor on N.
 template <std::size_t N>
 class Jacobi {
@@ -35,7 +35,7 @@ class Jacobi {
   }
 
   void run() {
-    // Convergence is quadratic: 4 or 5 sweeps do, the bound is for matrices that are not finite.
+    // Convergence is quadratic and takes 4 or 5 sweeps. The bound is for matrices that are not finite.
     for (int sweep = 0; sweep < 20 && !converged(); ++sweep) {
       rotate<0, 1, 3, 4, 5>();
       rotate<0, 2, 4, 3, 5>();
@@ -66,8 +66,8 @@ class Jacobi {
     return {factor(n / 2), factor(n - n / 2)};
   }
 
-  /// The square below which an entry counts as zero: turning it away would change neither diagonal entry by a rounding
-  /// nor, for positive matrices, by a part of itself (DemmelVeselic1992); or it is nothing beside the largest one.
+  /// The square below which an off-diagonal entry counts as zero. Rotating it away would change no diagonal entry
+  /// beyond rounding, relative to itself for positive matrices (DemmelVeselic1992). So does an entry below 2^-100.
   static double negligible(double app, double aqq) { return std::max(std::abs(app * aqq) * 0x1p-110, 0x1p-200); }
 
   bool converged() const {

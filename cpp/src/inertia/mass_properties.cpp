@@ -30,7 +30,7 @@ MassProperties::MassProperties(double mass, const Vector3d& com_B, const Inertia
 MassProperties MassProperties::from_points(const double* masses, const double* positions_B, std::size_t count) {
   if (count == 0) throw InvalidInput("masses", "one or more masses", "none");
   double mass = 0;
-  // About the first point, so that the distance from the origin costs nothing.
+  // Relative to the first point, so that a distant origin costs no digits.
   Vector3d first_moment = Vector3d::Zero();
   const auto position = [&](std::size_t i) { return Vector3d(Eigen::Map<const Vector3d>(positions_B + 3 * i)); };
   for (std::size_t i = 0; i < count; ++i) {
@@ -71,7 +71,7 @@ MassProperties operator-(const MassProperties& a, const MassProperties& b) {
   const Matrix3d shift = point_inertia(a.mass_ * part, d);
   const Matrix3d I = a.inertia_.matrix() - b.inertia_.matrix() - shift;
   const bool physical = a.inertia_.physical() && b.inertia_.physical();
-  // What the subtraction may have rounded away; the small difference of two masses magnifies the shift's share.
+  // The rounding of the subtraction. A small difference of the masses magnifies the part of the shift.
   const double rounding = 16 * std::numeric_limits<double>::epsilon() *
                           (largest(a.inertia_.matrix()) + largest(b.inertia_.matrix()) + (1 + part) * largest(shift));
   inertia::check_moments(I, compute_principal_axes(I), physical, "difference", rounding, cause);

@@ -14,11 +14,12 @@ using inertia::MeshKernels;
 using inertia::MeshSums;
 using math::DD;
 
-/// Fewer triangles are integrated in double-double at once: nobody can tell the time, and there is little averaging.
-constexpr std::size_t few = 1024;
+/// Fewer triangles are always integrated in double-double. It takes no noticeable time, and few errors average out.
+constexpr std::size_t few_triangles = 1024;
 
-/// Plain numbers will do while the rounding that independent errors add up to is below this part of a unit of rounding
-/// of the volume, and while seeing the second moments from the reference point does not magnify them more than so.
+/// Plain numbers suffice under two conditions. The accumulated rounding, for independent errors, is at most
+/// `noise_limit` units of rounding of the volume. The second moments about the reference point are at most
+/// `magnification_limit` times those about the centre.
 constexpr double noise_limit = 0.25, magnification_limit = 8;
 
 const MeshKernels& mesh_kernels(SimdLevel level) {
@@ -28,7 +29,7 @@ const MeshKernels& mesh_kernels(SimdLevel level) {
   return found != nullptr ? *found : *inertia::baseline_mesh_kernels();
 }
 
-/// The mean of some vertices spread over the faces: near the body however far that is, and mostly inside.
+/// The mean of some vertices spread over the faces: a point near the body, mostly inside.
 Vector3d reference_point(const Mesh& mesh) {
   constexpr std::size_t most = 64;
   const std::size_t step = mesh.face_count / most + 1;
@@ -38,7 +39,7 @@ Vector3d reference_point(const Mesh& mesh) {
       [&](const auto* faces) {
         for (std::size_t i = 0; i < mesh.face_count; i += step) {
           const auto index = static_cast<std::uint64_t>(faces[3 * i]);
-          if (index >= mesh.vertex_count) continue;  // the sums will see it
+          if (index >= mesh.vertex_count) continue;  // mesh_loop reports it
           const Vector3d p = Eigen::Map<const Vector3d>(mesh.vertices + 3 * index);
           if (count == 0) origin = p;
           sum += p - origin;
@@ -63,7 +64,7 @@ void run(const MeshKernels& kernels, const Mesh& mesh, const Vector3d& reference
   if (!fits) inertia::require_indices(mesh);
 }
 
-/// What the sums over d, d s and d f mean: V = d / 6, V c = d s / 24, and d f / 120 - V c c about the centre c.
+/// Integrals from the sums over d, d s and d f: V = d / 6, V c = d s / 24, and d f / 120 - V c c about the centre c.
 MeshIntegrals integrals(const MeshSums& sums, const Vector3d& reference) {
   const auto sum = [&](int m) { return DD(sums.hi[m], sums.lo[m]); };
   MeshIntegrals out;
@@ -79,7 +80,7 @@ MeshIntegrals integrals(const MeshSums& sums, const Vector3d& reference) {
   return out;
 }
 
-/// In double-double, what lies at the 93rd bit is rounding: a symmetric body has its zeros.
+/// Replaces by zero what is rounding in double-double, at the 93rd bit: a symmetric body has exact zeros.
 void clear_rounding(MeshIntegrals& mesh) {
   constexpr double part = 1e-28;
   const double trace = std::abs(mesh.second[0].hi + mesh.second[1].hi + mesh.second[2].hi);
@@ -90,15 +91,15 @@ void clear_rounding(MeshIntegrals& mesh) {
     if (std::abs(c.hi) <= part * size) c = DD(0.0);
 }
 
-bool plain_will_do(const MeshSums& sums, const MeshIntegrals& found) {
+bool plain_suffices(const MeshSums& sums, const MeshIntegrals& found) {
   const double about_reference = sums.hi[4] + sums.hi[5] + sums.hi[6];
   const double about_centre = 120 * (found.second[0].hi + found.second[1].hi + found.second[2].hi);
   return std::sqrt(sums.hi[10] / 12) <= noise_limit * std::abs(sums.hi[0]) &&
          std::abs(about_reference) <= magnification_limit * std::abs(about_centre);
 }
 
-/// What lengths, volumes (3) and second moments (5) are multiplied by. 0.001 is meant as 1/1000, which is no double: so
-/// is every unit of a whole number of tenths of a micrometre.
+/// unit^exponent: the factor of lengths (1), volumes (3) and second moments (5). A unit of whole tenths of a micrometre
+/// is taken as that decimal number exactly: 0.001 means 1/1000, which is no double.
 DD power(double unit, int exponent) {
   const double whole = std::round(unit * 1e7);
   const DD factor = whole / 1e7 == unit ? DD(whole) / DD(1e7) : DD(unit);
@@ -154,11 +155,11 @@ MeshIntegrals integrate_mesh(const Mesh& mesh, SimdLevel level) {
   const Vector3d reference = reference_point(mesh);
   MeshSums sums;
   MeshIntegrals found;
-  bool refined = mesh.face_count <= few;
+  bool refined = mesh.face_count <= few_triangles;
   if (!refined) {
     run(kernels, mesh, reference, false, sums);
     found = integrals(sums, reference);
-    refined = !plain_will_do(sums, found);
+    refined = !plain_suffices(sums, found);
   }
   if (refined) {
     run(kernels, mesh, reference, true, sums);
@@ -171,7 +172,7 @@ MeshIntegrals integrate_mesh(const Mesh& mesh, SimdLevel level) {
   if (!(size >= 1e-280 && size <= 1e280)) {
     throw InvalidInput("vertices", "of a mesh between 1e-45 and 1e45 in size", "one beyond, or faces of no area alone");
   }
-  // What is left of a volume of zero: rounding at the 100th bit.
+  // A volume of zero leaves rounding at the 100th bit.
   if (std::abs(found.volume.hi) <= 1e-29 * std::sqrt(size)) {
     throw InvalidInput("faces", "round a positive volume", "a surface that encloses none", "a flat or an empty body?");
   }

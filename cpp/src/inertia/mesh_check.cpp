@@ -9,7 +9,7 @@
 #include "polhode/core/error.hpp"
 
 // Every edge of a closed, oriented surface lies between two faces, which pass it in opposite directions. The sides of
-// the faces are sorted by their lower vertex (by counting), then by the other one within these few.
+// the faces are sorted by their lower vertex (counting sort), then by the other vertex.
 namespace polhode {
 namespace {
 
@@ -18,7 +18,7 @@ using inertia::is_degenerate;
 using inertia::Surface;
 using inertia::Surfaces;
 
-/// How many there are of a fault, and the first faces that have it.
+/// The number of edges with a fault, and the first faces that have it.
 class Fault {
  public:
   void add(std::uint32_t face, std::uint32_t another) {
@@ -60,15 +60,15 @@ struct Faults {
   bool any() const { return open.count() + turned.count() + crowded.count() > 0; }
 };
 
-/// One edge's sides, from `begin` to `end`: the face in the upper 31 of the lower 32 bits, its direction in the last.
-void judge_edge(const std::uint64_t* begin, const std::uint64_t* end, Faults& faults, Surfaces& surfaces) {
+/// The sides of one edge, from `begin` to `end`. The lower 32 bits hold the face, and the direction in the last bit.
+void classify_edge(const std::uint64_t* begin, const std::uint64_t* end, Faults& faults, Surfaces& surfaces) {
   const auto face = [](std::uint64_t side) { return static_cast<std::uint32_t>(side & 0xffffffffu) >> 1; };
   const std::uint32_t first = face(begin[0]), second = face(end[-1]);
   if (end - begin == 2 && ((begin[0] ^ begin[1]) & 1) == 1) return surfaces.join(first, second);
   (end - begin == 1 ? faults.open : end - begin == 2 ? faults.turned : faults.crowded).add(first, second);
 }
 
-Faults judge_edges(const Corners& corners, const Mesh& mesh, Surfaces& surfaces) {
+Faults classify_edges(const Corners& corners, const Mesh& mesh, Surfaces& surfaces) {
   Faults faults;
   std::vector<std::size_t> start(mesh.vertex_count + 2, 0);
   const auto each_side = [&](const auto& visit) {
@@ -92,7 +92,7 @@ Faults judge_edges(const Corners& corners, const Mesh& mesh, Surfaces& surfaces)
     std::sort(begin, end);
     for (const std::uint64_t *edge = begin, *next = begin; edge != end; edge = next) {
       while (next != end && *next >> 32 == *edge >> 32) ++next;
-      judge_edge(edge, next, faults, surfaces);
+      classify_edge(edge, next, faults, surfaces);
     }
   }
   return faults;
@@ -138,14 +138,14 @@ MeshReport check_mesh(const Mesh& mesh) {
   MeshReport report;
   Corners corners(mesh);
   Surfaces roots(mesh.face_count);
-  // Three vertices a face: nothing is shared, as in STL files.
+  // With three vertices a face, as in STL files, no vertex is shared.
   Faults faults;
   const bool soup = mesh.vertex_count >= 3 * mesh.face_count;
-  if (!soup) faults = judge_edges(corners, mesh, roots);
+  if (!soup) faults = classify_edges(corners, mesh, roots);
   if (soup || faults.any()) {
     corners.merge(mesh);
     roots = Surfaces(mesh.face_count);
-    faults = judge_edges(corners, mesh, roots);
+    faults = classify_edges(corners, mesh, roots);
     report.merged = true;
   }
   if (faults.any()) refuse(faults, corners, mesh);
@@ -160,7 +160,7 @@ MeshReport check_mesh(const Mesh& mesh) {
     report.low = report.low.cwiseMin(s.low), report.high = report.high.cwiseMax(s.high);
   }
   report.inside_out = volume < 0;
-  inertia::judge_nesting(surfaces, corners, mesh, roots, report);
+  inertia::check_nesting(surfaces, corners, mesh, roots, report);
   return report;
 }
 

@@ -15,14 +15,14 @@ std::uint64_t mixed(std::uint64_t h) {  // the finaliser of MurmurHash3
   return h ^ (h >> 33);
 }
 
-/// Of three coordinates; -0 is 0.
+/// Hash of three coordinates; -0 counts as 0.
 std::uint64_t hash_of(const double* p) {
   std::uint64_t h = 0;
   for (int k = 0; k < 3; ++k) h = mixed(h * 31 + std::bit_cast<std::uint64_t>(p[k] + 0.0));
   return h;
 }
 
-/// For each vertex the first one at its place.
+/// For each vertex the first vertex at the same place.
 std::vector<std::uint32_t> first_at_place(const double* vertices, std::size_t count) {
   constexpr std::uint32_t empty = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> table(std::bit_ceil(2 * count + 2), empty), first(count);
@@ -30,7 +30,7 @@ std::vector<std::uint32_t> first_at_place(const double* vertices, std::size_t co
   for (std::size_t i = 0; i < count; ++i) {
     const double* p = vertices + 3 * i;
     first[i] = static_cast<std::uint32_t>(i);
-    if (!(p[0] == p[0] && p[1] == p[1] && p[2] == p[2])) continue;  // NaN is nowhere
+    if (!(p[0] == p[0] && p[1] == p[1] && p[2] == p[2])) continue;  // NaN equals nothing
     std::size_t slot = hash_of(p) & mask;
     for (; table[slot] != empty; slot = (slot + 1) & mask) {
       const double* q = vertices + 3 * std::size_t{table[slot]};
@@ -86,7 +86,7 @@ Corners::Corners(const Mesh& mesh) {
                        std::to_string(mesh.face_count) + " faces, " + std::to_string(mesh.vertex_count) + " vertices");
   }
   if (const auto* faces = std::get_if<const std::int32_t*>(&mesh.faces)) {
-    first_ = reinterpret_cast<const std::uint32_t*>(*faces);  // the unsigned type of the same: allowed
+    first_ = reinterpret_cast<const std::uint32_t*>(*faces);  // aliasing as the unsigned type is allowed
     return;
   }
   own_.resize(3 * mesh.face_count);

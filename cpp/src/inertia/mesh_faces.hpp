@@ -11,17 +11,17 @@ namespace polhode::inertia {
 /// Throws InvalidInput, with the face, for an index that names no vertex, and for a mesh without faces.
 void require_indices(const Mesh& mesh);
 
-/// Throws InvalidInput, with the vertex, when one of those that the faces use is not finite.
+/// Throws InvalidInput, with the vertex, when a vertex that a face uses is not finite.
 void require_finite_vertices(const Mesh& mesh);
 
-/// Three vertices of each face, whatever the caller's type of index.
+/// The three vertices of each face, for any index type of the caller.
 class Corners {
  public:
   explicit Corners(const Mesh& mesh);
 
   const std::uint32_t* operator[](std::size_t face) const { return first_ + 3 * face; }
 
-  /// The same faces with vertices at exactly one place taken as one, the first of them.
+  /// Replaces each vertex by the first vertex at exactly the same place.
   void merge(const Mesh& mesh);
 
  private:

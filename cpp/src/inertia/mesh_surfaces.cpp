@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "polhode/core/error.hpp"
@@ -9,14 +10,14 @@
 namespace polhode::inertia {
 namespace {
 
-/// So many solid angles are worth a check: about 0.1 s. Meshes of many entangled parts are judged as far as that goes.
+/// The most solid angles to compute, about 0.1 s. In a mesh of many entangled parts the rest is not checked.
 constexpr std::size_t most_angles = 4'000'000;
 
 Vector3d vertex(const Mesh& mesh, std::uint32_t v) {
   return Eigen::Map<const Vector3d>(mesh.vertices + 3 * std::size_t{v});
 }
 
-/// The faces of each surface, one after the other.
+/// The faces, grouped by surface.
 class FacesOf {
  public:
   FacesOf(const std::vector<Surface>& surfaces, const Corners& corners, std::size_t count, Surfaces& roots)
@@ -39,8 +40,8 @@ class FacesOf {
   std::vector<std::uint32_t> faces_;
 };
 
-/// How often faces go round a point: the sum of their solid angles over 4 pi. Van Oosterom and Strackee 1983, IEEE
-/// Trans. Biomed. Eng. 30, 125.
+/// The winding number of faces about a point: the sum of their solid angles over 4 pi.
+/// Van Oosterom and Strackee 1983, IEEE Trans. Biomed. Eng. 30, 125.
 double winding(const Vector3d& point, const std::uint32_t* face, const std::uint32_t* end, const Corners& corners,
                const Mesh& mesh) {
   double sum = 0;
@@ -50,7 +51,7 @@ double winding(const Vector3d& point, const std::uint32_t* face, const std::uint
     const double la = a.norm(), lb = b.norm(), lc = c.norm();
     sum += std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
   }
-  return sum / (2 * 3.141592653589793);
+  return sum / (2 * std::numbers::pi);
 }
 
 [[noreturn]] void refuse_cavity(const Surface& surface) {
@@ -86,14 +87,14 @@ std::vector<Surface> measure(const Corners& corners, const Mesh& mesh, Surfaces&
   return surfaces;
 }
 
-void judge_nesting(const std::vector<Surface>& surfaces, const Corners& corners, const Mesh& mesh, Surfaces& roots,
+void check_nesting(const std::vector<Surface>& surfaces, const Corners& corners, const Mesh& mesh, Surfaces& roots,
                    MeshReport& report) {
   const double outward = report.inside_out ? -1 : 1;
   for (const Surface& s : surfaces) report.cavities += s.is_wound(-outward);
   if (surfaces.size() < 2) return;
   const FacesOf faces(surfaces, corners, mesh.face_count, roots);
   std::size_t angles = 0;
-  for (const bool cavity : {true, false}) {  // the graver finding first
+  for (const bool cavity : {true, false}) {  // cavities first: their fault is the graver one
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
       if (!surfaces[i].is_wound(cavity ? -outward : outward)) continue;
       if (angles > most_angles) {
@@ -107,9 +108,9 @@ void judge_nesting(const std::vector<Surface>& surfaces, const Corners& corners,
         round += outward * winding(point, faces.begin(j), faces.end(j), corners, mesh);
         angles += surfaces[j].faces;
       }
-      angles += surfaces.size() / 16;  // looking at their boxes
+      angles += surfaces.size() / 16;  // the cost of the box tests
       if (!cavity) report.embedded += round > 0.75;
-      if (!cavity || round > 0.25) continue;  // between them: on the other's surface
+      if (!cavity || round > 0.25) continue;  // between 0.25 and 0.75 the point lies on the other surface
       refuse_cavity(surfaces[i]);
     }
   }

@@ -12,7 +12,7 @@ namespace polhode::inertia {
 
 inline bool is_degenerate(const std::uint32_t* v) { return v[0] == v[1] || v[1] == v[2] || v[2] == v[0]; }
 
-/// Faces joined along edges, as trees whose roots stand for the surfaces.
+/// Union-find over faces that share an edge. A surface is known by its root, its first face.
 class Surfaces {
  public:
   explicit Surfaces(std::size_t faces) : parent_(faces) { std::iota(parent_.begin(), parent_.end(), 0u); }
@@ -23,19 +23,19 @@ class Surfaces {
   }
   void join(std::uint32_t a, std::uint32_t b) {
     a = root(a), b = root(b);
-    if (a != b) parent_[std::max(a, b)] = std::min(a, b);  // so that a root is the first face
+    if (a != b) parent_[std::max(a, b)] = std::min(a, b);  // the root is the first face
   }
 
  private:
   std::vector<std::uint32_t> parent_;
 };
 
-/// What a mesh consists of: faces that hang together by their edges.
+/// A connected part of a mesh: faces that share edges.
 struct Surface {
   std::uint32_t first_face = 0;
   std::size_t faces = 0;
   double volume = 0;    ///< times 6
-  double rounding = 0;  ///< what of it may be no more than that
+  double rounding = 0;  ///< bound of the rounding error of `volume`
   Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
 
   bool is_wound(double sign) const { return sign * volume > rounding; }
@@ -44,10 +44,10 @@ struct Surface {
 
 std::vector<Surface> measure(const Corners& corners, const Mesh& mesh, Surfaces& roots);
 
-/// Seen from a point of each surface, how often do the others go round it? An outward surface lies in nothing, a cavity
-/// in one solid: throws InvalidInput for a cavity that does not, and counts the outward ones inside a solid, whose
-/// volume counts twice. `report.inside_out` says which way outward is.
-void judge_nesting(const std::vector<Surface>& surfaces, const Corners& corners, const Mesh& mesh, Surfaces& roots,
+/// Finds which surfaces lie inside others, by the winding number of the others about a point of each. Throws
+/// InvalidInput for a cavity that lies in no solid. Counts outward surfaces inside a solid, whose volume counts twice.
+/// `report.inside_out` tells which winding is outward.
+void check_nesting(const std::vector<Surface>& surfaces, const Corners& corners, const Mesh& mesh, Surfaces& roots,
                    MeshReport& report);
 
 }  // namespace polhode::inertia

@@ -25,15 +25,15 @@ Vector3d towards_nearest_axis(const Vector3d& v) {
   return (sign * v).array() + 0.0;  // no negative zeros
 }
 
-/// A vector within rounding of unit length, brought there.
+/// Normalises a vector that is unit to rounding.
 Vector3d unit(const Vector3d& v) { return (1.5 - 0.5 * v.dot(v)) * v; }
 
 Vector3d cross(const Vector3d& a, const Vector3d& b) {
   return {a[1] * b[2] - a[2] * b[1] + 0.0, a[2] * b[0] - a[0] * b[2] + 0.0, a[0] * b[1] - a[1] * b[0] + 0.0};
 }
 
-/// The given axis i carried along by the smallest turn that takes the given axis k (k != i) to the unit vector n.
-Vector3d carried(int i, int k, const Vector3d& n) {
+/// The given axis i under the smallest rotation that takes the given axis k (k != i) to the unit vector n.
+Vector3d rotated_along(int i, int k, const Vector3d& n) {
   Vector3d v = -n[i] / (1 + n[k]) * n;
   v[k] -= n[i] / (1 + n[k]);
   v[i] += 1;
@@ -43,7 +43,7 @@ Vector3d carried(int i, int k, const Vector3d& n) {
 Symmetry classify(const Vector3d& moments, double gap) {
   const double equal = gap * std::max(std::abs(moments[0]), std::abs(moments[2]));
   const bool low = moments[1] - moments[0] <= equal, high = moments[2] - moments[1] <= equal;
-  // Three nearly equal moments whose ends are further apart than the gap: the closer pair counts.
+  // Both gaps are small but the sum of them is not: the closer pair counts as equal.
   if (moments[2] - moments[0] <= equal) return Symmetry::spherical;
   if (low && high) return moments[1] - moments[0] < moments[2] - moments[1] ? Symmetry::oblate : Symmetry::prolate;
   return low ? Symmetry::oblate : high ? Symmetry::prolate : Symmetry::triaxial;
@@ -68,16 +68,16 @@ PrincipalAxes arrange(const Vector3d& found, const Matrix3d& V, double gap) {
       const Vector3d n = towards_nearest_axis(unit(V.col(order[2])));
       const int k = nearest_axis(n);
       R_BP.col(2) = n;
-      R_BP.col(0) = carried((k + 1) % 3, k, n);
-      R_BP.col(1) = carried((k + 2) % 3, k, n);
+      R_BP.col(0) = rotated_along((k + 1) % 3, k, n);
+      R_BP.col(1) = rotated_along((k + 2) % 3, k, n);
       break;
     }
     case Symmetry::prolate: {
       const Vector3d n = towards_nearest_axis(unit(V.col(order[0])));
       const int k = nearest_axis(n);
       R_BP.col(0) = n;
-      R_BP.col(1) = carried((k + 1) % 3, k, n);
-      R_BP.col(2) = carried((k + 2) % 3, k, n);
+      R_BP.col(1) = rotated_along((k + 1) % 3, k, n);
+      R_BP.col(2) = rotated_along((k + 2) % 3, k, n);
       break;
     }
     case Symmetry::triaxial: {
@@ -154,7 +154,7 @@ std::size_t compute_principal_axes(const double* I_B, std::size_t count, double*
         solver.load(lane, m[0], m[4], m[8], m[1], m[2], m[5]);
       } else {
         const std::string where = "matrices[" + std::to_string(first + lane) + "]";
-        const Matrix3d s = inertia::symmetric_at_the_door(Eigen::Map<const Matrix3d>(m).transpose(), where.c_str());
+        const Matrix3d s = inertia::symmetrized(Eigen::Map<const Matrix3d>(m).transpose(), where.c_str());
         solver.load(lane, s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(0, 2), s(1, 2));
       }
     }

@@ -36,7 +36,7 @@ std::string vector_text(const Vector3d& v) {
   return buffer;
 }
 
-Matrix3d symmetric_at_the_door(const Matrix3d& I_B, const char* where) {
+Matrix3d symmetrized(const Matrix3d& I_B, const char* where) {
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       if (!std::isfinite(I_B(i, j))) {
@@ -74,8 +74,8 @@ void check_moments(const Matrix3d& I_B, const PrincipalAxes& principal, bool phy
                    const char* cause) {
   const Vector3d& m = principal.moments;
   const double largest = std::max(std::abs(m[0]), std::abs(m[2]));
-  const double forgiven = InertiaTensor::tolerance * largest + slack;
-  if (m[0] < -forgiven) {
+  const double allowed = InertiaTensor::tolerance * largest + slack;
+  if (m[0] < -allowed) {
     const bool on_diagonal = std::min({I_B(0, 0), I_B(1, 1), I_B(2, 2)}) < 0;
     throw InvalidInput(where, "without negative moments",
                        to_text(m[0]) + " about the axis " + vector_text(principal.axes.col(0)) + ", " +
@@ -86,7 +86,7 @@ void check_moments(const Matrix3d& I_B, const PrincipalAxes& principal, bool phy
                                        "entry, or their order?");
   }
   const double excess = 0.5 * m[2] - 0.5 * m[1] - 0.5 * m[0];  // halves: no overflow
-  if (physical && excess > 0.5 * forgiven) {
+  if (physical && excess > 0.5 * allowed) {
     const double deficit = excess / (0.5 * m[2]);
     throw InvalidInput(where, "within the triangle inequality: no moment above the sum of the two others",
                        to_text(m[2]) + " about the axis " + vector_text(principal.axes.col(2)) + " against the sum " +

@@ -6,7 +6,7 @@
 
 namespace polhode {
 
-/// Mass, centre of mass and inertia of a body, in axes B from an origin B: all that its motion knows of its shape.
+/// Mass, centre of mass and inertia of a body, in axes B from an origin B. Motion depends on nothing else of a shape.
 class MassProperties {
  public:
   /// `inertia` is the tensor about the centre of mass, in axes B. Throws InvalidInput unless mass > 0 [kg].
@@ -22,12 +22,12 @@ class MassProperties {
   /// Inertia about another point, given from the origin in axes B: the parallel axes theorem.
   InertiaTensor about(const Vector3d& point_B) const;
 
-  /// The same body placed in axes A: a point p_B of it goes to R_AB p_B + p_A.
+  /// The same body in axes A: its point p_B moves to R_AB p_B + p_A.
   MassProperties moved(const Quat& q_AB, const Vector3d& p_A) const;
 
-  /// Both bodies as one, both given in the same axes from the same origin.
+  /// Both bodies together. Both are given in the same axes, from the same origin.
   friend MassProperties operator+(const MassProperties& a, const MassProperties& b);
-  /// Body a with body b taken out of it. Throws InvalidInput when what is left is no body.
+  /// Body a without body b. Throws InvalidInput when the rest is no body.
   friend MassProperties operator-(const MassProperties& a, const MassProperties& b);
 
   friend bool operator==(const MassProperties& a, const MassProperties& b) {

@@ -5,11 +5,10 @@
 
 namespace polhode::inertia {
 
-/// What is summed over the triangles: d, d s (3), d f (6: xx, yy, zz, xy, xz, yz), and the square of what rounding may
-/// do to d.
+/// The sums over the triangles: d, d s (3), d f (6: xx, yy, zz, xy, xz, yz), and the squared rounding error of d.
 inline constexpr int mesh_sums = 11;
 
-/// Sums over triangles seen from `reference`: the value of each is hi + lo.
+/// Sums over triangles, relative to `reference`. Each value is hi + lo.
 struct MeshSums {
   double hi[mesh_sums], lo[mesh_sums];
 };
@@ -23,7 +22,7 @@ struct MeshTriangles {
   const double* reference;
 };
 
-/// False when an index is out of range; the sums are then worth nothing.
+/// Returns false when an index is out of range; the sums are then meaningless.
 template <class Index>
 using MeshLoop = bool (*)(const MeshTriangles<Index>&, MeshSums&);
 

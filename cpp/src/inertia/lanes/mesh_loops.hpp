@@ -3,21 +3,21 @@
 #include "inertia/lanes/levels.hpp"
 #include "polhode/math/double_double.hpp"
 
-// The sums over the triangles, for one lane type `Wide`; included once by each file that is built for one instruction
-// set, after `nmadd(a, b, c)` = c - a b and `load_rows<last>(vertices, indices, x, y, z)` for it.
+// The sums over the triangles, for one lane type `Wide`. Each file that is built for one instruction set includes this
+// header once, after `nmadd(a, b, c)` = c - a b and `load_rows<last>(vertices, indices, x, y, z)` for its `Wide`.
 //
 // The tetrahedron between the reference point and the triangle (a, b, c) has the volume d / 6, the first moments d s /
 // 24 and the second moments d (p p + q q + o o) / 120 with d = a . (b x c), s = a + b + c, and the sums p, q, o of two
-// corners: Mirtich 1996, Eberly 2002; their a a + b b + c c + s s is the same. Here d = a . ((b - a) x (c - a)): the
-// edges are short and nearly exact however far the triangle is, where b x c of a small one loses most of its digits.
+// corners (Mirtich 1996, Eberly 2002, whose a a + b b + c c + s s is the same). Here d = a . ((b - a) x (c - a)): the
+// edges are short and nearly exact at any distance, whereas b x c of a small triangle loses most of its digits.
 namespace polhode::POLHODE_ISA {
 
 using inertia::mesh_sums;
 using inertia::MeshSums;
 using inertia::MeshTriangles;
 
-inline constexpr int group = 8;         ///< virtual lanes, the same for every width: so are the bits
-inline constexpr int block_groups = 32;  ///< plain sums of so many, then compensated
+inline constexpr int group = 8;         ///< virtual lanes, the same for every register width, so that the bits are the same
+inline constexpr int block_groups = 32;  ///< groups in a plain sum; the sums of blocks are compensated
 
 template <class T>
 POLHODE_INLINE math::DoubleDouble<T> nmadd(math::DoubleDouble<T> a, math::DoubleDouble<T> b, math::DoubleDouble<T> c) {
@@ -37,7 +37,7 @@ POLHODE_INLINE Wide square(const N (&v)[3]) {
   return madd(x, x, madd(y, y, z * z));
 }
 
-/// Adds what the triangles A, B, C in the lanes contribute.
+/// Adds the contributions of the triangles A, B, C in the lanes.
 template <class N>
 POLHODE_INLINE void add_triangles(const Wide (&A)[3], const Wide (&B)[3], const Wide (&C)[3], const Wide (&r)[3],
                                   N (&sum)[mesh_sums]) {
@@ -62,11 +62,11 @@ POLHODE_INLINE void add_triangles(const Wide (&A)[3], const Wide (&B)[3], const 
     sum[4 + m] = madd(d, moment, sum[4 + m]);
     if (m < 3) distance = distance + plain(moment);
   }
-  // |e|^2 |f|^2 |a|^2 bounds d^2 and so, in units of rounding, the square of what rounding did to d.
+  // |e|^2 |f|^2 |a|^2 bounds d^2, and so the squared rounding error of d in units of rounding.
   sum[10] = madd(N(distance), N(square(e) * square(f)), sum[10]);
 }
 
-/// `groups` times eight triangles, `last` when one of them has the last vertex, beyond which nothing may be read.
+/// Adds `groups` times eight triangles. `last`: one of them has the last vertex, beyond which nothing may be read.
 template <bool last, class N, class Index>
 POLHODE_INLINE void add_block(const double* vertices, const Index* faces, int groups, const Wide (&r)[3],
                               math::DoubleDouble<Wide> (&sums)[group / Wide::width][mesh_sums]) {
@@ -111,7 +111,7 @@ bool mesh_loop(const MeshTriangles<Index>& mesh, MeshSums& out) {
       add_block<false, N>(mesh.vertices, faces, groups, r, sums);
     }
     if (const std::size_t left = count % group; left != 0) {
-      Index padded[3 * group];  // with triangles that are points: they add nothing
+      Index padded[3 * group];  // padded with triangles that are points and add nothing
       for (std::size_t i = 0; i < 3 * group; ++i) {
         padded[i] = i < 3 * left ? faces[3 * group * static_cast<std::size_t>(groups) + i] : faces[0];
       }

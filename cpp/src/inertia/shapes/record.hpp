@@ -30,7 +30,7 @@ inline MassProperties along_axes(double mass, Real Ix, Real Iy, Real Iz, Real z 
   return MassProperties(mass, {0, 0, static_cast<double>(z)}, InertiaTensor::from_moments(moments));
 }
 
-/// The three lengths, when each is positive and finite.
+/// Returns the three lengths. Throws InvalidInput unless each is positive and finite.
 inline const Vector3d& positive(const Vector3d& lengths, const char* where) {
   for (int i = 0; i < 3; ++i) {
     if (!(lengths[i] > 0 && std::isfinite(lengths[i]))) {
@@ -40,13 +40,13 @@ inline const Vector3d& positive(const Vector3d& lengths, const char* where) {
   return lengths;
 }
 
-/// A length of which 0 is a meaningful limit.
+/// Returns a length for which 0 is a meaningful limit. Throws InvalidInput unless it is finite and not negative.
 inline double not_negative(double value, const char* where) {
   if (!(value >= 0 && std::isfinite(value))) throw InvalidInput(where, "zero or positive, and finite", to_text(value));
   return value;
 }
 
-/// Reads one parameter from plain numbers, and tells its size.
+/// Reads one parameter from plain numbers and gives its size.
 template <class T>
 struct Reader;
 template <>
@@ -100,7 +100,7 @@ Record make_record(std::string name, std::string doc, const std::pair<const char
   return make_record<shape>(shape, std::move(name), std::move(doc), std::to_array(parameters));
 }
 
-/// The same with the volume from the numbers after the mass: for bodies that have one.
+/// Adds the volume, computed from the numbers after the mass, for bodies that have one.
 inline Record with_volume(Record record, Real (*volume)(const double* sizes)) {
   record.volume = volume;
   return record;

@@ -3,7 +3,7 @@
 namespace polhode::shapes {
 namespace {
 
-/// Refuses four corners in one plane, as far as their doubles can tell.
+/// Refuses four corners that lie in one plane to the precision of double.
 void require_volume(const Real (&e)[4][3]) {
   const Real volume = e[1][0] * (e[2][1] * e[3][2] - e[2][2] * e[3][1]) +
                       e[1][1] * (e[2][2] * e[3][0] - e[2][0] * e[3][2]) +
@@ -22,7 +22,7 @@ MassProperties tetrahedron(double mass, const Tetrahedron& vertices) {
   for (const Vector3d& v : vertices) {
     if (!v.allFinite()) throw InvalidInput("vertices", "finite", inertia::vector_text(v));
   }
-  // From the first corner, so that the distance from the origin costs nothing.
+  // Relative to the first corner, so that a distant origin costs no digits.
   Real edge[4][3], centre[3] = {0, 0, 0};
   for (int i = 0; i < 4; ++i) {
     for (int k = 0; k < 3; ++k) {
