@@ -24,7 +24,7 @@ int exponent_of(const Vector3d& v) { return std::ilogb(v.cwiseAbs().maxCoeff());
 
 Vector3d ldexp(const Vector3d& v, int e) { return {std::ldexp(v[0], e), std::ldexp(v[1], e), std::ldexp(v[2], e)}; }
 
-/// What is computed in scaled units, back in SI; refused where float64 cannot hold it.
+/// Converts a scaled quantity to SI. Throws InvalidInput if float64 cannot represent it.
 double representable(double scaled, int exponent, const char* name) {
   const double value = std::ldexp(scaled, exponent);
   if (!std::isfinite(value) || (scaled != 0.0 && std::abs(value) < std::numeric_limits<double>::min())) {
@@ -72,7 +72,7 @@ void FreeMotion::classify(const Vector3d& I, const Vector3d& w, bool exact_axes)
   } else if (I[2] - I[1] <= gap) {
     symmetry = Symmetry::prolate;
   }
-  // Rounding of a turned tensor leaves as much of a component that should be zero.
+  // With a full tensor, rounding leaves components of this size instead of zeros.
   const double nothing = exact_axes ? 0.0 : 4 * symmetry_gap * w.cwiseAbs().maxCoeff();
   const bool zero[] = {std::abs(w[0]) <= nothing, std::abs(w[1]) <= nothing, std::abs(w[2]) <= nothing};
   const int zeros = zero[0] + zero[1] + zero[2];
@@ -111,7 +111,7 @@ void FreeMotion::set_up(const Vector3d& moments, const Matrix3d& R_BP, bool exac
 
   double precession_cycles = nan;
   if (s.w[0] == 0.0 && s.w[2] == 0.0 && s.I[0] != s.I[1] && s.I[1] != s.I[2]) {
-    // Exactly the unstable axis: omega is constant, the half angle in cycles is w2 t / (4 pi).
+    // Exactly on the unstable axis: omega is constant, the half angle in cycles is w2 t / (4 pi).
     form_ = Form::intermediate;
     const DD half = DD(s.w[1]) * DD(0.15915494309189535, -9.839338337591243e-18) * DD(0.5);
     trig_.kappa_hi = half.hi, trig_.kappa_lo = half.lo;
@@ -133,23 +133,23 @@ void FreeMotion::set_up(const Vector3d& moments, const Matrix3d& R_BP, bool exac
   kind_ = s.I[2] > s.I[0] ? FreeKind::about_greatest : FreeKind::about_least;
   classify(I_sorted, w_sorted, exact_axes);
 
-  // Everything fixed into two matrices: omega = 2^e R_BP M omega', q = q0 conj(S Q(0)) (S Q'), S = R_BP M on vectors.
+  // All constant rotations in two matrices: omega = 2^e R_BP M omega', q = q0 conj(S Q(0)) (S Q'), with S = R_BP M.
   Matrix3d M;
   for (int c = 0; c < 3; ++c)
     for (int a = 0; a < 3; ++a) M(c, a) = s.M[c][a];
   const Matrix3d S = R_BP * M;
   for (int c = 0; c < 3; ++c)
     for (int a = 0; a < 3; ++a) frame_.omega[3 * c + a] = S(c, a) * frame_.time_scale;
-  const auto turned = [&S](double x, double y, double z, double qw) {
+  const auto in_body_axes = [&S](double x, double y, double z, double qw) {
     const Vector3d v = S * Vector3d(x, y, z);
     return Quat{v[0], v[1], v[2], qw};
   };
   Quat first;
   if (form_ == Form::trig) first = working_attitude(exact::evaluate(trig_, 0.0));
   if (form_ == Form::hyper) first = working_attitude(exact::evaluate(hyper_, 0.0));
-  const Quat left = normalized(attitude_ * conjugate(turned(first.x, first.y, first.z, first.w)));
+  const Quat left = normalized(attitude_ * conjugate(in_body_axes(first.x, first.y, first.z, first.w)));
   for (std::size_t i = 0; i < 4; ++i) {
-    const Quat q = left * turned(i == 0, i == 1, i == 2, i == 3);
+    const Quat q = left * in_body_axes(i == 0, i == 1, i == 2, i == 3);
     frame_.attitude[i] = q.x;
     frame_.attitude[4 + i] = q.y;
     frame_.attitude[8 + i] = q.z;
@@ -167,7 +167,7 @@ double FreeMotion::checked_time(double t) const {
   return scaled;
 }
 
-/// At rest, or exactly on the unstable axis: omega as given, and a turn about it by half the angle in cycles.
+/// At rest, or exactly on the unstable axis: omega as given, and a rotation about it.
 void FreeMotion::write_constant(const double* t, std::size_t n, double* omega, double* attitude) const {
   for (std::size_t i = 0; i < n; ++i) {
     if (omega) std::copy_n(omega_.data(), 3, omega + 3 * i);

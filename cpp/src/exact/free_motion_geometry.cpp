@@ -1,19 +1,20 @@
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "polhode/core/error.hpp"
 #include "polhode/exact/free_motion.hpp"
 
-// What teachers and analysts ask of a free motion: Poinsot's picture, Euler's angles, the racket's flips.
+// Geometry of a free motion: Poinsot's curves, Euler's angles, the flips of the tennis racket.
 namespace polhode {
 namespace {
 
 using math::DD;
 
-/// The shortest turn that takes space z to the direction v.
-Quat turn_to(const Vector3d& v) {
+/// The shortest rotation that takes space z to the direction v.
+Quat shortest_rotation_to(const Vector3d& v) {
   const Vector3d d = v.normalized();
-  // (e_z + d) / |e_z + d| bisects; for d near -e_z any axis across z does, and x is taken.
+  // (e_z + d) / |e_z + d| bisects; for d near -e_z any axis perpendicular to z serves, and x is taken.
   const double c = std::hypot(d[0], d[1]);
   if (d[2] < 0.0 && c < 1e-150) return {1.0, 0.0, 0.0, 0.0};
   const double half = 0.5 * std::atan2(c, d[2]), s = std::sin(half);
@@ -25,17 +26,17 @@ Quat turn_to(const Vector3d& v) {
 
 Vector3d FreeMotion::euler_angles(double t) const {
   if (form_ == Form::rest) throw InvalidInput("omega", "other than zero for angles about the angular momentum", "rest");
-  const Quat q_WL = turn_to(rotate(attitude_, momentum_direction()));
+  const Quat q_WL = shortest_rotation_to(rotate(attitude_, momentum_direction()));
   const Quat q_LB = conjugate(q_WL) * at(t).attitude;
   const double sum = std::atan2(q_LB.z, q_LB.w), difference = std::atan2(q_LB.y, q_LB.x);
   const double theta = 2.0 * std::atan2(std::hypot(q_LB.x, q_LB.y), std::hypot(q_LB.z, q_LB.w));
-  constexpr double turn = 6.283185307179586;
+  constexpr double turn = 2.0 * std::numbers::pi;
   return {std::remainder(sum + difference, turn), theta, std::remainder(sum - difference, turn)};
 }
 
 Vector3d FreeMotion::polhode(double t) const {
   if (form_ == Form::rest) throw InvalidInput("omega", "other than zero for a polhode", "rest");
-  // omega' / sqrt(2 T') carries 2^(-moment exponent / 2).
+  // omega' / sqrt(2 T') is scaled by 2^(-moment exponent / 2).
   const double odd = moment_exponent_ % 2 == 0 ? 1.0 : std::sqrt(2.0);
   const int e = (moment_exponent_ % 2 == 0 ? moment_exponent_ : moment_exponent_ - 1) / 2;
   const double scale = 1.0 / (std::sqrt(twice_T_) * odd);

@@ -22,7 +22,7 @@ std::string text(const Vector3d& v) {
   return all;
 }
 
-/// `found` is a function: no text is made for what is fine.
+/// `found` is a function, so that its text is made only for a refusal.
 template <class Found>
 void require(bool fine, const char* where, const char* requirement, const Found& found, const char* cause = "") {
   if (!fine) throw InvalidInput(where, requirement, found(), cause);
@@ -49,8 +49,8 @@ TopSymmetry symmetry_of(const Vector3d& moments) {
                          " of the largest: set them equal if they are meant to be, else solve the scene step by step");
 }
 
-/// The same for a full tensor. With two equal moments A, I = A + (C - A) n n^T: the column of the largest diagonal
-/// entry of +-(I - A) is along n. A is found as the pair's mean from the invariants of the deviator.
+/// The same for a full tensor. With two equal moments A, I = A + (C - A) n n^T. The column with the largest diagonal
+/// entry of n n^T is along n. The invariants of the deviator give the mean of the equal moments.
 TopSymmetry symmetry_of(const Matrix3d& I) {
   const double largest = I.cwiseAbs().maxCoeff();
   if (I(0, 1) == 0.0 && I(0, 2) == 0.0 && I(1, 2) == 0.0) return symmetry_of(Vector3d(I.diagonal()));
@@ -78,7 +78,7 @@ TopSymmetry symmetry_of(const Matrix3d& I) {
   return found;
 }
 
-/// q_SB: turns the symmetry axis into z. Exact for a coordinate axis.
+/// q_SB, which rotates the symmetry axis to z. Exact for a coordinate axis.
 Quat to_working_axes(const Vector3d& n) {
   if (n == Vector3d::UnitZ()) return {};
   if (n == Vector3d::UnitX()) return {-0.5, -0.5, -0.5, 0.5};
@@ -95,7 +95,7 @@ DDQuat multiply(const DDQuat& a, const DDQuat& b) {
 }
 DDQuat widen(const Quat& q) { return {q.x, q.y, q.z, q.w}; }
 
-/// 2^e x as float64, refused when it has no such value.
+/// 2^e x; throws InvalidInput if it is not representable in float64.
 double from_scaled(double x, int e, const char* what) {
   const double result = std::ldexp(x, e);
   const bool fine = std::isfinite(result) && (x == 0.0 || std::abs(result) >= std::numeric_limits<double>::min());
@@ -148,7 +148,7 @@ void HeavyTop::set_up() {
   constants_.rate_scale = std::ldexp(1.0, e);
   largest_time_ = std::min(std::ldexp(1e25, -e), std::numeric_limits<double>::max());
 
-  // A centre of mass below: turn the body (not the space) by pi about its x axis.
+  // Centre of mass below: rotate the body axes by pi about x.
   const Vector3d w = omega_.unaryExpr([&](double c) { return std::ldexp(c, -e); });
   const bool below = weight_arm_ < 0.0;
   exact::HeavyTopStart s{.A = std::ldexp(body.A, -e_A), .C = std::ldexp(body.C, -e_A),
@@ -162,8 +162,8 @@ void HeavyTop::set_up() {
     q = {q.x / norm, q.y / norm, q.z / norm, q.w / norm};
     const DDQuat back{-q.x, -q.y, -q.z, q.w};
     const DDQuat start = multiply(widen(attitude_), back);
-    const DDQuat turned = multiply(multiply(q, {w[0], w[1], w[2], 0.0}), back);
-    s.w1 = turned.x, s.w2 = turned.y, s.w3 = turned.z;
+    const DDQuat w_S = multiply(multiply(q, {w[0], w[1], w[2], 0.0}), back);
+    s.w1 = w_S.x, s.w2 = w_S.y, s.w3 = w_S.z;
     s.x = start.x, s.y = start.y, s.z = start.z, s.w = start.w;
     constants_.q_SB = {q.x.hi, q.y.hi, q.z.hi, q.w.hi};
   }

@@ -2,7 +2,8 @@
 
 #include "polhode/exact/free_setup.hpp"
 
-// Shewchuk 1997, "Adaptive precision floating-point arithmetic", Discrete Comput. Geom. 18, 305: expansions.
+// Exact sums by expansions. Shewchuk 1997, "Adaptive precision floating-point arithmetic", Discrete Comput. Geom. 18,
+// 305.
 namespace polhode::exact {
 namespace {
 

@@ -6,12 +6,12 @@
 namespace polhode::ode {
 namespace {
 
-/// Calls back at most every twentieth of a second, and looks at the clock only every few steps.
+/// Calls back at most every twentieth of a second, and reads the clock only every 16 steps.
 class Heartbeat {
  public:
   explicit Heartbeat(const std::function<bool(double, double)>& progress) : progress_(progress) {}
 
-  bool wants_to_stop(double reached, double last) {
+  bool stop_requested(double reached, double last) {
     if (!progress_ || (++calls_ & 15) != 0) return false;
     const auto now = std::chrono::steady_clock::now();
     if (now - last_ < std::chrono::milliseconds(50)) return false;
@@ -52,8 +52,8 @@ DriveResult drive(Stepper& stepper, std::span<const double> times, const Sink& s
   }
   Heartbeat heartbeat(options.progress);
   double y[64];
-  constexpr std::size_t most_at_once = 64;
-  std::vector<double> rows(most_at_once * static_cast<std::size_t>(stepper.dimension()));
+  constexpr std::size_t batch_size = 64;
+  std::vector<double> rows(batch_size * static_cast<std::size_t>(stepper.dimension()));
   const auto at = [&](double t, double* out) { stepper.interpolate(t, out); };
 
   const long first_step = stepper.counts().steps;
@@ -69,7 +69,7 @@ DriveResult drive(Stepper& stepper, std::span<const double> times, const Sink& s
     }
     double reached = stepper.t();
 
-    // Events: each step is looked at in a few pieces, so that two zeros within one step are both seen.
+    // Each step is searched in a few pieces, so that two zeros within one step are both found.
     if (!trackers.empty()) {
       constexpr int pieces = 8;
       const double t0 = stepper.t_old(), h = stepper.t() - t0;
@@ -108,14 +108,14 @@ DriveResult drive(Stepper& stepper, std::span<const double> times, const Sink& s
     std::size_t end = next;
     while (end < times.size() && (forward ? times[end] <= reached : times[end] >= reached)) ++end;
     while (next < end) {
-      const std::size_t count = std::min(end - next, most_at_once);
+      const std::size_t count = std::min(end - next, batch_size);
       stepper.interpolate_many(times.data() + next, count, rows.data());
       sink(next, times.subspan(next, count), rows.data());
       next += count;
     }
     result.t = reached;
     if (result.ending == Ending::event) break;
-    if (heartbeat.wants_to_stop(reached, last)) {
+    if (heartbeat.stop_requested(reached, last)) {
       result.ending = Ending::stopped;
       break;
     }

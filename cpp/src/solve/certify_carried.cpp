@@ -22,11 +22,11 @@ Attempt run_carried(CountedRuns& runs, double rtol, double safety, double most, 
   for (std::size_t i = 0; i + 2 < motion.omega.size(); i += 3) {
     size = std::max(size, std::hypot(motion.omega[i], motion.omega[i + 1], motion.omega[i + 2]));
   }
-  const double rates = motion.omega.empty() || trace.moved == 0.0 ? 0.0 : trace.moved / size;
-  const double error = std::max(rates, motion.attitude.empty() ? 0.0 : trace.turned);
+  const double rates = motion.omega.empty() || trace.rate_error == 0.0 ? 0.0 : trace.rate_error / size;
+  const double error = std::max(rates, motion.attitude.empty() ? 0.0 : trace.attitude_error);
   // What is carried along grows without end; two attitudes are no farther apart than half a turn.
   attempt.error = safety * std::min(error, std::numbers::pi);
-  attempt.holds_until = attempt.error <= accuracy ? unknown_error : trace.parting;
+  attempt.holds_until = attempt.error <= accuracy ? unknown_error : trace.holds_until;
   return attempt;
 }
 

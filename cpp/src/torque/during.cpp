@@ -13,30 +13,30 @@ std::string show(const Window& window) {
   return std::string("[").append(to_text(window.begin)).append(", ").append(to_text(window.end)).append("]");
 }
 
-/// In the order of time, those that touch made one.
+/// Sorts the windows by time and merges windows that touch.
 std::vector<Window> arrange(std::vector<Window> windows) {
-  for (const Window& one : windows) {
-    if (one.begin < one.end) continue;
-    const bool known = !std::isnan(one.begin) && !std::isnan(one.end);
-    throw InvalidInput("During.windows", "pairs of a begin and a later end", show(one),
+  for (const Window& window : windows) {
+    if (window.begin < window.end) continue;
+    const bool known = !std::isnan(window.begin) && !std::isnan(window.end);
+    throw InvalidInput("During.windows", "pairs of a begin and a later end", show(window),
                        !known                 ? ""
-                       : one.begin == one.end ? "an empty window: nothing ever acts in it"
+                       : window.begin == window.end ? "an empty window: nothing ever acts in it"
                                               : "begin and end are swapped");
   }
   std::sort(windows.begin(), windows.end(), [](const Window& a, const Window& b) { return a.begin < b.begin; });
-  std::vector<Window> apart;
-  for (const Window& one : windows) {
-    if (!apart.empty() && one.begin < apart.back().end) {
-      throw InvalidInput("During.windows", "apart from each other", show(apart.back()) + " and " + show(one),
+  std::vector<Window> merged;
+  for (const Window& window : windows) {
+    if (!merged.empty() && window.begin < merged.back().end) {
+      throw InvalidInput("During.windows", "apart from each other", show(merged.back()) + " and " + show(window),
                          "what acts twice at once is two torques");
     }
-    if (!apart.empty() && one.begin == apart.back().end) {
-      apart.back().end = one.end;
+    if (!merged.empty() && window.begin == merged.back().end) {
+      merged.back().end = window.end;
     } else {
-      apart.push_back(one);
+      merged.push_back(window);
     }
   }
-  return apart;
+  return merged;
 }
 
 }  // namespace
@@ -52,28 +52,28 @@ const TorqueRecord& During::record() {
 
 bool During::acts_at(double t) const {
   return std::any_of(windows_.begin(), windows_.end(),
-                     [t](const Window& one) { return one.begin <= t && t < one.end; });
+                     [t](const Window& window) { return window.begin <= t && t < window.end; });
 }
 
 bool During::acts_throughout(double begin, double end) const {
   return std::any_of(windows_.begin(), windows_.end(),
-                     [=](const Window& one) { return one.begin <= begin && end <= one.end; });
+                     [=](const Window& window) { return window.begin <= begin && end <= window.end; });
 }
 
 TorqueTraits During::traits() const {
-  TorqueTraits traits = std::visit([](const auto& one) { return one.traits(); }, torque_);
+  TorqueTraits traits = std::visit([](const auto& torque) { return torque.traits(); }, torque_);
   traits.uses_time = true;
-  traits.pattern_rate = 0.0;   // no potential that comes and goes keeps an energy, of whatever kind
+  traits.pattern_rate = 0.0;   // a potential that is switched on and off conserves no energy
   traits.vanishes |= windows_.empty();
   return traits;
 }
 
 void During::add(const TorqueInput& in, double* tau_B) const {
-  if (acts_at(in.t)) std::visit([&](const auto& one) { one.add(in, tau_B); }, torque_);
+  if (acts_at(in.t)) std::visit([&](const auto& torque) { torque.add(in, tau_B); }, torque_);
 }
 
 double During::compute_potential(const TorqueInput& in) const {
-  return acts_at(in.t) ? std::visit([&](const auto& one) { return one.compute_potential(in); }, torque_) : 0.0;
+  return acts_at(in.t) ? std::visit([&](const auto& torque) { return torque.compute_potential(in); }, torque_) : 0.0;
 }
 
 }  // namespace polhode::torques

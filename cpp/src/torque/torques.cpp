@@ -3,7 +3,7 @@
 namespace polhode {
 
 TorqueTraits traits(const AnyTorque& torque) {
-  return std::visit([](const auto& one) { return one.traits(); }, torque);
+  return std::visit([](const auto& any) { return any.traits(); }, torque);
 }
 
 std::string_view torque_name(const AnyTorque& torque) {
@@ -12,28 +12,28 @@ std::string_view torque_name(const AnyTorque& torque) {
 
 TorqueSum summarize(std::span<const AnyTorque> torques) {
   TorqueSum sum;
-  bool one_pattern = true, turning = false, standing_still = true;
+  bool same_pattern = true, rotating = false, stationary = true;
   for (const AnyTorque& torque : torques) {
-    const TorqueTraits one = traits(torque);
-    if (one.vanishes) continue;
+    const TorqueTraits t = traits(torque);
+    if (t.vanishes) continue;
     ++sum.acting;
-    sum.uses_time |= one.uses_time;
-    sum.uses_attitude |= one.uses_attitude;
-    sum.uses_rates |= one.uses_rates;
-    sum.has_potential &= one.has_potential;
-    sum.keeps_vertical &= one.keeps_vertical;
-    if (one.pattern_rate != 0.0) {
-      one_pattern &= !turning || one.pattern_rate == sum.pattern_rate;
-      sum.pattern_rate = one.pattern_rate;
-      turning = true;
+    sum.uses_time |= t.uses_time;
+    sum.uses_attitude |= t.uses_attitude;
+    sum.uses_rates |= t.uses_rates;
+    sum.has_potential &= t.has_potential;
+    sum.keeps_vertical &= t.keeps_vertical;
+    if (t.pattern_rate != 0.0) {
+      same_pattern &= !rotating || t.pattern_rate == sum.pattern_rate;
+      sum.pattern_rate = t.pattern_rate;
+      rotating = true;
     } else {
-      // A potential that is symmetric about the vertical stands still and turns alike.
-      one_pattern &= one.keeps_vertical && !one.uses_time;
-      standing_still &= !one.uses_time;
+      // A potential that is symmetric about the vertical is stationary in every rotating frame.
+      same_pattern &= t.keeps_vertical && !t.uses_time;
+      stationary &= !t.uses_time;
     }
   }
-  sum.keeps_energy = sum.has_potential && !turning && standing_still;
-  sum.keeps_jacobi = sum.has_potential && turning && one_pattern;
+  sum.keeps_energy = sum.has_potential && !rotating && stationary;
+  sum.keeps_jacobi = sum.has_potential && rotating && same_pattern;
   return sum;
 }
 

@@ -8,11 +8,11 @@
 
 namespace polhode::exact {
 
-/// What leads from the working frames back to the caller's: fixed for one body.
+/// The maps from the working frames to the caller's frames, constant for one body.
 template <class T>
 struct FreeFrameOf {
-  T omega[9];       ///< omega = matrix omega', row by row, with the scale of time in it
-  T attitude[16];   ///< the quaternion product with every fixed turn: q = matrix q'
+  T omega[9];       ///< omega = matrix omega', row by row, including the scale of time
+  T attitude[16];   ///< q = matrix q': the quaternion products with all constant rotations
   T time_scale;     ///< t' = t * time_scale, a power of two
 };
 using FreeFrame = FreeFrameOf<double>;
@@ -33,23 +33,23 @@ struct FreeKernels {
   void (*trig)(const FreeTrig<double>&, const FreeFrame&, const TimeGrid&, double* omega, double* attitude);
   void (*hyper)(const FreeHyper<double>&, const FreeFrame&, const TimeGrid&, double* omega, double* attitude);
 
-  /// n bodies, each at its own time: set up and evaluated in lanes. `left` gets the indices of those that this cannot
-  /// do (exactly on the separatrix or the unstable axis, at rest, out of range); returns how many they are.
+  /// n bodies, each at its own time: set up and evaluated in lanes. `left` receives the indices of bodies that are not
+  /// done (exactly on the separatrix or the unstable axis, at rest, out of range). Returns their number.
   std::size_t (*once)(FreeStarts starts, const double* t, std::size_t n, double* omega, double* attitude,
                       std::size_t* left);
 
-  /// The constants of n bodies; `left` as for `once`, and those near the separatrix with them.
+  /// The constants of n bodies; `left` as for `once`, and also bodies near the separatrix.
   std::size_t (*set_up)(FreeStarts starts, std::size_t n, FreeTrig<double>* trig, FreeFrame* frames, std::size_t* left);
 
-  /// One body: its constants and, as k^2 <= 0.97 or beyond, `trig` or `hyper`. `start` is scaled as `analyse` asks.
+  /// One body: its constants, and `trig` for k^2 <= 0.97 or `hyper` beyond. `start` is scaled as `analyse` requires.
   void (*prepare)(const FreeStart<double>& start, FreeConstants<double>& constants, FreeTrig<double>& trig,
                   FreeHyper<double>& hyper);
 };
 
-/// Those of a level; of the next lower one that was compiled.
+/// The kernels of a level, or of the next lower level that was compiled.
 const FreeKernels& free_kernels(SimdLevel level);
 
-/// Those of simd_level(), decided once.
+/// The kernels of simd_level(), chosen once.
 const FreeKernels& free_kernels();
 
 }  // namespace polhode::exact

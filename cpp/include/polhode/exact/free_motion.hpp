@@ -26,8 +26,8 @@ const char* to_text(FreeKind kind);
 
 /// Torque-free motion of any rigid body about its centre of mass (or a fixed point), in closed form at any time.
 ///
-/// The error against the exact motion from the same float64 input is a few units of rounding in every regime and at
-/// every time up to |omega t| = 1e25 rad, beyond what the input's own rounding makes of it. See docs/exact.md.
+/// The error against the exact motion from the same float64 input is a few units of rounding. That holds in every
+/// regime and at every time up to |omega t| = 1e25 rad. See docs/exact.md.
 class FreeMotion {
  public:
   /// I_B, w_B(0) [rad/s] and q_WB(0). Throws InvalidInput, also for a body without a moment about some axis.
@@ -40,7 +40,7 @@ class FreeMotion {
 
   /// n states: omega 3 n and attitude 4 n numbers, row by row; either pointer may be null.
   void at(const double* t, std::size_t n, double* omega, double* attitude) const;
-  /// The same at times that were looked at before.
+  /// The same at times that were analysed before.
   void at(const exact::TimeGrid& times, double* omega, double* attitude) const;
 
   FreeKind kind() const { return kind_; }
@@ -50,13 +50,13 @@ class FreeMotion {
   Vector3d angular_momentum() const;  ///< L_W [kg m^2 / s], constant
 
   /// (phi, theta, psi), intrinsic z-x-z, of the body axes in a space frame whose z axis is the angular momentum
-  /// (space z turned there the shortest way): precession, nutation, spin. Needs a body that turns.
+  /// (space z rotated to it the shortest way): precession, nutation, spin. Throws InvalidInput for a body at rest.
   Vector3d euler_angles(double t) const;
   Vector3d polhode(double t) const;     ///< omega / sqrt(2 T) in body axes: Poinsot's point on the inertia ellipsoid
   Vector3d herpolhode(double t) const;  ///< the same point in space axes: it runs in the plane L . v = sqrt(2 T)
 
-  /// The times in [begin, end] at which omega's component along the intermediate axis passes through zero: half way
-  /// through a flip where there is one. Empty unless the moments are three and the motion is not steady.
+  /// The times in [begin, end] at which the component of omega along the intermediate axis is zero: the middle of each
+  /// flip. Empty unless the three moments differ and the motion is not steady.
   std::vector<double> flip_times(double begin, double end) const;
 
   const InertiaTensor& inertia() const { return inertia_; }

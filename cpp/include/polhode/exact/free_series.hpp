@@ -9,13 +9,12 @@
 // working space frame: third axis along the angular momentum. docs/exact.md derives everything here.
 namespace polhode::exact {
 
-// Named here so that the C library's own names of the global namespace are never meant.
+// Named here, so that the C library's functions in the global namespace are never chosen.
 using math::DoubleDouble;
 using math::abs, math::copysign, math::madd, math::max, math::min, math::rint, math::select, math::sqrt;
 using math::cycle_fraction, math::polynomial, math::sincos_cycles, math::exp_minus, math::two_prod, math::two_sum;
 
-/// What an evaluation gives: the unit quaternion from working axes to the working space frame, and omega in
-/// working axes.
+/// A state: the unit quaternion from working axes to the working space frame, and omega in working axes.
 template <class T>
 struct FreeState {
   T x, y, z, w;
@@ -32,23 +31,24 @@ struct FreeTrig {
   T omega1[5], omega2[5], omega3[5];  ///< theta_1, theta_2, theta_4 with the factors of omega, over sin, cos, 1
 };
 
-/// k^2 > 0.97: the same sums after Poisson's transformation, in e^-|v|, v running through one half period.
+/// k^2 > 0.97: the same sums after Poisson's transformation, in e^-|v|, with v in one half period.
 template <class T>
 struct FreeHyper {
-  T rate_hi, rate_lo, start_hi, start_lo;  ///< half turns of the theta argument (nu / pi); 0 on the separatrix
-  T v_hi, v_lo;                            ///< v = v_hi * (fraction of a half turn); on the separatrix dv/dt
+  T rate_hi, rate_lo, start_hi, start_lo;  ///< the theta argument in half cycles (nu / pi); 0 on the separatrix
+  T v_hi, v_lo;                            ///< v = v_hi * (fraction of a half cycle); on the separatrix dv/dt
   T v0_hi, v0_lo;                          ///< v at t = 0 on the separatrix, else 0
   T kappa_hi, kappa_lo, eta;               ///< cycles per unit of time; cycles
-  T parity0;                               ///< half turns to add (0 or 1)
+  T parity0;                               ///< half cycles to add (0 or 1)
   T q;                                     ///< the complementary nome
   T C[4], S[4];                            ///< cos, sin((2n + 1) eta / 2)
   T omega1, omega2, omega3;
   T homoclinic;                            ///< 1 exactly on the separatrix, else 0
 };
 
-/// 1 / sqrt(|alpha|^2 + |beta|^2), the scale, turns the pair into a unit quaternion; e^{i kappa t} turns both.
+/// Makes a unit quaternion of alpha and beta: rotates both by e^{i kappa t} and multiplies by the scale, which is
+/// 1 / sqrt(|alpha|^2 + |beta|^2).
 template <class T>
-POLHODE_INLINE void turn_and_normalise(T re_a, T im_a, T re_b, T im_b, T scale, T sine, T cosine, FreeState<T>& out) {
+POLHODE_INLINE void rotate_and_normalise(T re_a, T im_a, T re_b, T im_b, T scale, T sine, T cosine, FreeState<T>& out) {
   const T c = cosine * scale, s = sine * scale;
   out.w = madd(re_a, c, -(im_a * s));
   out.z = madd(re_a, s, im_a * c);
@@ -56,13 +56,13 @@ POLHODE_INLINE void turn_and_normalise(T re_a, T im_a, T re_b, T im_b, T scale, 
   out.y = madd(re_b, s, im_b * c);
 }
 
-/// alpha and beta before the turn by kappa t, and what makes the pair unit.
+/// alpha and beta before the rotation by kappa t, and their scale.
 template <class T>
 struct FreePair {
   T re_a, im_a, re_b, im_b, scale;
 };
 
-/// From the sine and cosine of phi.
+/// The pair from the sine and cosine of phi.
 template <class T, class C>
 POLHODE_INLINE FreePair<T> evaluate_pair(const FreeTrig<C>& body, T s, T c) {
   const T X = (c - s) * (c + s), sin2 = (s + s) * c;
@@ -72,11 +72,11 @@ POLHODE_INLINE FreePair<T> evaluate_pair(const FreeTrig<C>& body, T s, T c) {
   return {re_a, im_a, re_b, im_b, T(1.0) / sqrt(size2)};
 }
 
-/// From the pair, the sines and cosines of phi (s, c) and of kappa t (ks, kc).
+/// The state from the pair and the sines and cosines of phi (s, c) and of kappa t (ks, kc).
 template <class T, class C>
 POLHODE_INLINE FreeState<T> evaluate(const FreeTrig<C>& body, const FreePair<T>& pair, T s, T c, T ks, T kc) {
   FreeState<T> out;
-  turn_and_normalise(pair.re_a, pair.im_a, pair.re_b, pair.im_b, pair.scale, ks, kc, out);
+  rotate_and_normalise(pair.re_a, pair.im_a, pair.re_b, pair.im_b, pair.scale, ks, kc, out);
   const T X = (c - s) * (c + s), inverse = pair.scale * pair.scale;
   out.omega[0] = s * polynomial(body.omega1, X) * inverse;
   out.omega[1] = c * polynomial(body.omega2, X) * inverse;
@@ -92,7 +92,7 @@ POLHODE_INLINE FreeState<T> evaluate(const FreeTrig<C>& body, T t) {
   return evaluate(body, evaluate_pair(body, s, c), s, c, ks, kc);
 }
 
-/// Where the motion is between two flips: v, (-1)^N, e^-|v|, and the turn of both alpha and beta.
+/// The phase between two flips: v, (-1)^N, e^-|v|, and the rotation of alpha and beta.
 template <class T>
 struct FreePassage {
   T v, flip, E, sine, cosine;
@@ -100,24 +100,24 @@ struct FreePassage {
 
 template <class T, class C>
 POLHODE_INLINE FreePassage<T> evaluate_passage(const FreeHyper<C>& body, T t) {
-  // The theta argument in half turns as a pair: near v = 0 its error is multiplied by pi^2 / lambda.
+  // The theta argument in half cycles, as a pair: near v = 0 its error is multiplied by pi^2 / lambda.
   const auto p = two_prod(t, T(body.rate_hi));
   const T n = rint(p.hi);
-  const auto turns = DoubleDouble<T>(two_sum(p.hi - n, madd(t, T(body.rate_lo), p.lo))) +
+  const auto half_cycles = DoubleDouble<T>(two_sum(p.hi - n, madd(t, T(body.rate_lo), p.lo))) +
                      DoubleDouble<T>(T(body.start_hi), T(body.start_lo));
-  const T n2 = rint(turns.hi), f = turns.hi - n2;
+  const T n2 = rint(half_cycles.hi), f = half_cycles.hi - n2;
   const T half = T(0.5) * ((n + n2) + T(body.parity0));
   const T flip = T(1.0) - T(4.0) * abs(half - rint(half));  // (-1)^N
   // On the separatrix f = 0 and v grows with t itself.
-  const T drive = select(T(body.homoclinic) > T(0.5), t, f);
-  const auto vp = two_prod(drive, T(body.v_hi));
-  const T tail = madd(drive, T(body.v_lo), madd(turns.lo, T(body.v_hi), vp.lo)) + T(body.v0_lo);
+  const T argument = select(T(body.homoclinic) > T(0.5), t, f);
+  const auto vp = two_prod(argument, T(body.v_hi));
+  const T tail = madd(argument, T(body.v_lo), madd(half_cycles.lo, T(body.v_hi), vp.lo)) + T(body.v0_lo);
   const auto vs = two_sum(vp.hi, T(body.v0_hi));
   const T v = vs.hi + (vs.lo + tail);
 
   FreePassage<T> out;
-  const T turn = madd(T(body.eta), f, cycle_fraction(t, T(body.kappa_hi), T(body.kappa_lo), T(0.0)));
-  sincos_cycles(turn - rint(turn), out.sine, out.cosine);
+  const T cycles = madd(T(body.eta), f, cycle_fraction(t, T(body.kappa_hi), T(body.kappa_lo), T(0.0)));
+  sincos_cycles(cycles - rint(cycles), out.sine, out.cosine);
   out.v = v, out.flip = flip, out.E = exp_minus(abs(v));
   return out;
 }
@@ -147,7 +147,7 @@ POLHODE_INLINE FreeState<T> evaluate(const FreeHyper<C>& body, const FreePassage
   }
   const T size2 = madd(re_a, re_a, im_a * im_a) + madd(re_b, re_b, im_b * im_b);
   FreeState<T> out;
-  turn_and_normalise(re_a, im_a, re_b, im_b, T(1.0) / sqrt(size2), passage.sine, passage.cosine, out);
+  rotate_and_normalise(re_a, im_a, re_b, im_b, T(1.0) / sqrt(size2), passage.sine, passage.cosine, out);
 
   T D = T(0.0), V = T(0.0), Wp = E, Wm = E;
   for (int i = 2; i >= 0; --i) {

@@ -4,11 +4,11 @@
 #include "polhode/math/atan2.hpp"
 #include "polhode/math/landen.hpp"
 
-// From moments and angular velocity to the constants of the motion, all in double-double: a rate known to 1e-32
-// keeps the phase of a billion turns. Templates over the number type, with selects in the place of branches.
+// The constants of the motion from moments and angular velocity, all in double-double: a rate known to 1e-32 keeps the
+// phase over a billion cycles. Templates over the number type, with selects in place of branches.
 namespace polhode::exact {
 
-/// Moments and angular velocity in working axes and the turn v_B = M v' back to the axes they were given in.
+/// Moments and angular velocity in working axes, and the rotation v_B = M v' to the given axes.
 /// The largest moment and the largest |w| are in [1, 2): the caller scales by powers of two.
 template <class T>
 struct FreeStart {
@@ -19,15 +19,15 @@ struct FreeStart {
 template <class T>
 struct FreeConstants {
   using N = DoubleDouble<T>;
-  FreeStart<T> start;    ///< m3 >= 0, the axis encircled is the third, J need not ascend
+  FreeStart<T> start;    ///< m3 >= 0, the third axis is the encircled one, I need not ascend
   N m[3], L, twice_T;    ///< angular momentum, its size, 2 T
   N r, r12;              ///< d2 / d1 and d12 / d1, d's the differences of inverse moments; r + r12 = 1
   N La1, La3, a1, a3;    ///< amplitudes: m1 = L a1 cn u, m2 = L a2 sn u, m3 = L a3 dn u, a2 = a1 / sqrt(r)
   N k, kc, p;            ///< modulus, complement, u = p t + u0
 };
 
-/// The sign of L^2 - 2 T I2 and its size, the one cancelling quantity: I3 w3^2 (I3 - I2) - I1 w1^2 (I2 - I1),
-/// exact where double-double would lose more than 20 bits. `lost` is told by the caller.
+/// L^2 - 2 T I2 = I3 w3^2 (I3 - I2) - I1 w1^2 (I2 - I1), computed exactly and rounded to double-double. It is the only
+/// quantity that cancels. The caller uses this where double-double would lose more than 20 bits (`lost`).
 DoubleDouble<double> separatrix_distance_exact(double I1, double I2, double I3, double w1, double w3);
 
 POLHODE_INLINE void make_exact(bool lost, DoubleDouble<double>& distance, double I1, double I2, double I3, double w1,
@@ -42,7 +42,7 @@ POLHODE_INLINE void exchange(M mask, T& a, T& b) {
   b = select(mask, old, b);
 }
 
-/// Turns the axes a, b by a quarter where the mask says so: (v_a, v_b) -> (v_b, -v_a).
+/// Rotates the axes a, b by a quarter turn where the mask is set: (v_a, v_b) -> (v_b, -v_a).
 template <class M, class T>
 POLHODE_INLINE void quarter_turn(M mask, FreeStart<T>& s, int a, int b) {
   exchange(mask, s.I[a], s.I[b]);
@@ -72,7 +72,7 @@ POLHODE_INLINE FreeConstants<T> analyse(FreeStart<T> s) {
   quarter_turn(s.I[1] > s.I[2], s, 1, 2);
   quarter_turn(s.I[0] > s.I[1], s, 0, 1);
 
-  // w1, w3 by a power of two of their own, so that 1e-160 beside 1 does not underflow.
+  // w1 and w3 have a scale of their own, so that 1e-160 beside 1 does not underflow.
   const T size13 = max(abs(s.w[0]), abs(s.w[2]));
   const T unit13 = select(size13 == zero, one, power_of_two_below(size13));
   const T w1 = s.w[0] / unit13, w3 = s.w[2] / unit13;
@@ -82,10 +82,10 @@ POLHODE_INLINE FreeConstants<T> analyse(FreeStart<T> s) {
   make_exact(abs(distance.hi) < T(0x1p-20) * (term3.hi + term1.hi), distance, s.I[0], s.I[1], s.I[2], w1, w3);
 
   const auto swap = (distance.hi < zero) | ((distance.hi == zero) & (s.I[1] == s.I[2]));
-  quarter_turn(Mask<T>(swap), s, 0, 2);  // (w3, w2, -w1), then turned by pi about 3 when that makes m3 >= 0:
+  quarter_turn(Mask<T>(swap), s, 0, 2);  // (w3, w2, -w1), then rotated by pi about axis 1 if that makes m3 >= 0:
   const auto down = s.w[2] < zero;
   for (int a = 0; a < 2; ++a) {
-    // Turning by pi about axis 1 changes the signs of axes 2 and 3.
+    // a rotation by pi about axis 1 changes the signs of axes 2 and 3
     s.w[a + 1] = select(down, -s.w[a + 1], s.w[a + 1]);
     for (int c = 0; c < 3; ++c) s.M[c][a + 1] = select(down, -s.M[c][a + 1], s.M[c][a + 1]);
   }
@@ -124,7 +124,7 @@ POLHODE_INLINE FreeConstants<T> analyse(FreeStart<T> s) {
   return f;
 }
 
-/// Degrees 0..3 (0..4) of the Chebyshev-like families in X = cos 2 phi: cos 2m phi = T_m, sin 2m phi = sin 2 phi
+/// Degrees 0 to 4 of the Chebyshev-like families in X = cos 2 phi: cos 2m phi = T_m, sin 2m phi = sin 2 phi
 /// U_{m-1}, cos (2m + 1) phi = cos phi V_m, sin (2m + 1) phi = sin phi W_m.
 inline constexpr double chebyshev_T[5][5] = {{1}, {0, 1}, {-1, 0, 2}, {0, -3, 0, 4}, {1, 0, -8, 0, 8}};
 inline constexpr double chebyshev_U[3][3] = {{1}, {0, 2}, {-1, 0, 4}};
@@ -152,7 +152,7 @@ POLHODE_INLINE FreeTrig<T> set_up_trig(const FreeConstants<T>& f) {
   const LandenChain<N> chain(f.k, f.kc);
   const N ratio_K = chain.two_K_over_pi();
   const N q = select(steady, N(0.0), chain.nome());
-  const N a1 = select(steady, N(1.0), f.a1);  // any number: rho is selected to 0 below
+  const N a1 = select(steady, N(1.0), f.a1);  // any number: rho is set to 0 below
   const N a2 = a1 / sqrt(f.r);
   const N rho = select(steady, N(0.0), descend_imaginary(chain, f.a3, a1, a2).exp_minus());
   const N q_rho = select(rho.hi == zero, N(0.0), q / select(rho.hi == zero, N(1.0), rho));
@@ -212,7 +212,7 @@ POLHODE_INLINE FreeTrig<T> set_up_trig(const FreeConstants<T>& f) {
   expand(chebyshev_V, oc, c.odd_cos);
   expand(chebyshev_W, os, c.odd_sin);
 
-  // m_i as theta_1, theta_2, theta_4 over |alpha|^2 + |beta|^2, whose value at phi = 0 fixes the factors.
+  // m_i are theta_1, theta_2, theta_4 over |alpha|^2 + |beta|^2. Its value at phi = 0 gives the factors.
   const T n0 = madd(even_sum, even_sum, odd_sum * odd_sum);
   const T t = q.hi, t2 = t * t, t4 = t2 * t2, t6 = t4 * t2, t9 = t4 * t4 * t, t12 = t6 * t6, t16 = t12 * t4,
           t20 = t16 * t4;

@@ -22,8 +22,8 @@ POLHODE_INLINE N agm(N x) {
   return a;
 }
 
-/// The constants of FreeHyper, for k^2 > 0.97; the start's argument v0 and eta in double-double as well, because
-/// near the separatrix their error comes back magnified by K.
+/// The constants of FreeHyper, for k^2 > 0.97. The argument v0 of the start and eta are in double-double as well,
+/// because near the separatrix their errors are magnified by K.
 template <class T>
 inline FreeHyper<T> set_up_hyper(const FreeConstants<T>& f) {
   using namespace math;
@@ -67,18 +67,18 @@ inline FreeHyper<T> set_up_hyper(const FreeConstants<T>& f) {
   const N psi0 = plus(f.twice_T / f.L, f.La3 / f.start.I[2]) / one_plus(f.a3);
   const N inside = half(psi0 + v_rate * (above / below));
 
-  // Exactly on the separatrix v itself runs for ever, v = v0 + (dv/dt) t, and is taken out of the turns.
+  // Exactly on the separatrix v = v0 + (dv/dt) t for ever, without half cycles.
   const N two_K_over_pi = one / agm(select(homoclinic, one, f.kc));
   const N rate = f.p / (two_K_over_pi * pi<N>());  // nu / pi
   const N v_scale = pi<N>() * two_K_over_pi / two_Kc_over_pi;  // pi^2 / lambda
   const N start = v0 / v_scale;
   const N kappa = select(homoclinic, inside, inside - eta * rate) / twice(pi<N>());
-  const N turning = select(homoclinic, zero, rate), starting = select(homoclinic, zero, start);
-  const N driving = select(homoclinic, v_rate, v_scale), waiting = select(homoclinic, v0, zero);
-  c.rate_hi = turning.hi, c.rate_lo = turning.lo;
-  c.start_hi = starting.hi, c.start_lo = starting.lo;
-  c.v_hi = driving.hi, c.v_lo = driving.lo;
-  c.v0_hi = waiting.hi, c.v0_lo = waiting.lo;
+  const N cycle_rate = select(homoclinic, zero, rate), cycle_start = select(homoclinic, zero, start);
+  const N v_factor = select(homoclinic, v_rate, v_scale), v_start = select(homoclinic, v0, zero);
+  c.rate_hi = cycle_rate.hi, c.rate_lo = cycle_rate.lo;
+  c.start_hi = cycle_start.hi, c.start_lo = cycle_start.lo;
+  c.v_hi = v_factor.hi, c.v_lo = v_factor.lo;
+  c.v0_hi = v_start.hi, c.v0_lo = v_start.lo;
   c.kappa_hi = kappa.hi, c.kappa_lo = kappa.lo;
 
   // omega: theta functions of q at 0 (t2 without its 2 q^(1/4))

@@ -9,24 +9,24 @@
 
 namespace polhode {
 
-/// How a heavy symmetric top moves. `looping`, `cuspidal` and `monotone` tell how its axis precesses.
+/// How a heavy symmetric top moves. `looping`, `cuspidal` and `monotone` describe the precession of its axis.
 enum class TopKind {
   free,                ///< no weight
-  sleeping,            ///< the axis stands still, centre of mass above the pivot (stable or not)
-  hanging,             ///< the axis stands still, centre of mass below
+  sleeping,            ///< the axis is at rest, centre of mass above the pivot (stable or not)
+  hanging,             ///< the axis is at rest, centre of mass below the pivot
   steady_precession,   ///< constant tilt, between the two
   planar_pendulum,     ///< no spin about the axis, no precession
   spherical_pendulum,  ///< no spin about the axis
   homoclinic,          ///< leaves the upright position and returns to it, each in infinite time
   looping,             ///< the precession changes sign
-  cuspidal,            ///< it just stops at the highest point
-  monotone,            ///< it keeps its sign
+  cuspidal,            ///< the precession stops at the highest point
+  monotone,            ///< the precession keeps its sign
 };
 
 const char* to_text(TopKind kind);  ///< the names above
 
 /// Lagrange's top: a rigid body with two equal moments, held at a point of its symmetry axis, under gravity along -z
-/// of space. In closed form, so that any time costs the same and none is less accurate than another.
+/// of space. In closed form: every time costs the same and is equally accurate.
 /// Klein & Sommerfeld, Ueber die Theorie des Kreisels (1897-1910); docs/heavy_top.md.
 /// The symmetry axis is body z for moments (A, A, C); else the axis of the third moment, with its largest component
 /// positive. Immutable.
@@ -44,7 +44,7 @@ class HeavyTop {
   State at(double t) const;
   /// omega: n x 3, attitude: n x 4, row-major; either may be null.
   void at(const double* t, std::size_t n, double* omega, double* attitude) const;
-  /// The same at times that were looked at before.
+  /// The same at times that were analysed before.
   void at(const exact::TimeGrid& times, double* omega, double* attitude) const;
 
   TopKind kind() const noexcept { return kind_; }
@@ -52,8 +52,8 @@ class HeavyTop {
   double nutation_period() const noexcept { return period_; }
   double tilt_min() const noexcept { return tilt_min_; }       ///< between body axis and space z [rad]
   double tilt_max() const noexcept { return tilt_max_; }
-  /// Mean rate of turn of the axis round space z, over a nutation [rad/s]; NaN where there is none to speak of
-  /// (the axis stays vertical, or reaches the vertical in infinite time).
+  /// Mean rate of the axis about space z, over a nutation [rad/s]; NaN if the axis stays vertical or reaches the
+  /// vertical in infinite time.
   double precession_rate() const noexcept { return precession_; }
   double energy() const;  ///< kinetic, and weight_arm cos(tilt) [J]
   double p_phi() const;   ///< angular momentum about space z [kg m^2/s]
@@ -65,7 +65,6 @@ class HeavyTop {
   const Vector3d& omega() const noexcept { return omega_; }
   const Quat& attitude() const noexcept { return attitude_; }
   const exact::HeavyTopConstants& constants() const noexcept { return constants_; }
-  double largest_time() const noexcept { return largest_time_; }  ///< beyond it phases have no digits left [s]
 
   friend bool operator==(const HeavyTop& a, const HeavyTop& b) {
     return a.inertia_ == b.inertia_ && a.weight_arm_ == b.weight_arm_ && a.omega_ == b.omega_ &&

@@ -5,12 +5,12 @@
 #include "polhode/math/phase.hpp"
 #include "polhode/math/sincos.hpp"
 
-// Lagrange's top at one time, from constants made once: Cayley-Klein parameters as quotients of theta functions with
-// two phase rates (Klein & Sommerfeld, Ueber die Theorie des Kreisels, 1897-1910, chapter 6). Derivation, and which
-// sum is which: docs/heavy_top.md. Templates over a lane type V as in polhode/math/number.hpp.
+// Lagrange's top at one time, from precomputed constants. The Cayley-Klein parameters are quotients of theta functions
+// with two phase rates (Klein & Sommerfeld, Ueber die Theorie des Kreisels, 1897-1910, chapter 6). The derivation, with
+// the names used here, is in docs/heavy_top.md. Templates over a lane type V as in polhode/math/number.hpp.
 namespace polhode::exact {
 
-// Named here so that the C library's own names of the global namespace are never meant, and lanes find their own.
+// Named here, so that the C library's functions in the global namespace are never chosen and lanes find their own.
 using math::abs, math::copysign, math::madd, math::rint, math::select, math::sqrt;
 using math::cycle_fraction, math::exp_minus, math::polynomial, math::sincos_cycles;
 using math::two_diff, math::two_prod, math::two_sum;
@@ -45,11 +45,11 @@ struct HeavyTopConstants {
   double turn = 0.0;         ///< k_A + k_B [rad]
   double ca_re = 0.0, ca_im = 0.0, cb_re = 0.0, cb_im = 0.0;
   double w12_re = 0.0, w12_im = 0.0;  ///< 2 conj(c_a) c_b, times rate_scale
-  double w3 = 0.0;                    ///< constant spin about the axis, scaled back
+  double w3 = 0.0;                    ///< constant spin about the axis [rad/s]
   Quat q_SB;                          ///< from body to working axes (symmetry axis third, centre of mass up it)
   double R_BS[9] = {};                ///< the same as a row-major matrix, for omega
 
-  bool framed = false;                ///< whether they are not the identity
+  bool framed = false;                ///< whether q_SB is not the identity
 
   // Trig: with X = cos 2z, N1 = sin z p0(X) + i cos z p1(X), N2 = cos z p2(X) + i sin z p3(X), and the rotating part of
   // omega, speed (conj(N1) N2' - N2 conj(N1')) + i turn conj(N1) N2 = even(X) + i sin z cos z odd(X); monomials.
@@ -63,7 +63,7 @@ struct HeavyTopConstants {
   double cos_a[4] = {}, sin_a[4] = {}, cos_b[4] = {}, sin_b[4] = {};
 };
 
-/// What a kernel returns: w_B [rad/s] and q_WB, unit.
+/// The result of a kernel: w_B [rad/s] and q_WB, unit.
 template <class V>
 struct HeavyTopState {
   V w1, w2, w3, x, y, z, w;
@@ -107,16 +107,16 @@ POLHODE_INLINE HeavyTopSums<N> heavy_top_hyper_sums(const N (&cos_a)[4], const N
   return s;
 }
 
-/// The hyperbolic form, for k^2 > 0.97 up to the homoclinic motion; passages counts the nutations done.
+/// The hyperbolic form, for k^2 > 0.97 up to the homoclinic motion. `passages` receives the number of nutations.
 template <class V>
 POLHODE_INLINE HeavyTopSums<V> heavy_top_hyper(const HeavyTopConstants& c, V s, V& passages) {
   passages = rint(madd(s, V(c.rate_z.hi), V(c.start_z)));
-  const auto moved = two_prod(s, V(c.v_rate_hi)), done = two_prod(passages, V(c.v_passage_hi));
-  const auto left = two_diff(moved.hi, done.hi), sum = two_sum(left.hi, V(c.v_start_hi));
-  const V rest = madd(s, V(c.v_rate_lo), moved.lo) - madd(passages, V(c.v_passage_lo), done.lo);
+  const auto travelled = two_prod(s, V(c.v_rate_hi)), done = two_prod(passages, V(c.v_passage_hi));
+  const auto left = two_diff(travelled.hi, done.hi), sum = two_sum(left.hi, V(c.v_start_hi));
+  const V rest = madd(s, V(c.v_rate_lo), travelled.lo) - madd(passages, V(c.v_passage_lo), done.lo);
   const V v = sum.hi + (sum.lo + (left.lo + (rest + V(c.v_start_lo))));
   const V E = exp_minus(abs(v)), nome = V(c.nome);
-  // Where q' is 0 or nearly, e^{-|v|} may be far smaller: nothing grows then.
+  // If q' is nearly 0, e^{-|v|} may be far smaller still, and the growing terms are absent.
   const V g = select(nome > V(1e-290), nome / (E * E), V(0.0));
   V ca[4], sa[4], cb[4], sb[4];
   for (int n = 0; n < 4; ++n) {
@@ -126,7 +126,7 @@ POLHODE_INLINE HeavyTopSums<V> heavy_top_hyper(const HeavyTopConstants& c, V s, 
   return heavy_top_hyper_sums<V>(ca, sa, cb, sb, nome, copysign(V(1.0), v), E, g);
 }
 
-/// alpha and beta before their turns by the phases, and 1 / (|alpha|^2 + |beta|^2) with its root.
+/// alpha and beta before the rotation by their phases, and 1 / (|alpha|^2 + |beta|^2) with its root.
 template <class V>
 struct HeavyTopPair {
   V a_re, a_im, b_re, b_im, inverse2, inverse;
@@ -171,8 +171,8 @@ POLHODE_INLINE HeavyTopTurning<V> heavy_top_turning(const HeavyTopConstants& c, 
   return {less(speed, t_re, turn, q_im), plus(speed, t_im, turn, q_re)};
 }
 
-/// The state from all this and e^{i a}, e^{i b}, the phases of alpha and beta. `framed` may only be false where
-/// c.framed is: a template argument, so that lanes share one form.
+/// The state from the pair, the rotating part of omega, and e^{i a}, e^{i b} of the phases of alpha and beta. `framed`
+/// may be false only if c.framed is. It is a template argument, so that lanes share one form.
 template <bool framed, class V>
 POLHODE_INLINE HeavyTopState<V> heavy_top_state(const HeavyTopConstants& c, const HeavyTopPair<V>& f,
                                                 const HeavyTopTurning<V>& turning, V ea_re, V ea_im, V eb_re, V eb_im) {

@@ -9,7 +9,7 @@ namespace polhode::exact {
 struct HeavyTopStart;
 struct HeavyTopMotion;
 
-/// What is compiled for one instruction set; avx2 and avx512 give the same bits.
+/// The loops, compiled for one instruction set; avx2 and avx512 give the same bits.
 struct HeavyTopKernels {
   TimeKernels times;
 
@@ -17,15 +17,14 @@ struct HeavyTopKernels {
   /// neither on n nor, off a grid, on its place.
   void (*at)(const HeavyTopConstants&, const TimeGrid&, double* omega, double* attitude);
 
-  /// Fills the constants (all but rate_scale, q_SB and R_BS, which it leaves) and what else is known of the motion, in
-  /// double-double throughout.
+  /// Fills the motion and the constants, except rate_scale, q_SB and R_BS. Works in double-double throughout.
   void (*set_up)(const HeavyTopStart&, HeavyTopConstants&, HeavyTopMotion&);
 };
 
-/// Those of a level; of the next lower one that was compiled.
+/// The kernels of a level, or of the next lower level that was compiled.
 const HeavyTopKernels& heavy_top_kernels(SimdLevel level);
 
-/// Those of simd_level(), decided once.
+/// The kernels of simd_level(), chosen once.
 const HeavyTopKernels& heavy_top_kernels();
 
 }  // namespace polhode::exact

@@ -37,8 +37,8 @@ struct MeshReport {
   Vector3d low = Vector3d::Zero(), high = Vector3d::Zero();  ///< the box round the faces
 };
 
-/// Checks that the mesh is the surface of a body: every edge lies between two faces that pass it in opposite directions,
-/// and every inward shell lies inside another. Throws InvalidInput, with counts and the first faces, when it is not. A
+/// Checks that the mesh is the surface of a body. Every edge lies between two faces that pass it in opposite
+/// directions, and every inward shell lies inside another. Throws InvalidInput, with counts and the first faces, when it is not. A
 /// mesh that is inside out as a whole passes, as does a solid inside another: see `inside_out`, `embedded`. Surfaces
 /// that cross each other are not detected.
 MeshReport check_mesh(const Mesh& mesh);

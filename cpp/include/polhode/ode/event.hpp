@@ -6,7 +6,7 @@
 
 namespace polhode::ode {
 
-/// A function of the solution whose zeros are wanted.
+/// A function of the solution whose zeros are sought.
 struct Event {
   std::function<double(double t, const double* y)> function;
   int direction = 0;       ///< +1: only where it rises along the integration, -1: only where it falls, 0: both
@@ -19,7 +19,7 @@ struct EventHit {
   std::vector<double> y;
 };
 
-/// Follows the sign of one event function along the integration and finds each zero once.
+/// Tracks the sign of one event function along the integration and finds each zero once.
 class EventTracker {
  public:
   using Evaluate = std::function<void(double t, double* y)>;
@@ -29,8 +29,8 @@ class EventTracker {
     t_ = t;
   }
 
-  /// Looks at the piece (previous time, t]; `evaluate(t, y)` gives the solution there. True when a zero of the wanted
-  /// direction lies in it, at `root`.
+  /// Searches the interval (previous time, t]; `evaluate(t, y)` gives the solution there. Returns true if it contains a
+  /// zero of the event's direction, and sets `root`.
   bool crosses(double t, const double* y, const Evaluate& evaluate, long& count, double& root) {
     const double value = call(t, y, count);
     const int side = sign(value);
@@ -41,7 +41,7 @@ class EventTracker {
       return false;
     }
     const int before = side_;
-    side_ = side == 0 ? -before : side;      // an exact zero counts as crossed, so it is not met a second time
+    side_ = side == 0 ? -before : side;      // an exact zero counts as crossed, so that it is found once
     root = side == 0 ? t : bisect(start, t, before, evaluate, count);
     const bool repeated = found_ && root == last_root_;
     found_ = true;
@@ -56,13 +56,13 @@ class EventTracker {
     return event_->function(t, y);
   }
 
-  /// Interpolate-truncate-project root finding (Oliveira & Takahashi 2021, ACM TOMS 47, 5) would save a few calls;
-  /// the Illinois rule with bisection behind it needs no parameter and also ends at neighbouring doubles.
+  /// The Illinois rule, with bisection when it stalls. It has no parameter and ends at neighbouring doubles. ITP
+  /// (Oliveira & Takahashi 2021, ACM TOMS 47, 5) would save a few calls.
   double bisect(double a, double b, int side_a, const Evaluate& evaluate, long& count) {
     double y[64];
     evaluate(a, y);
     double fa = call(a, y, count);
-    if (sign(fa) != side_a) fa = 0.0;         // the piece's own end disagrees by rounding: only bisect
+    if (sign(fa) != side_a) fa = 0.0;         // rounding changed the sign at this end: bisect only
     evaluate(b, y);
     double fb = call(b, y, count);
     int stalled = 0;

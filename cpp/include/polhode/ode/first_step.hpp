@@ -8,12 +8,12 @@
 
 namespace polhode::ode {
 
-/// Shorter first steps would be lost in the spacing of the times: rates next to nothing, far from t = 0, ask for such.
+/// The shortest first step that the spacing of the times resolves. Very small rates, far from t = 0, suggest shorter.
 inline double shortest_first_step(double t) { return 64 * std::numeric_limits<double>::epsilon() * std::abs(t); }
 
 /// The first step of a method of this order, from the size of y' and y''. After Hairer, Norsett, Wanner 1993, Solving
-/// ODEs I, sec. II.4, made free of the unit of time: all is measured against tau, the time in which y changes by its
-/// own size. f: y' at the start; `compute(t, y, f)` is the problem's, for those who count its calls.
+/// ODEs I, sec. II.4, but independent of the unit of time: all is measured against tau, the time in which y changes by
+/// its own size. f: y' at the start; `compute(t, y, f)`: the problem's derivative, wrapped so that calls are counted.
 template <Problem P, class Compute>
 double choose_first_step(const P& problem, const Tolerances& tolerances, int order, double t, const double* y,
                          const double* f, double t_end, const Compute& compute) {

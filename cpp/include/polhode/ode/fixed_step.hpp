@@ -8,13 +8,12 @@
 
 namespace polhode::ode {
 
-/// Steps of one length. Their times are counted from the start, t0 + n h, so that they do not drift; only the last step
-/// of a run may be shorter.
+/// Steps of equal length. Their times are t0 + n h and do not drift. Only the last step of a run may be shorter.
 class FixedStepper : public Stepper {
  public:
   StepResult advance(double t_end) final {
     const double rest = t_end - t_;
-    // The rounding of t0 + n h must not leave a sliver of a step behind, nor bend the last step.
+    // The rounding of t0 + n h must neither leave a tiny last step nor change the length of the last step.
     const double rounding = 4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(t_), std::abs(t_end));
     const double h = std::copysign(step_, rest);
     const bool last = std::abs(rest) <= step_ + rounding;
@@ -32,7 +31,7 @@ class FixedStepper : public Stepper {
   FixedStepper(int size, int numbers_per_segment, Evaluate evaluate_segment, double t0, double length)
       : Stepper(size, numbers_per_segment, evaluate_segment, t0), t0_(t0), step_(length) {}
 
-  /// One step of length h, which is negative backwards. Nothing has changed unless it is accepted.
+  /// One step of length h, negative when backward. The state changes only if the step is accepted.
   virtual StepResult step(double t, double h) = 0;
 
   double fraction(double t) const { return (t - t_old_) / (t_ - t_old_); }

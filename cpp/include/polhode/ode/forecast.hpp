@@ -2,23 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace polhode::ode {
 
-/// What a plan expects of an adaptive method: plain numbers, each good to a factor of two or so, fitted by
-/// benchmarks/planner on random scenes. A method without them is never chosen by a plan.
+/// The expected error and cost of an adaptive method. Each number is good to about a factor of two and was fitted by
+/// benchmarks/planner on random scenes. A plan never chooses a method without a forecast.
 struct Forecast {
-  double error_per_turn =
-      0.0;   ///< global error = rtol error_per_turn n (1 + n / secular) after n turns; 0: no forecast
-  double secular = 30.0;           ///< turns after which the energy's drift shows in the phase
-  double margin = 1.0;             ///< by which a plan's tolerance is finer: where that is cheaper than another try
-  double floor_per_turn = 0.0;     ///< error per turn of rounding, whatever the tolerance
-  double steps_per_radian = 0.0;   ///< at rtol = 1, with the power law ...
-  double power = 0.0;              ///< ... steps = steps_per_radian rtol^-power
-  double step_seconds = 0.0;       ///< of a step, with a built-in torque
-  double order_seconds = 0.0;   ///< and that much times (2 - ln(rtol) / 2)^2: methods whose order follows the tolerance
-  double calls_per_step = 0.0;     ///< of the torque
-  double stability = 0.0;          ///< largest (rate of decay) x step; 0: any (implicit methods)
+  /// After n turns the global error is rtol error_per_turn n (1 + n / secular) + floor_per_turn n. 0: no forecast.
+  double error_per_turn = 0.0;
+  double secular = 30.0;           ///< turns after which the drift of the energy shows in the phase
+  double margin = 1.0;             ///< divides the tolerance of a plan, if that is cheaper than a second attempt
+  double floor_per_turn = 0.0;     ///< rounding error per turn, at any tolerance
+  double steps_per_radian = 0.0;   ///< a radian takes steps_per_radian rtol^-power steps
+  double power = 0.0;
+  double step_seconds = 0.0;       ///< the time of a step, with a built-in torque
+  double order_seconds = 0.0;      ///< adds order_seconds (2 - ln(rtol) / 2)^2, if the order follows the tolerance
+  double calls_per_step = 0.0;     ///< evaluations of the torque in a step
+  double stability = 0.0;          ///< the largest stable (rate of decay) x step; 0: no limit (implicit methods)
 
   bool known() const { return error_per_turn > 0.0; }
 
@@ -26,14 +27,14 @@ struct Forecast {
     return rtol * error_per_turn * turns * (1 + turns / secular) + floor_per_turn * turns;
   }
 
-  /// The tolerance to take for this error.
+  /// The tolerance for a requested error.
   double find_rtol(double error, double turns) const {
     const double n = std::max(turns, 0.5);
     return error / (margin * error_per_turn * n * (1 + n / secular));
   }
 
   double compute_steps(double rtol, double turns, double stiffness) const {
-    const double accurate = 1 + 6.283185307179586 * turns * steps_per_radian * std::pow(rtol, -power);
+    const double accurate = 1 + 2 * std::numbers::pi * turns * steps_per_radian * std::pow(rtol, -power);
     return stability > 0.0 ? std::max(accurate, stiffness / stability) : accurate;
   }
 

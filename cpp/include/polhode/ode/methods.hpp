@@ -8,8 +8,7 @@
 
 namespace polhode::ode {
 
-/// The methods for any y' = f(t, y): the conformance tests of `ode` follow. method/methods.def lists all that turn a
-/// body.
+/// The methods for any y' = f(t, y). The conformance tests of `ode` run on each of them.
 using Methods = std::tuple<Rk45, Dop853, Rk4>;
 
 }  // namespace polhode::ode

@@ -11,16 +11,15 @@ concept Problem = requires(const P& problem, double t, const double* y, double* 
   problem.compute_derivative(t, y, out);
   /// |error| against the sizes of y at both ends of the step, in units of (atol + rtol size): 1 is just acceptable.
   { problem.error_norm(y, y, y, t, t) } -> std::convertible_to<double>;
-  /// Brings y, and its derivative with it, back to where it belongs (a unit quaternion); called after each accepted
-  /// step.
+  /// Restores known invariants of y (a unit quaternion), and adapts its derivative. Called after each accepted step.
   problem.restore(out, out);
 };
 
-/// How fine a run is asked to be.
+/// The requested accuracy of a run, or its fixed step.
 struct Tolerances {
   double rtol = 1e-9;
   double atol = 0.0;
-  double step = 0.0;        ///< of methods with a fixed step
+  double step = 0.0;        ///< for methods with a fixed step
 };
 
 /// What a run cost.

@@ -12,9 +12,9 @@
 
 namespace polhode::ode {
 
-/// Any embedded explicit Runge-Kutta pair whose last stage is the next step's first, with a continuous extension made
-/// of the cubic Hermite polynomial and as many terms above it as the tableau has rows for, from stages of its own where
-/// it asks for them. The tableau is data; nothing here knows it.
+/// Any embedded explicit Runge-Kutta pair whose last stage is the first of the next step. The tableau is data. The
+/// continuous extension is the cubic Hermite polynomial and one more term for each dense row of the tableau, which may
+/// use further stages.
 template <class Tableau, Problem P>
 class RungeKuttaStepper final : public Stepper {
  public:
@@ -61,7 +61,7 @@ class RungeKuttaStepper final : public Stepper {
         t_ = last ? t_end : t_ + h;
         h_taken_ = h;
         const double next = h * control_.accepted(error);
-        // A step cut short by the end says little about the next one; keep the longer of the two.
+        // A step shortened by t_end says little about the next one; keep the longer of the two.
         h_ = last ? direction * std::max(std::abs(next), std::abs(h_)) : next;
         std::copy_n(y_, M, y_old_);
         std::copy_n(y_new_, M, y_);
@@ -128,7 +128,7 @@ class RungeKuttaStepper final : public Stepper {
     return problem_.error_norm(error_, y_, y_new_, tolerances_.rtol, tolerances_.atol);
   }
 
-  /// One estimate, or two of them as Hairer, Norsett and Wanner join them in DOP853: e^2 / sqrt(e^2 + low^2 / 100).
+  /// One estimate, or two combined as in DOP853 (Hairer, Norsett & Wanner): e^2 / sqrt(e^2 + low^2 / 100).
   double estimate_error(double h) {
     const double error = norm_of(Tableau::error, h);
     if constexpr (requires { Tableau::error_low; }) {
@@ -139,7 +139,7 @@ class RungeKuttaStepper final : public Stepper {
     }
   }
 
-  /// The stages that the continuous extension asks for beyond those of the step.
+  /// The further stages of the continuous extension.
   template <int... E>
   void compute_dense_stages([[maybe_unused]] double h, std::integer_sequence<int, E...>) {
     (compute_dense_stage<Tableau::stages + E>(h, std::make_integer_sequence<int, Tableau::stages + E>{}), ...);

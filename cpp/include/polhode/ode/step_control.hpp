@@ -7,8 +7,8 @@
 
 namespace polhode::ode {
 
-/// log2(x) for 0 < x < infinity to 1e-3, in parts: the exponent is exact, the mantissa's logarithm a cubic. A
-/// difference of two is the same in every unit that is a power of two.
+/// log2(x) for 0 < x < infinity to 1e-3, in two parts: the exact exponent, and a cubic for the mantissa. Differences do
+/// not change when both numbers are multiplied by a power of two.
 struct RoughLog2 {
   int exponent;
   double mantissa;
@@ -28,7 +28,7 @@ inline double rough_log2(double x) {
   return log.exponent + log.mantissa;
 }
 
-/// 2^x to 1e-3, for |x| <= 1000 and as there beyond.
+/// 2^x to 1e-3 for |x| <= 1000. Beyond, x counts as 1000 or -1000.
 inline double rough_exp2(double x) {
   const double p = std::clamp(x, -1000.0, 1000.0);
   const int whole = static_cast<int>(p + 1024.0) - 1024;   // floor, without a call
@@ -37,11 +37,11 @@ inline double rough_exp2(double x) {
   return scale * (1.0 + f * (0.6951 + f * (0.2276 + f * 0.0773)));
 }
 
-/// x^y for 0 < x < infinity to 1e-3, which is plenty for a step size and a tenth of the price of std::pow.
+/// x^y for 0 < x < infinity to 1e-3. It is enough for a step size and costs a tenth of std::pow.
 inline double rough_power(double x, double y) { return rough_exp2(y * rough_log2(x)); }
 
-/// The size of the next step from the error of the last: proportional-integral control, written once for every
-/// embedded pair. Gustafsson 1991, ACM TOMS 17, 533; constants as in Hairer & Wanner 1996, Solving ODEs II, (IV.2.43).
+/// Chooses the next step from the error of the last by proportional-integral control, for every embedded pair.
+/// Gustafsson 1991, ACM TOMS 17, 533; constants as in Hairer & Wanner 1996, Solving ODEs II, (IV.2.43).
 class StepControl {
  public:
   /// @param error_order  order of the lower formula of the pair: the error goes as h^(error_order + 1)
@@ -51,7 +51,7 @@ class StepControl {
   static constexpr double safety = 0.9, smallest = 0.2, largest = 10.0, proportional = 0.04, least_error = 1e-4;
   static constexpr double integral(int error_order) { return 1.0 / (error_order + 1) - 0.75 * proportional; }
 
-  /// Factor for the next step after one that was accepted with this error (1 is just acceptable).
+  /// Factor for the next step after a step accepted with this error (1 is just acceptable).
   double accepted(double error) {
     double factor = largest;
     if (error > 0) factor = safety * rough_power(error, -integral_) * rough_power(previous_, proportional);
@@ -61,7 +61,7 @@ class StepControl {
     return factor;
   }
 
-  /// Factor for another try after a step that was rejected; an error that is not a number shrinks the step most.
+  /// Factor for another attempt after a rejected step. An error that is not finite shrinks the step most.
   double rejected(double error) {
     rejected_ = true;
     if (!std::isfinite(error)) return 0.1;

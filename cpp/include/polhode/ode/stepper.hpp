@@ -8,15 +8,15 @@ namespace polhode::ode {
 
 enum class StepResult { accepted, underflow, not_finite, no_solution };
 
-/// One integration under way: what drive() needs to know of a method. A step is one virtual call; all that is inside a
-/// step is compiled for its problem.
+/// An integration in progress, as drive() sees it. A step is one virtual call; the code of a step is compiled for its
+/// problem.
 class Stepper {
  public:
   virtual ~Stepper() = default;
   Stepper(const Stepper&) = delete;
   Stepper& operator=(const Stepper&) = delete;
 
-  /// One accepted step towards t_end and not beyond it.
+  /// Makes one accepted step towards t_end, at most up to it.
   virtual StepResult advance(double t_end) = 0;
   /// y at a time within the last step.
   virtual void interpolate(double t, double* y) = 0;

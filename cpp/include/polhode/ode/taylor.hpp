@@ -14,28 +14,28 @@
 
 namespace polhode::ode {
 
-/// y' = f(t, y) whose solution's Taylor coefficients are known by recurrences. A state is `dimension` <= series_width
-/// numbers y and what rounding took from them, `carry`.
+/// y' = f(t, y) whose Taylor coefficients are known by recurrences. A state is y, `dimension` <= series_width numbers,
+/// and `carry`, the rounding errors of y.
 template <class P>
 concept SeriesProblem =
     requires(const P& problem, math::DD t, double unit, const double* y, int order, long step, double* out) {
       { P::dimension } -> std::convertible_to<int>;
       /// Rows 0..order of series_width numbers: the coefficients of y(t + unit s) in powers of s.
       problem.compute_series(t, unit, y, y, order, out);
-      /// Sizes of a row's blocks: what has a unit of its own is measured by itself.
+      /// Sizes of a row's blocks. Quantities with different units belong to different blocks.
       { P::blocks } -> std::convertible_to<int>;
       problem.compute_sizes(y, out);
-      /// How many leading coefficients tell a block's size: more than one where a start at rest is nothing special.
+      /// The number of leading coefficients that give a block's size: more than one if the block may start from zero.
       { P::heads[0] } -> std::convertible_to<int>;
-      /// A time in which the solution changes; only its order of magnitude counts.
+      /// A time scale of the solution; only its order of magnitude matters.
       { problem.compute_time_scale(t, y) } -> std::convertible_to<double>;
       problem.start_carry(out);
-      /// Brings state and carry back to what is known to hold; called after each step, which are numbered from 0.
+      /// Restores known invariants of state and carry. Called after each step; steps are numbered from 0.
       problem.correct(t, step, out, out);
     };
 
-/// The Taylor series of the solution itself. Order and step after Jorba & Zou 2005, Experimental Mathematics 14, 99,
-/// with the sizes in blocks; the sum is compensated from step to step (Kahan), in time too.
+/// The Taylor series of the solution. Order and step follow Jorba & Zou 2005, Experimental Mathematics 14, 99, with
+/// sizes by blocks. The state and the time are summed with compensation (Kahan) from step to step.
 struct Taylor {
   static constexpr MethodRecord record{
       .name = "taylor",
@@ -50,7 +50,7 @@ struct Taylor {
           "The Taylor series of the solution by recurrences, order and step by the tolerance: the one for tight "
           "accuracies.",
       .source = "Jorba & Zou 2005, Exp. Math. 14, 99",
-      // A decade of tolerance costs a few per cent here, another try two runs.
+      // margin: a decade of tolerance costs a few per cent here, a second attempt two runs.
       .forecast = {.error_per_turn = 0.4,
                    .margin = 10.0,
                    .floor_per_turn = 2e-17,
@@ -62,9 +62,9 @@ struct Taylor {
   };
   static constexpr int least_order = 4;
 
-  /// The cheapest order is -ln(tolerance) where each row costs the same, half of it where the price of all grows as the
-  /// square of their number. Nearly the first at loose tolerances, where rows are few; towards the rounding short
-  /// steps, which round less, are worth more.
+  /// The cheapest order is -ln(tolerance) if each row costs the same, and half of it if the cost of all rows grows as
+  /// the square of their number. Loose tolerances, with few rows, are near the first case. Near the rounding error
+  /// lower orders are better, because short steps round less.
   static int choose_order(double tolerance) {
     const double digits = -std::log(tolerance), tight = std::clamp((digits - 18.0) / 18.0, 0.0, 1.0);
     const int order = static_cast<int>(std::ceil(1.0 + (1.0 - 0.46 * tight) * digits));
@@ -123,7 +123,7 @@ class Taylor::Stepper : public ode::Stepper {
     problem_.correct(time_, counts_.steps, y_, carry_);
     t_old_ = time_old_.hi;
     t_ = time_.hi;
-    // A step cut short by the end says little about the next one.
+    // A step shortened by t_end says little about the next one.
     unit_ = power_of_two(fraction * unit_);
     ++counts_.steps;
     counts_.derivatives += order_;
@@ -172,12 +172,12 @@ class Taylor::Stepper : public ode::Stepper {
   static constexpr double zero[W] = {};
 
  private:
-  /// The power of two below; in this unit of time the coefficients neither overflow nor underflow.
+  /// The largest power of two up to t. In this unit of time the coefficients neither overflow nor underflow.
   static double power_of_two(double t) { return math::power_of_two_below(std::clamp(t, 0x1p-900, 0x1p900)); }
 
-  /// The series, and how much of `unit_` it may be used for: for each block the radius of convergence as its last two
-  /// coefficients show it, and of that the part which leaves a remainder of the tolerance. Infinite when the last
-  /// coefficients vanish, not a number when the series is none.
+  /// Computes the series and returns the step length in units of `unit_`. For each block the last two coefficients give
+  /// the radius of convergence, and the tolerance gives the usable part of it. Returns infinity if the last
+  /// coefficients vanish, and NaN if the series is not finite.
   double expand() {
     problem_.compute_series(time_, unit_, y_, carry_, order_, rows_);
     double size[5][P::blocks], sum = 0.0;
@@ -194,7 +194,7 @@ class Taylor::Stepper : public ode::Stepper {
         head[j] = RoughLog2(size[j][b]);
         head[j].exponent = size[j][b] > 0.0 ? head[j].exponent : -10'000;
       }
-      // rtol size + atol, as a part of the size
+      // the tolerance rtol size + atol, relative to the size
       const double part = tolerances_.atol == 0.0 || !(size[0][b] > 0.0)
                               ? part_
                               : compute_part(tolerances_.rtol + tolerances_.atol / size[0][b]);

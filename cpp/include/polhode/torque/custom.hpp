@@ -16,14 +16,14 @@ class Custom {
   /// The potential energy [J], for the energy's drift.
   using Potential = double (*)(double t, const double* attitude, void* data);
 
-  /// What the function looks at; a false claim here makes plans wrong, so claim nothing when in doubt.
+  /// The inputs that the function uses. A false claim makes plans wrong, so claim nothing when in doubt.
   struct Claims {
     bool uses_time = true;
     bool uses_attitude = true;
     bool uses_rates = true;
   };
 
-  /// @param owner  kept alive as long as this torque is, for functions whose data has an owner
+  /// @param owner  kept alive as long as this torque, for functions whose data has an owner
   Custom(Function function, void* data, const Claims& claims, Potential potential = nullptr,
          std::shared_ptr<const void> owner = nullptr);
   explicit Custom(Function function, void* data = nullptr) : Custom(function, data, Claims{}) {}
@@ -49,12 +49,12 @@ class Custom {
             .has_potential = potential_ != nullptr};
   }
 
-  /// What is not finite passes, and ends a run there; the function's own exceptions come through.
+  /// A result that is not finite is passed on and ends the run. Exceptions of the function propagate.
   void add(const TorqueInput& in, double* tau_B) const {
     double unit[4], torque[3] = {NAN, NAN, NAN};
     normalise(in.attitude, unit);
     function_(in.t, in.omega, unit, torque, data_);
-    // One by one, as it writes them: a wider read would have to wait until the stores have left the core.
+    // Read one by one, as they were written: a wider load would stall until the stores are done.
     const volatile double* written = torque;
     for (int i = 0; i < 3; ++i) tau_B[i] += written[i];
   }

@@ -6,29 +6,29 @@
 
 namespace polhode::torques {
 
-/// A stretch of time; either end may be infinite [s].
+/// An interval of time; either end may be infinite [s].
 struct Window {
   double begin, end;
   friend bool operator==(const Window&, const Window&) = default;
 };
 
-/// Another torque within windows of time, and none outside: a thruster's firings, a brake that is let go.
+/// Another torque that acts within windows of time only: the firings of a thruster, a brake that is released.
 ///
-/// solve() cuts the span at the windows' ends and gives each piece the torques that act there, so that no method ever
-/// steps over a jump, and what nothing acts on is evaluated by its closed form.
+/// solve() divides the span at the ends of the windows. Each piece has the torques that act there, so that no method
+/// steps over a jump. A piece without torque is evaluated by its closed form.
 class During {
  public:
-  /// @param windows  [begin, end) each, in any order; they may touch, and then are one
+  /// @param windows  [begin, end) each, in any order; windows that touch are merged
   /// @throws InvalidInput for a window that is empty, reversed or not a number, and for two that overlap
   During(LastingTorque torque, std::vector<Window> windows);
 
   static const TorqueRecord& record();
 
   const LastingTorque& torque() const { return torque_; }
-  const std::vector<Window>& windows() const { return windows_; }   ///< in the order of time, apart from each other
+  const std::vector<Window>& windows() const { return windows_; }   ///< sorted by time, separate
 
   bool acts_at(double t) const;
-  /// All the way from one time to a later one; the windows' ends count as within.
+  /// Whether it acts from one time to a later one without a break; the ends of a window count as inside.
   bool acts_throughout(double begin, double end) const;
 
   TorqueTraits traits() const;

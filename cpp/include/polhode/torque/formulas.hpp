@@ -2,8 +2,8 @@
 
 #include "polhode/torque/vertical.hpp"
 
-// The torques' formulas over a number type, for one body or for many side by side in the lanes of registers: the same
-// operations in the same order, so the same bits. Plain arrays; matrices by columns, as Eigen stores them.
+// The formulas of the torques over a number type: one body, or many bodies in the lanes of registers. Both have the
+// same operations in the same order, and so the same bits. Plain arrays; matrices by columns, as Eigen stores them.
 namespace polhode {
 
 /// (M v)_i of a 3 x 3 matrix.

@@ -10,7 +10,7 @@
 
 namespace polhode {
 
-/// The list of torques. A new one is a file of its own and a name here; bindings, scene files, docs and tests follow.
+/// The list of torques. To add a torque, write its file and name it here; bindings, scene files and tests follow.
 using LastingTorque = std::variant<torques::Constant,         //
                                    torques::Gravity,          //
                                    torques::GravityGradient,  //

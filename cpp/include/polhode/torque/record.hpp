@@ -11,18 +11,18 @@
 
 namespace polhode {
 
-/// What a torque depends on, and what it leaves alone. The planner and the tests read this.
+/// What a torque depends on and what it conserves. The planner and the tests read this.
 struct TorqueTraits {
   bool uses_time = false;
   bool uses_attitude = false;
   bool uses_rates = false;
   bool has_potential = false;        ///< tau is minus the gradient of compute_potential() on the rotations
-  bool keeps_vertical = false;       ///< no torque about the space z axis: L_z stays
-  double pattern_rate = 0.0;         ///< the potential turns about space z at this rate [rad/s]; 0: it stands still
-  bool vanishes = false;             ///< zero wherever the body goes
+  bool keeps_vertical = false;       ///< no torque about the space z axis: L_z is constant
+  double pattern_rate = 0.0;         ///< the potential rotates about space z at this rate [rad/s]; 0: it is fixed
+  bool vanishes = false;             ///< zero in every state
 };
 
-/// All that a torque may look at. `attitude` is any positive multiple of a unit quaternion (x, y, z, w).
+/// The inputs of a torque. `attitude` is any positive multiple of a unit quaternion (x, y, z, w).
 struct TorqueInput {
   double t;                          ///< [s]
   const double* omega;               ///< w_B, 3 numbers [rad/s]
@@ -31,7 +31,7 @@ struct TorqueInput {
   bool principal = false;            ///< inertia_B is diagonal
 };
 
-/// One parameter of a torque, as Python, the scene files and the docs show it.
+/// One parameter of a torque, as shown in Python, scene files and docs.
 struct TorqueParameter {
   enum class Kind { real, vector, matrix, choice };
   std::string_view name;
@@ -45,7 +45,7 @@ struct TorqueParameter {
 using TorqueValue = std::variant<double, Vector3d, Matrix3d, std::string>;
 using TorqueValues = std::vector<TorqueValue>;
 
-/// What the list of torques tells about each of them.
+/// The name, doc and parameters of a torque.
 struct TorqueRecord {
   std::string_view name;             ///< the class, as in ph.torques.GravityGradient
   std::string_view key;              ///< the scene file's kind, as in kind = "gravity_gradient"

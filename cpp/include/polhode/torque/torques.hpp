@@ -16,16 +16,16 @@ std::variant<Torques..., One> append(std::variant<Torques...>*);
 /// Any torque of the list, acting all the time or during windows of it.
 using AnyTorque = decltype(torques::append<torques::During>(static_cast<LastingTorque*>(nullptr)));
 
-/// What a set of torques acting together depends on and keeps.
+/// What a set of torques together depends on and conserves.
 struct TorqueSum {
-  int acting = 0;                   ///< how many of them do not vanish
+  int acting = 0;                   ///< the number of torques that do not vanish
   bool uses_time = false;
   bool uses_attitude = false;
   bool uses_rates = false;
-  bool has_potential = true;        ///< every one of them has
+  bool has_potential = true;        ///< all of them have one
   bool keeps_vertical = true;       ///< none has a component about space z
-  bool keeps_energy = true;         ///< potentials that all stand still
-  bool keeps_jacobi = false;        ///< potentials that all turn at pattern_rate: energy - pattern_rate L_z stays
+  bool keeps_energy = true;         ///< all potentials are fixed in space
+  bool keeps_jacobi = false;        ///< all potentials rotate at pattern_rate: energy - pattern_rate L_z is constant
   double pattern_rate = 0.0;
 };
 

@@ -4,8 +4,8 @@
 
 namespace polhode {
 
-/// g_B = R_WB^T e_z, the space vertical in body axes, from any positive multiple of a unit quaternion. Homogeneous on
-/// purpose: the stages of a step are not unit quaternions, and a form that takes them for such doubles the error.
+/// g_B = R_WB^T e_z, the space vertical in body axes, from any positive multiple of a unit quaternion. Homogeneous in
+/// q on purpose: the stages of a step are not unit quaternions, and a formula for unit quaternions doubles the error.
 template <class N>
 POLHODE_INLINE void compute_vertical(const N* q, N* g_B) {
   const N x = q[0], y = q[1], z = q[2], w = q[3], two(2.0);

@@ -3,7 +3,7 @@
 #include "exact/lanes/free_loops.hpp"
 #include "polhode/exact/free_setup_hyper.hpp"
 
-// Many bodies at once: the set-up, too, runs in lanes.
+// Many bodies at once: their set-up also runs in lanes.
 namespace polhode::POLHODE_ISA {
 
 using exact::FreeFrameOf;
@@ -19,7 +19,7 @@ POLHODE_INLINE double lane(T a, int i) {
   return all[i];
 }
 
-/// What double-double cannot tell of the separatrix is told exactly, one lane at a time: rare.
+/// Recomputes exactly, one lane at a time, the distances from the separatrix that double-double loses. This is rare.
 template <class M, class T>
 POLHODE_INLINE void make_exact(M lost, math::DoubleDouble<T>& distance, T I1, T I2, T I3, T w1, T w3) {
   const unsigned which = bits(lost);
@@ -35,28 +35,27 @@ POLHODE_INLINE void make_exact(M lost, math::DoubleDouble<T>& distance, T I1, T 
 }
 
 template <class T>
-struct Turn {
+struct LaneQuat {
   T x, y, z, w;
 };
 
 template <class T>
-POLHODE_INLINE Turn<T> product(Turn<T> a, Turn<T> b) {
+POLHODE_INLINE LaneQuat<T> product(LaneQuat<T> a, LaneQuat<T> b) {
   return {madd(a.w, b.x, madd(a.x, b.w, madd(a.y, b.z, -(a.z * b.y)))),
           madd(a.w, b.y, madd(a.y, b.w, madd(a.z, b.x, -(a.x * b.z)))),
           madd(a.w, b.z, madd(a.z, b.w, madd(a.x, b.y, -(a.y * b.x)))),
           madd(a.w, b.w, -madd(a.x, b.x, madd(a.y, b.y, a.z * b.z)))};
 }
 
-/// A block of bodies on their way: what both forms of the series start from.
+/// A block of bodies, as needed by both forms of the series.
 template <class T>
 struct Block {
   exact::FreeConstants<T> constants;
   T unit, attitude[4];
-  unsigned neither, hyper;  ///< one bit a lane: for FreeMotion itself; for the hyperbolic form
+  unsigned neither, hyper;  ///< bits of lanes: left to FreeMotion; for the hyperbolic form
 };
 
-/// One column of an array of rows: the rows that `index` names, or those from `first` on; the last one again where
-/// they end.
+/// Row numbers for lanes: entries of `index`, or all rows, from `first` on. The last one repeats at the end.
 struct Pick {
   const std::size_t* index;
   std::size_t first, n;
@@ -111,14 +110,14 @@ POLHODE_INLINE FreeFrameOf<T> make_frame(const Block<T>& block, const exact::Fre
   FreeFrameOf<T> frame;
   frame.time_scale = block.unit;
   const T v[3] = {first.x, first.y, first.z};
-  T turned[3];
-  for (int c = 0; c < 3; ++c) turned[c] = madd(s.M[c][0], v[0], madd(s.M[c][1], v[1], s.M[c][2] * v[2]));
+  T rotated[3];
+  for (int c = 0; c < 3; ++c) rotated[c] = madd(s.M[c][0], v[0], madd(s.M[c][1], v[1], s.M[c][2] * v[2]));
   const T* q0 = block.attitude;
-  Turn<T> left = product<T>({q0[0], q0[1], q0[2], q0[3]}, {-turned[0], -turned[1], -turned[2], first.w});
+  LaneQuat<T> left = product<T>({q0[0], q0[1], q0[2], q0[3]}, {-rotated[0], -rotated[1], -rotated[2], first.w});
   const T scale = T(1.0) / sqrt(madd(left.x, left.x, madd(left.y, left.y, madd(left.z, left.z, left.w * left.w))));
   left = {left.x * scale, left.y * scale, left.z * scale, left.w * scale};
   for (int i = 0; i < 4; ++i) {
-    const Turn<T> q = i == 3 ? left : product<T>(left, {s.M[0][i % 3], s.M[1][i % 3], s.M[2][i % 3], T(0.0)});
+    const LaneQuat<T> q = i == 3 ? left : product<T>(left, {s.M[0][i % 3], s.M[1][i % 3], s.M[2][i % 3], T(0.0)});
     frame.attitude[i] = q.x;
     frame.attitude[4 + i] = q.y;
     frame.attitude[8 + i] = q.z;
@@ -129,7 +128,7 @@ POLHODE_INLINE FreeFrameOf<T> make_frame(const Block<T>& block, const exact::Fre
   return frame;
 }
 
-/// The states of a block, into the rows that `pick` names and `rows_wanted` has a bit for.
+/// Writes the states of a block to the rows of `pick` whose bit is set in `rows_wanted`.
 template <class T, class Body>
 POLHODE_INLINE void write_block(const Body& body, const Block<T>& block, const double* t, Pick pick,
                                 unsigned rows_wanted, double* omega, double* attitude) {
@@ -157,8 +156,8 @@ inline void once_hyper(FreeStarts starts, const double* t, const std::size_t* wh
 
 inline std::size_t once(FreeStarts starts, const double* t, std::size_t n, double* omega, double* attitude,
                         std::size_t* left) {
-  constexpr std::size_t waiting_room = 64;
-  std::size_t count = 0, hyper[waiting_room], waiting = 0;
+  constexpr std::size_t queue_size = 64;
+  std::size_t count = 0, hyper[queue_size], waiting = 0;
   for (std::size_t first = 0; first < n; first += Wide::width) {
     const Pick pick{nullptr, first, n};
     const Block<Wide> block = read_block<Wide>(starts, pick);
@@ -167,7 +166,7 @@ inline std::size_t once(FreeStarts starts, const double* t, std::size_t n, doubl
       if (block.neither >> i & 1u) left[count++] = first + i;
       if (block.hyper >> i & 1u) hyper[waiting++] = first + i;
     }
-    if (waiting + Wide::width > waiting_room || first + Wide::width >= n) {
+    if (waiting + Wide::width > queue_size || first + Wide::width >= n) {
       once_hyper(starts, t, hyper, waiting, omega, attitude);
       waiting = 0;
     }
@@ -184,7 +183,7 @@ inline std::size_t set_up(FreeStarts starts, std::size_t n, FreeTrig<double>* tr
     const Block<Wide> block = read_block<Wide>(starts, pick);
     const FreeTrig<Wide> body = exact::set_up_trig(block.constants);
     const FreeFrameOf<Wide> frame = make_frame(block, exact::evaluate(body, Wide(0.0)));
-    // Both structs are numbers of one type in a row: field by field, lane by lane.
+    // Both structs consist of numbers of one type, which are copied lane by lane.
     const auto* from_trig = reinterpret_cast<const double*>(&body);
     const auto* from_frame = reinterpret_cast<const double*>(&frame);
     for (std::size_t i = 0; i < width && first + i < n; ++i) {
@@ -198,7 +197,7 @@ inline std::size_t set_up(FreeStarts starts, std::size_t n, FreeTrig<double>* tr
   return count;
 }
 
-/// One body for FreeMotion: everything, in the one of two forms that it needs.
+/// One body, for FreeMotion: the constants and the form of the series that it needs.
 inline void prepare(const exact::FreeStart<double>& start, exact::FreeConstants<double>& constants,
                     FreeTrig<double>& trig, exact::FreeHyper<double>& hyper) {
   static_assert(sizeof(exact::FreeConstants<One>) == sizeof(exact::FreeConstants<double>));

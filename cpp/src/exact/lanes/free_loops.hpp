@@ -3,7 +3,7 @@
 #include "exact/lanes/grid_loops.hpp"
 #include "polhode/exact/free_kernels.hpp"
 
-// The loops themselves, for one lane type `Wide`; included once by each file that is built for one instruction set.
+// The loops over times, for one lane type `Wide`. Each file that is built for one instruction set includes this once.
 namespace polhode::POLHODE_ISA {
 
 using exact::FreeFrame;
@@ -13,9 +13,9 @@ struct Rows {
   T omega[3], attitude[4];
 };
 
-/// A state of the working frames, brought to the caller's.
+/// A state in the caller's frames, from one in the working frames.
 template <class T, class Frame>
-POLHODE_INLINE Rows<T> brought_back(const Frame& frame, const exact::FreeState<T>& s) {
+POLHODE_INLINE Rows<T> in_caller_frames(const Frame& frame, const exact::FreeState<T>& s) {
   Rows<T> rows;
   for (int c = 0; c < 3; ++c) {
     const auto* m = frame.omega + 3 * c;
@@ -30,7 +30,7 @@ POLHODE_INLINE Rows<T> brought_back(const Frame& frame, const exact::FreeState<T
 
 template <class T, class Body, class Frame>
 POLHODE_INLINE Rows<T> rows_at(const Body& body, const Frame& frame, T t) {
-  return brought_back(frame, exact::evaluate(body, t * T(frame.time_scale)));
+  return in_caller_frames(frame, exact::evaluate(body, t * T(frame.time_scale)));
 }
 
 template <bool want_omega, bool want_attitude, class T>
@@ -50,7 +50,7 @@ void loop(const Body& body_in, const FreeFrame& frame_in, const double* t, std::
           double* attitude) {
   std::size_t i = 0;
   if (n >= Wide::width) {
-    const Body body = body_in;  // of our own: the results written cannot change it
+    const Body body = body_in;  // a copy, which writing the results cannot change
     const FreeFrame frame = frame_in;
     for (; i + Wide::width <= n; i += Wide::width)
       write_at<want_omega, want_attitude, Wide>(body, frame, t + i, omega + 3 * i, attitude + 4 * i);
@@ -64,7 +64,7 @@ void trig_loop(const exact::FreeTrig<double>& body_in, const FreeFrame& frame_in
                double* attitude) {
   if (grid.n < TimeGrid::row)
     return loop<want_omega, want_attitude>(body_in, frame_in, grid.t, grid.n, omega, attitude);
-  const exact::FreeTrig<double> body = body_in;  // of our own, as above
+  const exact::FreeTrig<double> body = body_in;  // a copy, as above
   const FreeFrame frame = frame_in;
   const Rates<2> rates{frame.time_scale, {body.nu_hi, body.kappa_hi}, {body.nu_lo, body.kappa_lo}, {body.phi0, 0.0}};
   const auto pair = [&]<class T>(const Angle<T>(&now)[2], T(&kept)[5]) __attribute__((always_inline)) {
@@ -76,7 +76,7 @@ void trig_loop(const exact::FreeTrig<double>& body_in, const FreeFrame& frame_in
     const exact::FreePair<T> found{p[0], p[1], p[2], p[3], p[4]};
     const auto state = exact::evaluate(body, found, now[0].sine, now[0].cosine,
                                        now[1].sine, now[1].cosine);
-    write<want_omega, want_attitude>(brought_back(frame, state), omega + 3 * k, attitude + 4 * k);
+    write<want_omega, want_attitude>(in_caller_frames(frame, state), omega + 3 * k, attitude + 4 * k);
   };
   at_phases<5>(rates, grid, pair, finish);
 }
@@ -88,13 +88,13 @@ inline void on_times(const exact::FreeTrig<double>& body, const FreeFrame& frame
   if (attitude) return trig_loop<false, true>(body, frame, grid, omega, attitude);
 }
 
-/// In blocks and short loops as `at_phases` is; a grid is any times here.
+/// In blocks and short loops like `at_phases`. A uniform grid has no advantage here.
 template <bool want_omega, bool want_attitude>
 void hyper_loop(const exact::FreeHyper<double>& body_in, const FreeFrame& frame_in, const TimeGrid& grid, double* omega,
                 double* attitude) {
   const std::size_t whole = grid.n / Wide::width * Wide::width;
   if (whole > 0) {
-    const exact::FreeHyper<double> body = body_in;  // of our own, as above
+    const exact::FreeHyper<double> body = body_in;  // a copy, as above
     const FreeFrame frame = frame_in;
     alignas(64) double middle[5][TimeGrid::block];
     for (std::size_t first = 0; first < whole; first += TimeGrid::block) {
@@ -108,7 +108,7 @@ void hyper_loop(const exact::FreeHyper<double>& body_in, const FreeFrame& frame_
         const exact::FreePassage<Wide> p{Wide::load(middle[0] + k), Wide::load(middle[1] + k),
                                          Wide::load(middle[2] + k), Wide::load(middle[3] + k),
                                          Wide::load(middle[4] + k)};
-        write<want_omega, want_attitude>(brought_back(frame, exact::evaluate(body, p)), omega + 3 * (first + k),
+        write<want_omega, want_attitude>(in_caller_frames(frame, exact::evaluate(body, p)), omega + 3 * (first + k),
                                          attitude + 4 * (first + k));
       }
     }

@@ -1,22 +1,24 @@
 #pragma once
 
+#include <numbers>
+
 #include "math/lanes/scalar.hpp"
 #include "polhode/exact/time_grid.hpp"
 #include "polhode/math/phase.hpp"
 #include "polhode/math/sincos.hpp"
 
-// Phases on a uniform grid of times: one turn by a tabled angle in the place of a sine and a cosine.
+// Phases on a uniform grid of times: a rotation by an angle from a table replaces a sine and a cosine.
 namespace polhode::POLHODE_ISA {
 
 using exact::TimeGrid;
 using math::cycle_fraction, math::sincos_cycles;
 
-/// How many of n times are in the block that starts at `first`.
+/// The number of times, out of n, in the block that starts at `first`.
 POLHODE_INLINE std::size_t in_block(std::size_t n, std::size_t first) {
   return n - first < TimeGrid::block ? n - first : TimeGrid::block;
 }
 
-/// Fills rest (n) and the largest of them; both are exact.
+/// Fills rest (n) and the largest of them, both exactly.
 POLHODE_INLINE void measure_block(const double* t, std::size_t n, double stride, double* rest, double* largest) {
   Wide worst(0.0), broken(0.0);
   for (std::size_t part = 0; part < TimeGrid::row; part += Wide::width) {
@@ -26,7 +28,7 @@ POLHODE_INLINE void measure_block(const double* t, std::size_t n, double stride,
       const auto since = math::two_diff(Wide::load(t + k), start);
       const Wide left = (since.hi - Wide(behind)) + since.lo;
       worst = larger(worst, abs(left));
-      broken = broken + (left - left);  // stays 0 unless something is no number
+      broken = broken + (left - left);  // stays 0 while all is finite
       left.store(rest + k);
     }
   }
@@ -44,7 +46,7 @@ inline void measure(const double* t, std::size_t n, double stride, double* rest,
     measure_block(t + first, in_block(n, first), stride, rest + first, largest + first / TimeGrid::block);
 }
 
-/// The largest |t|; infinity where one is not a number.
+/// The largest |t|; infinity if a time is not finite.
 inline double reach(const double* t, std::size_t n) {
   constexpr double most = std::numeric_limits<double>::max(), beyond = std::numeric_limits<double>::infinity();
   double largest = 0.0;
@@ -102,34 +104,34 @@ POLHODE_INLINE Angle<T> angle_at(const Rates<count>& rates, int c, T t) {
   return a;
 }
 
-/// One motion's phases on a grid.
+/// The phases of one motion on a grid.
 template <int count>
-class Stepping {
+class GridPhases {
  public:
-  POLHODE_INLINE Stepping(const Rates<count>& rates, const TimeGrid& grid) : grid_(grid) {
+  POLHODE_INLINE GridPhases(const Rates<count>& rates, const TimeGrid& grid) : grid_(grid) {
     if (!grid.uniform()) return;
     double steps[TimeGrid::rows];
     for (std::size_t i = 0; i < TimeGrid::rows; ++i) steps[i] = static_cast<double>(i) * grid.stride;
     for (int c = 0; c < count; ++c) {
-      slope_[c] = 6.283185307179586 * rates.hi[c];
+      slope_[c] = 2.0 * std::numbers::pi * rates.hi[c];
       fastest_ = math::max(fastest_, math::abs(slope_[c]));
-      Rates<count> turning = rates;
-      turning.start[c] = 0.0;
+      Rates<count> from_zero = rates;
+      from_zero.start[c] = 0.0;
       for (std::size_t i = 0; i < TimeGrid::rows; i += Wide::width) {
-        const Angle<Wide> a = angle_at<Wide>(turning, c, Wide::load(steps + i));
+        const Angle<Wide> a = angle_at<Wide>(from_zero, c, Wide::load(steps + i));
         a.sine.store(sine_[c] + i), a.cosine.store(cosine_[c] + i);
       }
     }
   }
 
-  /// Fills the first n / 8 rows of the block that starts at `first`; no where that is not exact enough.
+  /// Fills the first n / 8 rows of the block that starts at `first`. Returns false if that is not accurate enough.
   POLHODE_INLINE bool fill(const Rates<count>& rates, std::size_t first, std::size_t n, Angles<count>& angles) {
     alignas(64) double own_rest[TimeGrid::block], own_largest;
     if (!grid_.uniform()) return false;
     if (!grid_.rest) measure_block(grid_.t + first, n, grid_.stride, own_rest, &own_largest);
     const double* rest = grid_.rest ? grid_.rest + first : own_rest;
     const double largest = grid_.rest ? grid_.largest[first / TimeGrid::block] : own_largest;
-    // The square of the angle left over, which the first order leaves out, must be below rounding.
+    // The correction is of first order: the square of the remaining angle must be below rounding.
     if (!(largest * rates.scale * fastest_ <= 1e-8)) return false;
     for (int c = 0; c < count; ++c) {
       for (std::size_t part = 0; part < TimeGrid::row; part += Wide::width) {
@@ -152,19 +154,20 @@ class Stepping {
   double sine_[count][TimeGrid::rows], cosine_[count][TimeGrid::rows];
 };
 
-/// prepare(angles, kept) and finish(angles, kept, k) at every time, the angles being those of the phases there, for one
-/// lane or a vector of them; `kept` numbers go from one to the other. In blocks, phases first, then what ends in a root
-/// and a division, then the rest: short loops of which the processor works on several rounds at once.
+/// Calls prepare(angles, kept) and finish(angles, kept, k) at every time, with the angles of the phases at that time,
+/// for one lane or a vector of lanes. `kept` numbers are passed from one to the other. Each block has three short loops:
+/// the phases, the part that ends in a root and a division, and the rest. The processor overlaps the rounds of short
+/// loops.
 template <int kept, int count, class Prepare, class Finish>
 POLHODE_INLINE void at_phases(const Rates<count>& rates, const TimeGrid& grid, const Prepare& prepare,
                               const Finish& finish) {
-  Stepping<count> stepping(rates, grid);
+  GridPhases<count> phases(rates, grid);
   Angles<count> angles;
   alignas(64) double middle[kept][TimeGrid::block];
   for (std::size_t first = 0; first < grid.n; first += TimeGrid::block) {
     const std::size_t n = in_block(grid.n, first);
     const std::size_t whole = n / Wide::width * Wide::width, rows = n / TimeGrid::row * TimeGrid::row;
-    const std::size_t filled = stepping.fill(rates, first, n, angles) ? rows : 0;
+    const std::size_t filled = phases.fill(rates, first, n, angles) ? rows : 0;
     for (int c = 0; c < count; ++c)
       for (std::size_t k = filled; k < whole; k += Wide::width)
         angles.put(c, k, angle_at(rates, c, Wide::load(grid.t + first + k)));

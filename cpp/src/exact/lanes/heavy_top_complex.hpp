@@ -4,17 +4,17 @@
 #include "polhode/exact/heavy_top_kernel.hpp"
 #include "polhode/math/dd_functions.hpp"
 
-// Complex numbers in double-double, as far as the set-up of the top needs them.
+// Complex numbers in double-double, for the set-up of the top.
 namespace polhode::POLHODE_ISA {
 
 using exact::Cycles;
 using math::DD, math::abs, math::sqrt;
 
-// Transcendental functions as number types of this file's own, so that no other file's copy is made or taken.
+// Transcendental functions on a number type of this instruction set, so that the linker shares no code between sets.
 inline DD narrow(math::DoubleDouble<One> a) { return {a.hi.v, a.lo.v}; }
 inline math::DoubleDouble<One> widen(DD a) { return {One(a.hi), One(a.lo)}; }
 inline DD angle_of(DD y, DD x) { return narrow(math::atan2_dd(widen(y), widen(x))); }
-/// Of any x > 0.
+/// The logarithm of any x > 0.
 inline DD logarithm(DD x) {
   const DD ln2{0.6931471805599453, 2.3190468138462996e-17};
   const double power = x.hi < 0x1p-800 ? -512.0 : x.hi > 0x1p800 ? 512.0 : 0.0;

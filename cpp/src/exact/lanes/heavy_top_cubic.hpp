@@ -7,8 +7,8 @@ namespace polhode::POLHODE_ISA {
 
 using exact::HeavyTopConstants, exact::HeavyTopMotion, exact::HeavyTopStart;
 
-/// The start seen by the tilt, u = cos(tilt), and the cubic f(d) = u'^2 = bt d^3 + c2 d^2 + c1 d + c0 in d = u - u0:
-/// shifted to the start, so that small motions keep their digits.
+/// The start in terms of u = cos(tilt), and the cubic f(d) = u'^2 = bt d^3 + c2 d^2 + c1 d + c0 in d = u - u0.
+/// It is shifted to the start, so that small motions keep their digits.
 struct TiltStart {
   math::DD a, bt;         ///< C w3 / A and 2 M / A
   math::DD wp2;           ///< w1^2 + w2^2
@@ -20,7 +20,7 @@ struct TiltStart {
   explicit TiltStart(const HeavyTopStart& s);
 };
 
-/// The three roots d1 <= 0 <= d2 <= d3 and what follows from them without cancellation.
+/// The three roots d1 <= 0 <= d2 <= d3, and quantities derived from them without cancellation.
 struct TiltCubic {
   math::DD d1, d2, D;     ///< D = d2 - d1
   math::DD e3;            ///< bt d3, finite when the weight goes to zero

@@ -6,11 +6,11 @@
 
 namespace polhode::POLHODE_ISA {
 
-/// A motion next to a stable vertical is linear in its distance from it to 1e-48 when that is below 2^-80: smaller ones
-/// are enlarged to about 2^-120, so that no product underflows, and their constants reduced again.
+/// A motion near a stable vertical is linear in its distance from it, to 1e-48 if the distance is below 2^-80.
+/// Distances below 2^-160 are enlarged to about 2^-120, so that no product underflows. The constants are reduced again.
 class Enlargement {
  public:
-  /// Changes the start where needed; tells the motion what no float64 can follow.
+  /// Changes the start if needed. Sets motion.lost_within for a motion that float64 cannot follow.
   Enlargement(HeavyTopStart& s, const TiltStart& t, HeavyTopMotion& motion) : upright_(t.op > t.om) {
     const double stiffness = (t.a * t.a - (upright_ ? t.bt + t.bt : -(t.bt + t.bt))).hi;  // > 0 when stable
     const bool stable = stiffness > 1e-20 * (t.a.hi * t.a.hi + t.bt.hi);

@@ -4,10 +4,10 @@
 #include "exact/lanes/heavy_top_setup.hpp"
 #include "polhode/exact/heavy_top_kernels.hpp"
 
-// One top at many times, for one lane type `Wide`; included once by each file that is built for one instruction set.
+// One top at many times, for one lane type `Wide`. Each file that is built for one instruction set includes this once.
 namespace polhode::POLHODE_ISA {
 
-/// Row `at` of an output that may not be wanted.
+/// The row at offset `at`, or null for an output that is not wanted.
 POLHODE_INLINE double* row_of(double* rows, std::size_t at) { return rows ? rows + at : rows; }
 
 template <class T>
@@ -20,7 +20,7 @@ template <bool hyper, bool framed>
 void top_loop(const HeavyTopConstants& given, const double* t, std::size_t n, double* omega, double* attitude) {
   std::size_t i = 0;
   if (n >= Wide::width) {
-    const HeavyTopConstants c = given;  // of our own: the results written cannot change it
+    const HeavyTopConstants c = given;  // a copy, which writing the results cannot change
     for (; i + Wide::width <= n; i += Wide::width)
       write_top(exact::evaluate_heavy_top<hyper, framed>(c, Wide::load(t + i)), row_of(omega, 3 * i),
                 row_of(attitude, 4 * i));
@@ -33,7 +33,7 @@ void top_loop(const HeavyTopConstants& given, const double* t, std::size_t n, do
 template <bool framed>
 void top_trig(const HeavyTopConstants& given, const TimeGrid& grid, double* omega, double* attitude) {
   if (grid.n < TimeGrid::row) return top_loop<false, framed>(given, grid.t, grid.n, omega, attitude);
-  const HeavyTopConstants c = given;  // of our own, as above
+  const HeavyTopConstants c = given;  // a copy, as above
   const Rates<3> rates{c.rate_scale,
                        {c.rate_z.hi, c.rate_a.hi, c.rate_b.hi},
                        {c.rate_z.lo, c.rate_a.lo, c.rate_b.lo},

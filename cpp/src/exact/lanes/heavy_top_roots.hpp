@@ -14,8 +14,8 @@ inline DD hypot(DD a, DD b) {
   return large * sqrt(DD(1.0) + squared(small / large));
 }
 
-/// The root of c3 x^3 + c2 x^2 + c1 x + c0 next to `start`, which lies outside all of them: Newton's steps are then
-/// monotone. In double until they turn back, then two in double-double.
+/// The root of c3 x^3 + c2 x^2 + c1 x + c0 next to `start`, which lies outside all roots, so that Newton's steps are
+/// monotone. In double until they reverse, then three steps in double-double.
 inline DD far_root(DD c3, DD c2, DD c1, DD c0, double start) {
   double x = start;
   for (int i = 0; i < 200; ++i) {

@@ -15,9 +15,9 @@ namespace polhode::POLHODE_ISA {
 using exact::degree_12;
 using Chain = math::LandenChain<DD>;
 
-constexpr int most_terms = 7;  // of the theta sums in the set-up: q^42 for q <= 0.21
+constexpr int most_terms = 7;  // of the theta sums in the set-up: errors of q^42 for q <= 0.21
 
-/// As many as double-double needs for a nome.
+/// The number of terms that double-double needs for a nome.
 inline int terms_for(double q) {
   int n = 1;
   double left = q, power = q * q * q;  // q^(n^2), q^(2n+1)
@@ -62,8 +62,7 @@ struct Series {
 };
 
 /// sum of (+-1)^n coefficient[n] F_n, as monomials in X = cos 2z, where cos(2n+1)z = cos z V_n(X) and
-/// sin(2n+1)z = sin z W_n(X). Polynomials V_n; W_n has the same with every coefficient of the other parity's sign:
-/// W_n(X) = (-1)^n V_n(-X).
+/// sin(2n+1)z = sin z W_n(X). The table has V_n, and W_n(X) = (-1)^n V_n(-X).
 struct Monomials {
   double p[5] = {};
   enum Kind { V, W };
@@ -77,7 +76,7 @@ struct Monomials {
   }
 };
 
-/// sum += factor (shift + slope X) a b, as far as the degree goes.
+/// sum += factor (shift + slope X) a b, up to degree_12.
 POLHODE_INLINE void add_product(double (&sum)[degree_12 + 1], double factor, double shift, double slope,
                                 const Monomials& a, const Monomials& b) {
   double product[degree_12 + 1] = {};
@@ -87,7 +86,7 @@ POLHODE_INLINE void add_product(double (&sum)[degree_12 + 1], double factor, dou
     sum[i] = math::madd(factor, math::madd(shift, product[i], i > 0 ? slope * product[i - 1] : 0.0), sum[i]);
 }
 
-/// What both forms need: the roots, the moduli and the phases' rates where the tilt turns.
+/// The quantities that both forms need: roots, moduli, and rates of the phases at the extreme tilts.
 struct Common {
   const HeavyTopStart& start;
   const TiltCubic& cubic;
@@ -103,11 +102,11 @@ struct Common {
 struct AtStart {
   Complex N1, D1, N2, D2;
   DD theta, d_theta;
-  bool by_slope_1, by_slope_2;  // the values are small beside their greatest: next to the vertical, where they pass 0
+  bool by_slope_1, by_slope_2;  // near the vertical the values pass 0 and are small beside their greatest
 };
 
-/// The direction of the constant c in value = c N, slope = c (i k N + speed (D - N theta' / theta)), from whichever
-/// is not small.
+/// The direction of the constant c in value = c N and slope = c (i k N + speed (D - N theta' / theta)), from the
+/// equation that is not small.
 inline Complex direction(bool by_slope, Complex value, Complex slope, Complex N, Complex D, DD k, DD speed,
                          const AtStart& f) {
   if (!by_slope) return unit(balanced(value) * conj(N));
@@ -115,7 +114,7 @@ inline Complex direction(bool by_slope, Complex value, Complex slope, Complex N,
   return unit(balanced(slope) * conj(balanced(slope_N)));
 }
 
-/// The two factors in front, of given size, so that the attitude at t = 0 is the start's.
+/// Sets the factors c_a and c_b, of given size, so that the attitude at t = 0 is that of the start.
 inline void set_factors(HeavyTopConstants& c, const HeavyTopStart& s, DD ca, DD cb, DD kA, DD kB, DD speed,
                         const AtStart& f) {
   const Complex alpha{s.w, s.z}, beta{s.x, s.y}, wp{s.w1, s.w2};
@@ -129,9 +128,9 @@ inline void set_factors(HeavyTopConstants& c, const HeavyTopStart& s, DD ca, DD 
   c.speed = speed.hi, c.turn = (kA + kB).hi;
 }
 
-/// Half circles by which N1 and N2 turn over a nutation; none when they pass 0 on the way.
-inline double turns_of_a(const Common& m) { return m.cubic.mu1.hi == 0.0 ? 0.0 : m.sA; }
-inline double turns_of_b(const Common& m) { return m.cubic.x2.hi == 0.0 ? 0.0 : m.sB; }
+/// The half turns of N1 and N2 in the complex plane over a nutation; 0 when they pass through 0.
+inline double half_turns_of_a(const Common& m) { return m.cubic.mu1.hi == 0.0 ? 0.0 : m.sA; }
+inline double half_turns_of_b(const Common& m) { return m.cubic.x2.hi == 0.0 ? 0.0 : m.sB; }
 
 inline void set_up_trig(HeavyTopConstants& c, HeavyTopMotion& motion, const Common& m) {
   const Chain chain(m.k, m.kc);
@@ -153,7 +152,7 @@ inline void set_up_trig(HeavyTopConstants& c, HeavyTopMotion& motion, const Comm
   const DD ca = sqrt(math::scaled(m.cubic.mu2, 0.5)) * high / a.sum_cosh();
   const DD cb = sqrt(math::scaled(m.cubic.e1, 0.5)) * low / b.sum_cosh();
 
-  // the start, by addition of angles: never from a rounded z0
+  // the start, by addition of angles and not from a rounded z0
   AtStart f{};
   Complex odd = z0;  // the angle (2n+1) z0
   const Complex twice = z0 * z0;
@@ -186,7 +185,7 @@ inline void set_up_trig(HeavyTopConstants& c, HeavyTopMotion& motion, const Comm
 
   c.hyper = false;
   c.rate_z = in_cycles(nu), c.rate_a = in_cycles(kA), c.rate_b = in_cycles(kB);
-  // within an eighth of a cycle of a quadrant, so that the rounding is that of a small angle
+  // relative to the nearest quarter cycle, so that the rounding is that of a small angle
   const bool along = abs(z0.re.hi) >= abs(z0.im.hi);
   const double quadrant = along ? (z0.re.hi > 0 ? 0.0 : 0.5) : (z0.im.hi > 0 ? 0.25 : -0.25);
   const double ratio = along ? (z0.im / z0.re).hi : -(z0.re / z0.im).hi;
@@ -217,14 +216,14 @@ inline void set_up_trig(HeavyTopConstants& c, HeavyTopMotion& motion, const Comm
   for (int i = 0; i <= degree_12; ++i) c.even[i] = even[i], c.odd[i] = odd_part[i];
 
   motion.period = (math::pi<DD>() / nu).hi;
-  motion.precession = (kA + kB + nu * DD(turns_of_a(m) + turns_of_b(m))).hi;
+  motion.precession = (kA + kB + nu * DD(half_turns_of_a(m) + half_turns_of_b(m))).hi;
 }
 
-/// cos and sin of the multiples of an angle, `first` and then steps of 2.
+/// cos and sin of the multiples first, first + 2, first + 4, ... of an angle.
 inline void multiples(Complex e, int first, DD (&cosine)[4], DD (&sine)[4]) {
   const Complex twice = e * e;
-  Complex turn = first == 0 ? Complex{DD(1.0), DD(0.0)} : e;
-  for (int n = 0; n < 4; ++n, turn = turn * twice) cosine[n] = turn.re, sine[n] = turn.im;
+  Complex multiple = first == 0 ? Complex{DD(1.0), DD(0.0)} : e;
+  for (int n = 0; n < 4; ++n, multiple = multiple * twice) cosine[n] = multiple.re, sine[n] = multiple.im;
 }
 
 inline void set_up_hyper(HeavyTopConstants& c, HeavyTopMotion& motion, const Common& m) {
@@ -296,16 +295,16 @@ inline void set_up_hyper(HeavyTopConstants& c, HeavyTopMotion& motion, const Com
   c.v_passage_hi = passage.hi, c.v_passage_lo = passage.lo;
   c.rate_z = {rate.hi, rate.lo};
   c.start_z = (v0 / passage).hi;
-  // each passage turns alpha and beta by -2 eta; the half circle makes the quaternion go on without a change of sign
+  // each passage rotates alpha and beta by -2 eta; the half turn keeps the sign of the quaternion continuous
   const DD angle_a = angle_of(eta_a.im, eta_a.re), angle_b = angle_of(eta_b.im, eta_b.re);
   const DD pass_a = DD(m.sA) * half - angle_a, pass_b = DD(m.sB) * half - angle_b;
   c.passage_a = in_cycles(pass_a + pass_a), c.passage_b = in_cycles(pass_b + pass_b);
   motion.period = (DD(1.0) / rate).hi;
-  const DD turn = DD(turns_of_a(m) + turns_of_b(m)) * half - angle_a - angle_b;
+  const DD turn = DD(half_turns_of_a(m) + half_turns_of_b(m)) * half - angle_a - angle_b;
   motion.precession = (kA + kB + rate * (turn + turn)).hi;
 }
 
-/// The tilt never changes: alpha and beta only turn. Written as the trig form with z at a quarter cycle for ever.
+/// Constant tilt: only the phases of alpha and beta change. It is the trig form with z fixed at a quarter cycle.
 inline void set_up_steady(HeavyTopConstants& c, HeavyTopMotion& motion, const HeavyTopStart& s, const TiltStart& t) {
   const DD kA = math::scaled(s.w3 - t.a + (t.op.hi > 0.0 ? t.ab / t.op : DD(0.0)), 0.5);
   const DD kB = math::scaled(t.a - s.w3 + (t.om.hi > 0.0 ? t.ba / t.om : DD(0.0)), 0.5);

@@ -16,7 +16,7 @@ using inertia::mesh_sums;
 using inertia::MeshSums;
 using inertia::MeshTriangles;
 
-inline constexpr int group = 8;         ///< virtual lanes, the same for every register width, so that the bits are the same
+inline constexpr int group = 8;         ///< virtual lanes, the same for every register width: equal bits
 inline constexpr int block_groups = 32;  ///< groups in a plain sum; the sums of blocks are compensated
 
 template <class T>

@@ -5,8 +5,8 @@
 
 namespace polhode::POLHODE_ISA {
 
-/// The even and the odd powers each by Horner's rule in s^2: half as long to wait as one chain, and the first term,
-/// which decides the rounding, is added last.
+/// Horner's rule in s^2 for the even and the odd powers: two chains of half the length. The first term, which dominates
+/// the rounding error, is added last.
 template <int points>
 POLHODE_INLINE void evaluate_points(const double* rows, int order, Octet base, Octet rest, const double* s,
                                     double* out) {
