@@ -38,9 +38,9 @@ struct MeshReport {
 };
 
 /// Checks that the mesh is the surface of a body. Every edge lies between two faces that pass it in opposite
-/// directions, and every inward shell lies inside another. Throws InvalidInput, with counts and the first faces, when it is not. A
-/// mesh that is inside out as a whole passes, as does a solid inside another: see `inside_out`, `embedded`. Surfaces
-/// that cross each other are not detected.
+/// directions, and every inward shell lies inside another. Throws InvalidInput, with counts and the first faces, when
+/// it is not. A mesh that is inside out as a whole passes, as does a solid inside another: see `inside_out`,
+/// `embedded`. Surfaces that cross each other are not detected.
 MeshReport check_mesh(const Mesh& mesh);
 
 /// Volume and moments of the solid, in units of the vertices. In double-double, so that the result is rounded once.

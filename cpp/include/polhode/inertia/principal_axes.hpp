@@ -25,9 +25,9 @@ inline constexpr double symmetry_gap = 16 * std::numeric_limits<double>::epsilon
 /// The columns of `axes` (R_BP) are the principal axes P in the given axes B, right-handed, in the order of the
 /// moments. Three rules choose the signs, and the axes of equal moments:
 /// - The axes of the smallest and of the largest moment point towards the nearest given axis: their largest component
-///   is positive (of components equal to 1e-6 the first counts). The middle axis completes the frame. So a frame within 45
-///   degrees of the given one is found as it is, a diagonal tensor has a signed permutation, and no axis flips while it
-///   stays within 45 degrees of a given axis.
+///   is positive (of components equal to 1e-6 the first counts). The middle axis completes the frame. So a frame within
+///   45 degrees of the given one is found as it is, a diagonal tensor has a signed permutation, and no axis flips while
+///   it stays within 45 degrees of a given axis.
 /// - With two equal moments the axis of the third is chosen as above. The two others are the given axes under the
 ///   smallest rotation that takes the given axis nearest to the third onto it.
 /// - With three equal moments the axes are the given ones.

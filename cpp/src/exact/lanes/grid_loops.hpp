@@ -155,9 +155,9 @@ class GridPhases {
 };
 
 /// Calls prepare(angles, kept) and finish(angles, kept, k) at every time, with the angles of the phases at that time,
-/// for one lane or a vector of lanes. `kept` numbers are passed from one to the other. Each block has three short loops:
-/// the phases, the part that ends in a root and a division, and the rest. The processor overlaps the rounds of short
-/// loops.
+/// for one lane or a vector of lanes. `kept` numbers are passed from one to the other. Each block has three short
+/// loops: the phases, the part that ends in a root and a division, and the rest. The processor overlaps the rounds of
+/// short loops.
 template <int kept, int count, class Prepare, class Finish>
 POLHODE_INLINE void at_phases(const Rates<count>& rates, const TimeGrid& grid, const Prepare& prepare,
                               const Finish& finish) {
