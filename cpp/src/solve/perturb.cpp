@@ -6,50 +6,49 @@
 #include <cstdint>
 #include <limits>
 
+#include "polhode/math/coin.hpp"
 #include "solve/pieces.hpp"
 
 namespace polhode {
 namespace {
 
-/// Vigna's splitmix64 (public domain, as an idea): a fair coin that is the same on every machine.
-class Coin {
- public:
-  explicit Coin(std::uint64_t seed = 2026) : state_(seed) {}
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
-  bool toss() {
-    state_ += 0x9e3779b97f4a7c15u;
-    std::uint64_t z = state_;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return ((z ^ (z >> 31)) & 1) != 0;
-  }
-  double move(double x) {
-    const double end = toss() ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
+/// Changes numbers by two units in the last place, up or down as a coin says.
+class Perturber {
+ public:
+  explicit Perturber(std::uint64_t seed = 2026) : coin_(seed) {}
+
+  double operator()(double x) {
+    const double end = coin_.toss() ? infinity : -infinity;
     return x == 0.0 ? x : std::nextafter(std::nextafter(x, end), end);
   }
-  void operator()(double& x) { x = move(x); }
-  void operator()(Vector3d& v) {
-    for (int i = 0; i < 3; ++i) v[i] = move(v[i]);
+  void apply(double& x) { x = (*this)(x); }
+  void apply(Vector3d& v) {
+    for (int i = 0; i < 3; ++i) apply(v[i]);
   }
-  void operator()(Matrix3d& m) {
+  void apply(Matrix3d& m) {
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) m(i, j) = move(m(i, j));
+      for (int j = 0; j < 3; ++j) apply(m(i, j));
   }
-  void operator()(std::string&) {}
+  void apply(std::string&) {}
 
  private:
-  std::uint64_t state_;
+  math::Coin coin_;
 };
 
+/// By a rule that depends on the number alone.
+double perturb_alone(double x) { return Perturber(std::bit_cast<std::uint64_t>(x))(x); }
+
 template <class Torque>
-Torque perturb_torque(const Torque& torque, Coin& coin) {
+Torque perturb_torque(const Torque& torque, Perturber& perturber) {
   return std::visit(
       [&]<class T>(const T& kind) -> Torque {
         if constexpr (std::is_same_v<T, torques::During>) {
-          return T(perturb_torque(kind.torque(), coin), kind.windows());
+          return T(perturb_torque(kind.torque(), perturber), kind.windows());
         } else if constexpr (requires { kind.values(); }) {
           TorqueValues values = kind.values();
-          for (TorqueValue& value : values) std::visit([&](auto& x) { coin(x); }, value);
+          for (TorqueValue& value : values) std::visit([&](auto& x) { perturber.apply(x); }, value);
           return T::from_values(values);
         } else {
           return kind;
@@ -63,10 +62,10 @@ AnyTorque perturb_windows(const AnyTorque& torque, double first, double last, do
   const auto* during = std::get_if<torques::During>(&torque);
   if (during == nullptr) return torque;
   const auto move = [=](double t) {
-    return first < t && t < last && t != t0 ? Coin(std::bit_cast<std::uint64_t>(t)).move(t) : t;
+    return first < t && t < last && t != t0 ? perturb_alone(t) : t;
   };
   std::vector<torques::Window> windows = during->windows();
-  double before = -std::numeric_limits<double>::infinity();
+  double before = -infinity;
   for (torques::Window& window : windows) {
     window = {move(window.begin), move(window.end)};
     if (!(before <= window.begin && window.begin < window.end))
@@ -79,7 +78,7 @@ AnyTorque perturb_windows(const AnyTorque& torque, double first, double last, do
 }  // namespace
 
 State perturb_state(const State& state, double units, int seed) {
-  Coin coin(static_cast<std::uint64_t>(seed));
+  math::Coin coin(static_cast<std::uint64_t>(seed));
   const double size = units * std::numeric_limits<double>::epsilon(), rate = state.omega.norm();
   State perturbed = state;
   for (int i = 0; i < 3; ++i) perturbed.omega[i] += (coin.toss() ? size : -size) * rate;
@@ -89,21 +88,21 @@ State perturb_state(const State& state, double units, int seed) {
 }
 
 Scene perturb(const Scene& scene) {
-  Coin coin;
+  Perturber perturber;
   Matrix3d I = scene.inertia_B().matrix();
   const bool cut = has_windows(scene);   // then equal moments stay equal: a piece of it may be a closed form's
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j <= i; ++j)
-      I(i, j) = I(j, i) = cut ? Coin(std::bit_cast<std::uint64_t>(I(i, j))).move(I(i, j)) : coin.move(I(i, j));
+      I(i, j) = I(j, i) = cut ? perturb_alone(I(i, j)) : perturber(I(i, j));
   SceneParts parts = scene.parts();
   parts.inertia_B = InertiaTensor::from_trusted(I, scene.inertia_B().physical());
-  coin(parts.omega);
+  perturber.apply(parts.omega);
   const Quat& q = scene.attitude();
-  parts.attitude = {coin.move(q.x), coin.move(q.y), coin.move(q.z), coin.move(q.w)};
+  parts.attitude = {perturber(q.x), perturber(q.y), perturber(q.z), perturber(q.w)};
   const auto [least, most] = std::minmax_element(scene.times().begin(), scene.times().end());
   const double first = std::min(*least, scene.t0()), last = std::max(*most, scene.t0());
   for (AnyTorque& torque : parts.torques)
-    torque = perturb_windows(perturb_torque(torque, coin), first, last, scene.t0());
+    torque = perturb_windows(perturb_torque(torque, perturber), first, last, scene.t0());
   return Scene(std::move(parts));
 }
 

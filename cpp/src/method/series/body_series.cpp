@@ -42,15 +42,15 @@ BodySeries::BodySeries(const Scene& scene, bool attitude) {
   Vector3d omega_P = scene.omega();
   I_ = inertia.moments();
   const bool triaxial = I_[0] < I_[1] && I_[1] < I_[2];
-  turned_ = !inertia.is_diagonal() || triaxial;
-  if (turned_) {
+  rotated_ = !inertia.is_diagonal() || triaxial;
+  if (rotated_) {
     R_BP_ = inertia.axes();
-    turned_ = R_BP_ != Matrix3d::Identity();
+    rotated_ = R_BP_ != Matrix3d::Identity();
   } else {
     I_ = inertia.matrix().diagonal();
   }
   Quat q_WP = q_WB;
-  if (turned_) {
+  if (rotated_) {
     const Quat q_BP = quat_from_matrix(R_BP_, "inertia.axes");
     q_PB_ = conjugate(q_BP);
     q_WP = q_WB * q_BP;
@@ -173,20 +173,20 @@ std::string BodySeries::describe_state() const {
 void BodySeries::unpack(const double* rows, std::size_t n, double* omega, double* attitude) const {
   for (const double* y = rows; y != rows + dimension * n; y += dimension, omega += 3, attitude += 4) {
     double w[3];
-    compute_rates(y, turned_ ? w : omega);
-    if (turned_) {
+    compute_rates(y, rotated_ ? w : omega);
+    if (rotated_) {
       for (int i = 0; i < 3; ++i) omega[i] = R_BP_(i, 0) * w[0] + R_BP_(i, 1) * w[1] + R_BP_(i, 2) * w[2];
     }
     if (!attitude_) continue;
     const double size = y[4] * y[4] + y[5] * y[5] + y[6] * y[6] + y[7] * y[7];
     const double s = std::abs(size - 1.0) < 1e-8 ? 1.5 - 0.5 * size : 1.0 / std::sqrt(size);
     Quat q{s * y[4], s * y[5], s * y[6], s * y[7]};
-    if (turned_) q = q * q_PB_;
+    if (rotated_) q = q * q_PB_;
     attitude[0] = q.x, attitude[1] = q.y, attitude[2] = q.z, attitude[3] = q.w;
   }
 }
 
-BodySeries BodySeries::moved(double part) const {
+BodySeries BodySeries::perturbed(double part) const {
   BodySeries other = *this;
   bool up = false;
   const auto move = [&](double& x, double size) {
@@ -194,7 +194,7 @@ BodySeries BodySeries::moved(double part) const {
     x += up ? part * size : -part * size;
   };
   SeriesTerms& terms = other.terms_;
-  const bool rounded = turned_ && R_BP_.cwiseAbs().maxCoeff() < 1.0;
+  const bool rounded = rotated_ && R_BP_.cwiseAbs().maxCoeff() < 1.0;
   for (int i = 0; i < 3; ++i) {
     move(terms.product[i], rounded ? std::max(std::abs(terms.product[i]), I_.maxCoeff() / I_[i]) : terms.product[i]);
   }
@@ -279,8 +279,8 @@ void BodySeries::correct_rates(double* y, double* carry) const {
   const double apart = step * split;
   const double change[3] = {y[0] * (turn + apart), y[1] * (turn - apart), y[2] * step};
   for (int i = 0; i < 3; ++i) {
-    const DD moved = math::two_sum(y[i], carry[i] + change[i]);
-    y[i] = moved.hi, carry[i] = moved.lo;
+    const DD restored = math::two_sum(y[i], carry[i] + change[i]);
+    y[i] = restored.hi, carry[i] = restored.lo;
   }
 }
 
@@ -299,7 +299,7 @@ void BodySeries::keep_unit(double* y, double* carry) {
   const double lack = 0.5 * (1.0 - norm) - cross;
   for (int i = 4; i < 8; ++i) {
     const DD sum = math::two_sum(y[i], carry[i] + lack * y[i]);
-    y[i] = sum.hi, carry[i] = sum.lo;
+    y[i] = restored.hi, carry[i] = restored.lo;
   }
 }
 

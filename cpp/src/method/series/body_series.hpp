@@ -43,9 +43,9 @@ class BodySeries {
   /// w_B and, where it is carried, q_WB, of n states.
   void unpack(const double* rows, std::size_t n, double* omega, double* attitude) const;
 
-  /// All constants moved by this part of each, up or down by a fixed rule; those of a full tensor, whose principal axes
+  /// All constants changed by this part of each, up or down by a fixed rule; those of a full tensor, whose principal axes
   /// are rounded, by this part of the largest moment.
-  BodySeries moved(double part) const;
+  BodySeries perturbed(double part) const;
   /// Of a state and a small error of it: |w|, the error of w, and that of the attitude as an angle.
   void measure_error(const double* y, const double* error, double* out) const;
 
@@ -80,7 +80,7 @@ class BodySeries {
 
   Matrix3d R_BP_ = Matrix3d::Identity();
   Quat q_PB_ = {};
-  bool turned_ = false, attitude_ = true;
+  bool rotated_ = false, attitude_ = true;
   Vector3d I_ = Vector3d::Zero();
   double k_ = 0.0;
   math::DD half_over_k_;                   ///< 1 / 2k without its rounding; 0: plain rates

@@ -133,8 +133,8 @@ void SeriesInvariants::restore(DD t, double* y, double* carry) const {
   }
   if (!(largest < 0.1 * size)) return;
   for (int i = 0; i < 3; ++i) {
-    const DD moved = math::two_sum(y[i], carry[i] + change[i]);
-    y[i] = moved.hi, carry[i] = moved.lo;
+    const DD restored = math::two_sum(y[i], carry[i] + change[i]);
+    y[i] = restored.hi, carry[i] = restored.lo;
   }
 }
 

@@ -64,11 +64,11 @@ class Dmv {
       x[0] = A * u[0] + g[0] * x[1] * x[2];
       x[1] = A * u[1] + g[1] * x[2] * x[0];
       x[2] = A * u[2] + g[2] * x[0] * x[1];
-      const double moved = std::abs(x[0] - old[0]) + std::abs(x[1] - old[1]) + std::abs(x[2] - old[2]);
-      if (!std::isfinite(moved))
+      const double change = std::abs(x[0] - old[0]) + std::abs(x[1] - old[1]) + std::abs(x[2] - old[2]);
+      if (!std::isfinite(change))
         return !std::isfinite(L[0] + L[1] + L[2]);   // a torque that was no number, or no solution
-      if (moved <= 1e-16 * size || (moved < 1e-12 * size && moved >= last)) break;
-      last = moved;
+      if (change <= 1e-16 * size || (change < 1e-12 * size && change >= last)) break;
+      last = change;
     }
     // L -= 4 / (h A) x x (J x), the turned L exactly.
     const double M[3] = {J_[0] * x[0], J_[1] * x[1], J_[2] * x[2]}, p[4] = {x[0], x[1], x[2], 1.0};

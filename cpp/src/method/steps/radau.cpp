@@ -178,20 +178,20 @@ class RadauStepper final : public ode::Stepper {
       }
       systems_.solve_real(b, change);
       systems_.solve_complex(bc, pair);
-      double moved[3];
+      double update[3];
       bool at_rounding = true;
       for (int i = 0; i < 3; ++i) {
         W[0][i] += change[i];
         W[1][i] += pair[i].re;
         W[2][i] += pair[i].im;
-        moved[i] = std::abs(change[i]) + std::abs(pair[i].re) + std::abs(pair[i].im);
-        at_rounding = at_rounding && moved[i] <= noise[i];
+        update[i] = std::abs(change[i]) + std::abs(pair[i].re) + std::abs(pair[i].im);
+        at_rounding = at_rounding && update[i] <= noise[i];
       }
       for (int k = 0; k < 3; ++k)
         for (int i = 0; i < 3; ++i) Z[k][i] = T[k][0] * W[0][i] + T[k][1] * W[1][i] + T[k][2] * W[2][i];
-      if (!std::isfinite(sum3(moved))) return Newton::not_finite;
+      if (!std::isfinite(sum3(update))) return Newton::not_finite;
       if (at_rounding) return Newton::converged;
-      const double now = measure(moved, Z[2]);
+      const double now = measure(update, Z[2]);
       if (last >= 0.0) {
         const double rate = now / last;
         if (rate < 1.0 && rate / (1 - rate) * now < newton_tolerance_) return Newton::converged;

@@ -33,10 +33,10 @@ class Body {
     if (!separatrix.suits(w_P)) return;
     separatrix_ = separatrix;
     R_BP_ = R_BP;
-    turned_ = R_BP != Matrix3d::Identity();
+    rotated_ = R_BP != Matrix3d::Identity();
     separatrix.from_rates(w_P.data(), start_, start_carry_);
     Quat q_WP = scene.attitude();
-    if (turned_) {
+    if (rotated_) {
       const Quat q_BP = quat_from_matrix(R_BP, "inertia.axes");
       q_PB_ = conjugate(q_BP);
       q_WP = q_WP * q_BP;
@@ -73,7 +73,7 @@ class Body {
     const double n = y[3] * y[3] + y[4] * y[4] + y[5] * y[5] + y[6] * y[6];
     const double s = std::abs(n - 1.0) < 1e-8 ? 1.5 - 0.5 * n : 1.0 / std::sqrt(n);
     const Quat q{s * y[3], s * y[4], s * y[5], s * y[6]};
-    const Quat q_WB = turned_ ? q * q_PB_ : q;
+    const Quat q_WB = rotated_ ? q * q_PB_ : q;
     attitude[0] = q_WB.x, attitude[1] = q_WB.y, attitude[2] = q_WB.z, attitude[3] = q_WB.w;
   }
 
@@ -102,12 +102,12 @@ class Body {
       return 0;
     }
     for (int j = 0; j < 3; ++j) {
-      double moved[N], f_moved[3];
-      std::copy_n(y, N, moved);
-      moved[j] += change;
-      const double exact = moved[j] - y[j];
-      compute_derivative(t, moved, f_moved);
-      for (int i = 0; i < 3; ++i) J[i][j] = (f_moved[i] - f[i]) / exact;
+      double shifted[N], f_shifted[3];
+      std::copy_n(y, N, shifted);
+      shifted[j] += change;
+      const double exact = shifted[j] - y[j];
+      compute_derivative(t, shifted, f_shifted);
+      for (int i = 0; i < 3; ++i) J[i][j] = (f_shifted[i] - f[i]) / exact;
     }
     return 3;
   }
@@ -130,7 +130,7 @@ class Body {
 
  private:
   void to_body(const double* w, double* w_B) const {
-    if (!turned_) {
+    if (!rotated_) {
       std::copy_n(w, 3, w_B);
       return;
     }
@@ -155,14 +155,14 @@ class Body {
     separatrix_->to_rates(y, w);
     to_body(w, w_B);
     std::copy_n(y + 3, 4, q_WB);
-    if (turned_) {
+    if (rotated_) {
       const Quat q = Quat{y[3], y[4], y[5], y[6]} * q_PB_;
       q_WB[0] = q.x, q_WB[1] = q.y, q_WB[2] = q.z, q_WB[3] = q.w;
     }
     const TorqueInput in{t, w_B, q_WB, I_B_, diagonal_};
     all_.add(in, tau_B);
     for (int i = 0; i < 3; ++i) {
-      const double tau = turned_ ? R_BP_(0, i) * tau_B[0] + R_BP_(1, i) * tau_B[1] + R_BP_(2, i) * tau_B[2] : tau_B[i];
+      const double tau = rotated_ ? R_BP_(0, i) * tau_B[0] + R_BP_(1, i) * tau_B[1] + R_BP_(2, i) * tau_B[2] : tau_B[i];
       a[i] = tau / I_[i];
     }
     separatrix_->from_vector(a, change);
@@ -170,7 +170,7 @@ class Body {
   }
 
   Matrix3d I_B_, R_BP_ = Matrix3d::Identity();
-  bool diagonal_, turned_ = false;
+  bool diagonal_, rotated_ = false;
   bool linear_ = true;          ///< in the rates, apart from the free motion
   double I_[3];
   Quat q_PB_ = {};

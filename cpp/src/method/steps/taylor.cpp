@@ -15,11 +15,11 @@ Trajectory integrate_taylor(const Scene& scene, const RunOptions& options) {
   const Unpack unpack = [series](const double* rows, std::size_t n, double* omega, double* attitude) {
     series->unpack(rows, n, omega, attitude);
   };
-  std::optional<BodySeries> moved;
-  if (options.trace != nullptr) moved = series->moved(ode::TrackedTaylor<BodySeries>::compute_move(*options.trace));
+  std::optional<BodySeries> perturbed;
+  if (options.trace != nullptr) perturbed = series->perturbed(ode::TrackedTaylor<BodySeries>::compute_move(*options.trace));
   const auto make = [&](const double* y, double t_end) -> std::unique_ptr<ode::Stepper> {
-    if (moved) {
-      return std::make_unique<ode::TrackedTaylor<BodySeries>>(*series, *moved, scene.t0(), y, t_end, options.tolerances,
+    if (perturbed) {
+      return std::make_unique<ode::TrackedTaylor<BodySeries>>(*series, *perturbed, scene.t0(), y, t_end, options.tolerances,
                                                               *options.trace);
     }
     return std::make_unique<ode::Taylor::Stepper<BodySeries>>(*series, scene.t0(), y, t_end, options.tolerances);
