@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "convert.hpp"
-#include "polhode/attitude/arrays.hpp"
+#include "polhode/attitude/detail/arrays.hpp"
 #include "polhode/attitude/kinematics.hpp"
 #include "polhode/attitude/matrix.hpp"
 #include "polhode/core/error.hpp"

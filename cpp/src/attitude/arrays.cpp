@@ -1,4 +1,4 @@
-#include "polhode/attitude/arrays.hpp"
+#include "polhode/attitude/detail/arrays.hpp"
 
 #include <algorithm>
 #include <cmath>

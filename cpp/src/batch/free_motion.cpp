@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "polhode/batch/parallel.hpp"
+#include "batch/parallel.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/exact/free_motion.hpp"
 #include "batch/rows.hpp"

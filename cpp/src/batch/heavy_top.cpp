@@ -2,10 +2,10 @@
 
 #include <atomic>
 
-#include "polhode/batch/parallel.hpp"
+#include "batch/parallel.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/exact/heavy_top.hpp"
-#include "polhode/exact/heavy_top_kernels.hpp"
+#include "polhode/exact/detail/heavy_top_kernels.hpp"
 #include "batch/rows.hpp"
 
 namespace polhode {

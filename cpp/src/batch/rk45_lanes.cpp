@@ -7,9 +7,9 @@
 #include "batch/lanes/rk45_block.hpp"
 #include "polhode/core/simd.hpp"
 #include "polhode/method/euler_problem.hpp"
-#include "polhode/ode/first_step.hpp"
+#include "polhode/ode/detail/first_step.hpp"
 #include "polhode/ode/rk45.hpp"
-#include "polhode/ode/step_control.hpp"
+#include "polhode/ode/detail/step_control.hpp"
 
 namespace polhode {
 namespace {

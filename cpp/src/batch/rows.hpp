@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "polhode/exact/time_grid.hpp"
+#include "polhode/exact/detail/time_grid.hpp"
 
 namespace polhode {
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "batch/lane_scheduler.hpp"
-#include "polhode/batch/parallel.hpp"
+#include "batch/parallel.hpp"
 #include "polhode/core/error.hpp"
 #include "solve/options.hpp"
 #include "solve/pieces.hpp"

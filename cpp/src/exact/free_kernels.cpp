@@ -1,4 +1,4 @@
-#include "polhode/exact/free_kernels.hpp"
+#include "polhode/exact/detail/free_kernels.hpp"
 
 #include "exact/lanes/levels.hpp"
 

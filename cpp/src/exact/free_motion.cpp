@@ -6,7 +6,7 @@
 #include <string>
 
 #include "polhode/core/error.hpp"
-#include "polhode/math/double_double.hpp"
+#include "polhode/math/detail/double_double.hpp"
 
 namespace polhode {
 namespace {

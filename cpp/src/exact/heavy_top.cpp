@@ -9,7 +9,7 @@
 
 #include "exact/heavy_top_start.hpp"
 #include "polhode/core/error.hpp"
-#include "polhode/exact/heavy_top_kernels.hpp"
+#include "polhode/exact/detail/heavy_top_kernels.hpp"
 
 namespace polhode {
 namespace {

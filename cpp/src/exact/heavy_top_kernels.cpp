@@ -1,4 +1,4 @@
-#include "polhode/exact/heavy_top_kernels.hpp"
+#include "polhode/exact/detail/heavy_top_kernels.hpp"
 
 #include "exact/lanes/levels.hpp"
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "polhode/exact/heavy_top.hpp"
-#include "polhode/exact/heavy_top_kernel.hpp"
-#include "polhode/math/double_double.hpp"
+#include "polhode/exact/detail/heavy_top_kernel.hpp"
+#include "polhode/math/detail/double_double.hpp"
 
 namespace polhode::exact {
 

@@ -1,6 +1,6 @@
 #include <initializer_list>
 
-#include "polhode/exact/free_setup.hpp"
+#include "polhode/exact/detail/free_setup.hpp"
 
 // Exact sums by expansions. Shewchuk 1997, "Adaptive precision floating-point arithmetic", Discrete Comput. Geom. 18,
 // 305.

@@ -1,8 +1,8 @@
-#include "polhode/math/double_double.hpp"
+#include "polhode/math/detail/double_double.hpp"
 
 #include <limits>
 
-#include "polhode/math/dd_functions.hpp"
+#include "polhode/math/detail/dd_functions.hpp"
 
 namespace polhode::math {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "polhode/core/error.hpp"
-#include "polhode/math/landen.hpp"
+#include "polhode/math/detail/landen.hpp"
 
 // Theta quotients (dlmf.nist.gov 22.2) with nome q where m <= 0.97, and the same after Poisson's transformation, in
 // powers of e^-|v| with the nome q' of m1, elsewhere. Both converge in a few terms and cancel nowhere but at zeros.

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "polhode/core/error.hpp"
-#include "polhode/math/double_double.hpp"
+#include "polhode/math/detail/double_double.hpp"
 #include "solve/distance.hpp"
 
 namespace polhode {

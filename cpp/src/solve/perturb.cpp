@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "polhode/math/coin.hpp"
+#include "polhode/math/detail/coin.hpp"
 #include "solve/pieces.hpp"
 
 namespace polhode {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "polhode/attitude/arrays.hpp"
+#include "polhode/attitude/detail/arrays.hpp"
 #include "polhode/attitude/euler.hpp"
 #include "polhode/attitude/kinematics.hpp"
 #include "polhode/attitude/matrix.hpp"

@@ -11,7 +11,7 @@
 #include "polhode/core/error.hpp"
 #include "polhode/exact/free_motion.hpp"
 #include "polhode/exact/heavy_top.hpp"
-#include "polhode/exact/heavy_top_kernels.hpp"
+#include "polhode/exact/detail/heavy_top_kernels.hpp"
 
 using namespace polhode;
 

@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-#include "polhode/math/coin.hpp"
+#include "polhode/math/detail/coin.hpp"
 
 using polhode::math::Coin;
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <initializer_list>
 
-#include "polhode/math/double_double.hpp"
-#include "polhode/math/phase.hpp"
-#include "polhode/math/sincos.hpp"
-#include "polhode/math/sincos_unfused.hpp"
+#include "polhode/math/detail/double_double.hpp"
+#include "polhode/math/detail/phase.hpp"
+#include "polhode/math/detail/sincos.hpp"
+#include "polhode/math/detail/sincos_unfused.hpp"
 
 using namespace polhode::math;
 

@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include "polhode/math/landen.hpp"
+#include "polhode/math/detail/landen.hpp"
 
 using namespace polhode::math;
 

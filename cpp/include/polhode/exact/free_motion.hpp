@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "polhode/core/state.hpp"
-#include "polhode/exact/free_kernels.hpp"
+#include "polhode/exact/detail/free_kernels.hpp"
 #include "polhode/inertia/inertia_tensor.hpp"
 
 namespace polhode {

@@ -3,8 +3,8 @@
 #include <cstddef>
 
 #include "polhode/core/state.hpp"
-#include "polhode/exact/heavy_top_kernel.hpp"
-#include "polhode/exact/time_grid.hpp"
+#include "polhode/exact/detail/heavy_top_kernel.hpp"
+#include "polhode/exact/detail/time_grid.hpp"
 #include "polhode/inertia/inertia_tensor.hpp"
 
 namespace polhode {

@@ -6,7 +6,7 @@
 
 #include "polhode/core/simd.hpp"
 #include "polhode/inertia/mass_properties.hpp"
-#include "polhode/math/double_double.hpp"
+#include "polhode/math/detail/double_double.hpp"
 
 // Solids of uniform density inside a surface of triangles.
 namespace polhode {

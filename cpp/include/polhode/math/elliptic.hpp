@@ -1,6 +1,6 @@
 #pragma once
 
-#include "polhode/math/double_double.hpp"
+#include "polhode/math/detail/double_double.hpp"
 
 /// Jacobi's elliptic functions on the complementary pair (m, m1), m = k^2, m1 = 1 - m: near m = 1 the difference
 /// 1 - m in floating point has no digits left, so both are given and the smaller one is taken as exact.

@@ -3,7 +3,7 @@
 #include <limits>
 #include <string_view>
 
-#include "polhode/ode/forecast.hpp"
+#include "polhode/ode/detail/forecast.hpp"
 
 namespace polhode::ode {
 

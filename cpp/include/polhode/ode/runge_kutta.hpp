@@ -5,9 +5,9 @@
 #include <limits>
 #include <utility>
 
-#include "polhode/ode/first_step.hpp"
+#include "polhode/ode/detail/first_step.hpp"
 #include "polhode/ode/problem.hpp"
-#include "polhode/ode/step_control.hpp"
+#include "polhode/ode/detail/step_control.hpp"
 #include "polhode/ode/stepper.hpp"
 
 namespace polhode::ode {

@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "polhode/core/simd.hpp"
-#include "polhode/ode/step_control.hpp"
+#include "polhode/ode/detail/step_control.hpp"
 
 namespace polhode::ode {
 

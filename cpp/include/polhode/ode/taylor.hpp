@@ -6,7 +6,7 @@
 #include <concepts>
 #include <limits>
 
-#include "polhode/math/double_double.hpp"
+#include "polhode/math/detail/double_double.hpp"
 #include "polhode/ode/method_record.hpp"
 #include "polhode/ode/problem.hpp"
 #include "polhode/ode/series.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "polhode/math/coin.hpp"
+#include "polhode/math/detail/coin.hpp"
 #include "polhode/ode/taylor.hpp"
 
 namespace polhode::ode {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "polhode/math/sincos_unfused.hpp"
+#include "polhode/math/detail/sincos_unfused.hpp"
 #include "polhode/torque/formulas.hpp"
 #include "polhode/torque/record.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "batch/lanes/lane_state.hpp"
-#include "polhode/math/number.hpp"
+#include "polhode/math/detail/number.hpp"
 
 namespace polhode::POLHODE_ISA {
 

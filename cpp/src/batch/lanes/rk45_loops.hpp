@@ -4,8 +4,8 @@
 
 #include "batch/lanes/pass.hpp"
 #include "batch/lanes/rk45_block.hpp"
-#include "polhode/math/sincos_unfused.hpp"
-#include "polhode/ode/step_control.hpp"
+#include "polhode/math/detail/sincos_unfused.hpp"
+#include "polhode/ode/detail/step_control.hpp"
 #include "polhode/ode/tableaus/dormand_prince54.hpp"
 #include "polhode/method/euler_formulas.hpp"
 

@@ -2,7 +2,7 @@
 
 #include "batch/lanes/pass.hpp"
 #include "batch/lanes/taylor_block.hpp"
-#include "polhode/math/double_double.hpp"
+#include "polhode/math/detail/double_double.hpp"
 
 // What every set of torques shares: the step length, the sum of the series, and the corrections after a step.
 namespace polhode::POLHODE_ISA {

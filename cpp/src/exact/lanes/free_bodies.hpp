@@ -1,7 +1,7 @@
 #pragma once
 
 #include "exact/lanes/free_loops.hpp"
-#include "polhode/exact/free_setup_hyper.hpp"
+#include "polhode/exact/detail/free_setup_hyper.hpp"
 
 // Many bodies at once: their set-up also runs in lanes.
 namespace polhode::POLHODE_ISA {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "exact/lanes/grid_loops.hpp"
-#include "polhode/exact/free_kernels.hpp"
+#include "polhode/exact/detail/free_kernels.hpp"
 
 // The loops over times, for one lane type `Wide`. Each file that is built for one instruction set includes this once.
 namespace polhode::POLHODE_ISA {

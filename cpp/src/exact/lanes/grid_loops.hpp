@@ -3,9 +3,9 @@
 #include <numbers>
 
 #include "math/lanes/scalar.hpp"
-#include "polhode/exact/time_grid.hpp"
-#include "polhode/math/phase.hpp"
-#include "polhode/math/sincos.hpp"
+#include "polhode/exact/detail/time_grid.hpp"
+#include "polhode/math/detail/phase.hpp"
+#include "polhode/math/detail/sincos.hpp"
 
 // Phases on a uniform grid of times: a rotation by an angle from a table replaces a sine and a cosine.
 namespace polhode::POLHODE_ISA {

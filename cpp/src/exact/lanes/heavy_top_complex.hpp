@@ -1,8 +1,8 @@
 #pragma once
 
 #include "math/lanes/scalar.hpp"
-#include "polhode/exact/heavy_top_kernel.hpp"
-#include "polhode/math/dd_functions.hpp"
+#include "polhode/exact/detail/heavy_top_kernel.hpp"
+#include "polhode/math/detail/dd_functions.hpp"
 
 // Complex numbers in double-double, for the set-up of the top.
 namespace polhode::POLHODE_ISA {

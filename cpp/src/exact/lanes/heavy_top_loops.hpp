@@ -2,7 +2,7 @@
 
 #include "exact/lanes/grid_loops.hpp"
 #include "exact/lanes/heavy_top_setup.hpp"
-#include "polhode/exact/heavy_top_kernels.hpp"
+#include "polhode/exact/detail/heavy_top_kernels.hpp"
 
 // One top at many times, for one lane type `Wide`. Each file that is built for one instruction set includes this once.
 namespace polhode::POLHODE_ISA {

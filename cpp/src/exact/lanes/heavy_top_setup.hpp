@@ -6,7 +6,7 @@
 #include "exact/lanes/heavy_top_complex.hpp"
 #include "exact/lanes/heavy_top_enlargement.hpp"
 #include "exact/lanes/heavy_top_roots.hpp"
-#include "polhode/math/landen.hpp"
+#include "polhode/math/detail/landen.hpp"
 
 // Names follow docs/heavy_top.md: a = C w3 / A, b = p_phi / A, bt (there mu) = 2 M / A, u = cos(tilt),
 // u1 <= u <= u2 <= u3.

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "polhode/exact/free_kernels.hpp"
-#include "polhode/exact/heavy_top_kernels.hpp"
+#include "polhode/exact/detail/free_kernels.hpp"
+#include "polhode/exact/detail/heavy_top_kernels.hpp"
 
 namespace polhode::exact {
 

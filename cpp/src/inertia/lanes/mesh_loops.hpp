@@ -1,7 +1,7 @@
 #pragma once
 
 #include "inertia/lanes/levels.hpp"
-#include "polhode/math/double_double.hpp"
+#include "polhode/math/detail/double_double.hpp"
 
 // The sums over the triangles, for one lane type `Wide`. Each file that is built for one instruction set includes this
 // header once, after `nmadd(a, b, c)` = c - a b and `load_rows<last>(vertices, indices, x, y, z)` for its `Wide`.

@@ -2,7 +2,7 @@
 
 #include <immintrin.h>
 
-#include "polhode/math/double_double.hpp"
+#include "polhode/math/detail/double_double.hpp"
 
 namespace polhode::POLHODE_ISA {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "polhode/math/double_double.hpp"
+#include "polhode/math/detail/double_double.hpp"
 
 // One lane, in a namespace of the file's own: a double by another name, so that nothing compiled here for a newer
 // processor is ever an inline function of the whole program. POLHODE_ISA names that namespace.

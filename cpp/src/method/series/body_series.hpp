@@ -7,7 +7,7 @@
 
 #include "method/series/series_invariants.hpp"
 #include "method/series/series_terms.hpp"
-#include "polhode/math/double_double.hpp"
+#include "polhode/math/detail/double_double.hpp"
 #include "polhode/scene/scene.hpp"
 
 namespace polhode {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "polhode/core/state.hpp"
-#include "polhode/math/double_double.hpp"
+#include "polhode/math/detail/double_double.hpp"
 
 namespace polhode {
 

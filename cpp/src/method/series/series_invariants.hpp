@@ -1,7 +1,7 @@
 #pragma once
 
 #include "method/series/series_terms.hpp"
-#include "polhode/math/double_double.hpp"
+#include "polhode/math/detail/double_double.hpp"
 #include "polhode/scene/scene.hpp"
 
 namespace polhode {

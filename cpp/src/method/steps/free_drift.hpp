@@ -5,7 +5,7 @@
 
 #include "method/series/lanes/levels.hpp"
 #include "method/series/separatrix.hpp"
-#include "polhode/math/double_double.hpp"
+#include "polhode/math/detail/double_double.hpp"
 #include "polhode/ode/series.hpp"
 
 namespace polhode {

@@ -6,8 +6,8 @@
 #include "method/steps/magnus.hpp"
 #include "method/steps/radau_body.hpp"
 #include "method/steps/radau_system.hpp"
-#include "polhode/ode/first_step.hpp"
-#include "polhode/ode/step_control.hpp"
+#include "polhode/ode/detail/first_step.hpp"
+#include "polhode/ode/detail/step_control.hpp"
 
 namespace polhode {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "math/lanes/octet.hpp"
-#include "polhode/math/double_double.hpp"
+#include "polhode/math/detail/double_double.hpp"
 #include "polhode/ode/series.hpp"
 #include "method/series/lanes/levels.hpp"
 

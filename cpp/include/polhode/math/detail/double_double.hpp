@@ -1,6 +1,6 @@
 #pragma once
 
-#include "polhode/math/number.hpp"
+#include "polhode/math/detail/number.hpp"
 
 namespace polhode::math {
 

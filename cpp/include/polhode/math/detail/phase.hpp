@@ -1,6 +1,6 @@
 #pragma once
 
-#include "polhode/math/double_double.hpp"
+#include "polhode/math/detail/double_double.hpp"
 
 namespace polhode::math {
 

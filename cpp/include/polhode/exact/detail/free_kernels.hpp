@@ -3,8 +3,8 @@
 #include <cstddef>
 
 #include "polhode/core/simd.hpp"
-#include "polhode/exact/free_setup.hpp"
-#include "polhode/exact/time_grid.hpp"
+#include "polhode/exact/detail/free_setup.hpp"
+#include "polhode/exact/detail/time_grid.hpp"
 
 namespace polhode::exact {
 

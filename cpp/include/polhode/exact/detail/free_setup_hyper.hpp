@@ -1,7 +1,7 @@
 #pragma once
 
-#include "polhode/exact/free_setup.hpp"
-#include "polhode/math/dd_functions.hpp"
+#include "polhode/exact/detail/free_setup.hpp"
+#include "polhode/math/detail/dd_functions.hpp"
 
 namespace polhode::exact {
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "polhode/math/exp.hpp"
-#include "polhode/math/phase.hpp"
-#include "polhode/math/sincos.hpp"
+#include "polhode/math/detail/exp.hpp"
+#include "polhode/math/detail/phase.hpp"
+#include "polhode/math/detail/sincos.hpp"
 
 // Torque-free motion as theta series: the constants of one body and their evaluation at a time.
 // Working axes: a proper signed permutation of the principal axes with m3 >= 0 about the axis the motion encircles;

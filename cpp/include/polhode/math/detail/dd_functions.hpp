@@ -1,7 +1,7 @@
 #pragma once
 
-#include "polhode/math/atan2.hpp"
-#include "polhode/math/double_double.hpp"
+#include "polhode/math/detail/atan2.hpp"
+#include "polhode/math/detail/double_double.hpp"
 
 // Transcendental functions in double-double, without branches: the bodies of sincos, exp, log and atan2 for any number
 // type. Taylor series after reduction; relative error about 1e-31.

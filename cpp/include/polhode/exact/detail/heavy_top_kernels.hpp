@@ -1,8 +1,8 @@
 #pragma once
 
 #include "polhode/core/simd.hpp"
-#include "polhode/exact/heavy_top_kernel.hpp"
-#include "polhode/exact/time_grid.hpp"
+#include "polhode/exact/detail/heavy_top_kernel.hpp"
+#include "polhode/exact/detail/time_grid.hpp"
 
 namespace polhode::exact {
 

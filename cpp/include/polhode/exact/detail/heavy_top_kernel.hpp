@@ -1,9 +1,9 @@
 #pragma once
 
 #include "polhode/core/quat.hpp"
-#include "polhode/math/exp.hpp"
-#include "polhode/math/phase.hpp"
-#include "polhode/math/sincos.hpp"
+#include "polhode/math/detail/exp.hpp"
+#include "polhode/math/detail/phase.hpp"
+#include "polhode/math/detail/sincos.hpp"
 
 // Lagrange's top at one time, from precomputed constants. The Cayley-Klein parameters are quotients of theta functions
 // with two phase rates (Klein & Sommerfeld, Ueber die Theorie des Kreisels, 1897-1910, chapter 6). The derivation, with

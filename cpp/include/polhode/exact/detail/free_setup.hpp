@@ -1,8 +1,8 @@
 #pragma once
 
-#include "polhode/exact/free_series.hpp"
-#include "polhode/math/atan2.hpp"
-#include "polhode/math/landen.hpp"
+#include "polhode/exact/detail/free_series.hpp"
+#include "polhode/math/detail/atan2.hpp"
+#include "polhode/math/detail/landen.hpp"
 
 // The constants of the motion from moments and angular velocity, all in double-double: a rate known to 1e-32 keeps the
 // phase over a billion cycles. Templates over the number type, with selects in place of branches.
