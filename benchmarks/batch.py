@@ -1,15 +1,17 @@
-"""Random bodies in one call: solve_many's taylor and rk45 in lanes beside heyoka's batch mode and the loop, each with its true error.
+"""Random bodies in one call: solve_many's taylor and rk45 in lanes beside heyoka's batch mode and the loop, each with
+its true error.
 
     python benchmarks/batch.py [-n 4096] [-o results.json]
     python benchmarks/batch.py --driven        # rk45 in lanes beside solve() body by body, for every torque
 
-Free bodies: all integrate omega and attitude to 100 s on one core and are asked for the end alone. heyoka's integrator is written with
-each body's ratios as parameters and takes its recommended number of bodies at once; bodies sorted by |omega| fill its batches
-better (--sorted). Its compilation is not counted, nor is our reading of the result. Seconds are CPU time, the least of interleaved
-repeats. A body's error is the larger of the attitude's angle and omega's relative error, against the closed form (ph.free_motion).
+Free bodies: all integrate omega and attitude to 100 s on one core and are asked for the end alone. heyoka's integrator
+is written with each body's ratios as parameters and takes its recommended number of bodies at once; bodies sorted by
+|omega| fill its batches better (--sorted). Its compilation is not counted, nor is our reading of the result. Seconds
+are CPU time, the least of interleaved repeats. A body's error is the larger of the attitude's angle and omega's
+relative error, against the closed form (ph.free_motion).
 
-Driven bodies: a step's nanoseconds are those of a body, in lanes and by solve() (which gives the same bits, and has its own
-set-up and call from Python in it); errors of the median body and of all against taylor at 1e-15.
+Driven bodies: a step's nanoseconds are those of a body, in lanes and by solve() (which gives the same bits, and has its
+own set-up and call from Python in it); errors of the median body and of all against taylor at 1e-15.
 """
 
 import argparse
@@ -91,11 +93,13 @@ def run_loop(scenes, rtol):
 
 
 def compare_driven(common, bodies, repeats, in_loop=256):
-    print(f"rk45, {len(bodies[0])} bodies in lanes beside {in_loop} by solve(), {common.times[-1]:g} s; simd {ph.build_info()['simd']}")
+    print(f"rk45, {len(bodies[0])} bodies in lanes beside {in_loop} by solve(), {common.times[-1]:g} s; simd "
+          f"{ph.build_info()['simd']}")
     for name, torques in TORQUES.items():
         for want in (("omega", "attitude"), ("omega",)) if name in ("free", "damping") else (("omega", "attitude"),):
             scene = common.replace(torques=torques, want=want)
-            alone = [scene.replace(inertia=m, omega=w, attitude=q) for m, w, q in zip(*(part[:in_loop] for part in bodies), strict=True)]
+            alone = [scene.replace(inertia=m, omega=w, attitude=q)
+                     for m, w, q in zip(*(part[:in_loop] for part in bodies), strict=True)]
             _, truth = run_polhode(scene, bodies, "taylor", 1e-15)
             for rtol in (1e-4, 1e-8):
                 runs, loops = [], []
@@ -107,10 +111,14 @@ def compare_driven(common, bodies, repeats, in_loop=256):
                 if "attitude" in want:
                     found = errors(many.omega[:, 0], many.attitude[:, 0], (truth.omega[:, 0], truth.attitude[:, 0]))
                 else:
-                    found = np.linalg.norm(many.omega - truth.omega, axis=-1)[:, 0] / np.linalg.norm(truth.omega, axis=-1)[:, 0]
-                print(f"{name:12} {' '.join(want):15} rtol {rtol:g}: {many.steps.mean():6.0f} steps, lanes {lane * 1e6:8.2f} us a body, "
-                      f"{lane / many.steps.mean() * 1e9:6.1f} ns a step; loop {loop * 1e6:8.2f} us, {loop / many.steps[:in_loop].mean() * 1e9:6.1f} ns; "
-                      f"ratio {loop / lane * many.steps.mean() / many.steps[:in_loop].mean():.2f}; errors {np.median(found):.1e} {found.max():.1e}", flush=True)
+                    off = np.linalg.norm(many.omega - truth.omega, axis=-1)[:, 0]
+                    found = off / np.linalg.norm(truth.omega, axis=-1)[:, 0]
+                print(f"{name:12} {' '.join(want):15} rtol {rtol:g}: {many.steps.mean():6.0f} steps, lanes "
+                      f"{lane * 1e6:8.2f} us a body, "
+                      f"{lane / many.steps.mean() * 1e9:6.1f} ns a step; loop {loop * 1e6:8.2f} us, "
+                      f"{loop / many.steps[:in_loop].mean() * 1e9:6.1f} ns; "
+                      f"ratio {loop / lane * many.steps.mean() / many.steps[:in_loop].mean():.2f}; errors "
+                      f"{np.median(found):.1e} {found.max():.1e}", flush=True)
 
 
 def main():
@@ -119,7 +127,8 @@ def main():
     parser.add_argument("--span", type=float, help="seconds of motion: 100, driven 20, where chaos has not yet begun")
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--driven", action="store_true", help="rk45 in lanes beside solve(), for every torque")
-    parser.add_argument("--sorted", action="store_true", help="bodies by |omega|, which fills the peer's batches better")
+    parser.add_argument("--sorted", action="store_true",
+                        help="bodies by |omega|, which fills the peer's batches better")
     parser.add_argument("-o", "--output", help="write every point as JSON")
     options = parser.parse_args()
     options.span = options.span or (20.0 if options.driven else 100.0)
@@ -142,7 +151,8 @@ def main():
         peer = False
 
     points, compiled, width = {"taylor": [], "rk45": [], "heyoka": []}, 0.0, 0
-    print(f"{options.n} free bodies, {options.span:g} s; simd {ph.build_info()['simd']}; us per body, error of the median body, of 99 % and of all")
+    print(f"{options.n} free bodies, {options.span:g} s; simd {ph.build_info()['simd']}; us per body, error of the "
+          "median body, of 99 % and of all")
     for rtol in sorted({*SETTINGS, *RK45_SETTINGS}, reverse=True):
         methods = [m for m, settings in (("taylor", SETTINGS), ("rk45", RK45_SETTINGS)) if rtol in settings]
         beside = peer and rtol in SETTINGS
@@ -166,7 +176,8 @@ def main():
             if name in ours:
                 point["steps"] = float(runs[-1][1].steps.mean())
             points[name].append(point)
-            print(f"{name:8} rtol {rtol:7.1e}: {point['microseconds']:8.2f} us   {point['error_50']:.1e} {point['error_99']:.1e} {point['error_100']:.1e}",
+            print(f"{name:8} rtol {rtol:7.1e}: {point['microseconds']:8.2f} us   {point['error_50']:.1e} "
+                  f"{point['error_99']:.1e} {point['error_100']:.1e}",
                   flush=True)
     print(f"heyoka: batches of {width}, compiled in {compiled:.2f} s" if peer else "")
     for level in LEVELS:

@@ -2,9 +2,9 @@
 
     python benchmarks/chaos.py
 
-Errors against the stored truth (docs/scenes.md) until 20 s and until 60 s, beside the floor, which is what rounding of the
-inputs alone does at worst; and against heyoka's 80-bit run, which starts from the rounded inputs too: the integrator's
-own error. The 80-bit answers are rounded to double. The start's quaternion, in doubles, is unit to 9e-17.
+Errors against the stored truth (docs/scenes.md) until 20 s and until 60 s, beside the floor, which is what rounding of
+the inputs alone does at worst; and against heyoka's 80-bit run, which starts from the rounded inputs too: the
+integrator's own error. The 80-bit answers are rounded to double. The start's quaternion, in doubles, is unit to 9e-17.
 Times are the thread's CPU time, the least of repeats, all 601 samples included, without heyoka's compilation.
 """
 
@@ -37,7 +37,7 @@ def run_taylor(rtol):
 
 
 def run_heyoka(number, tolerance, normalised=False):
-    """Euler's equations and the quaternion's in numbers of a type, whose start is made unit in them or left as it is."""
+    """Euler's equations and the quaternion's in numbers of a type; their start is made unit in it or left as it is."""
     import heyoka as hy
 
     w1, w2, w3, x, y, z, w = hy.make_vars("w1", "w2", "w3", "x", "y", "z", "w")
@@ -47,7 +47,8 @@ def run_heyoka(number, tolerance, normalised=False):
     one, two, half = number(1), number(2), number(0.5)
     g = (two * (x * z - w * y), two * (y * z + w * x), one - two * (x * x + y * y))
     tau = [m[2] * g[1] - m[1] * g[2], m[0] * g[2] - m[2] * g[0], m[1] * g[0] - m[0] * g[1]]
-    system = [(w1, ((b - c) * w2 * w3 + tau[0]) / a), (w2, ((c - a) * w3 * w1 + tau[1]) / b), (w3, ((a - b) * w1 * w2 + tau[2]) / c),
+    system = [(w1, ((b - c) * w2 * w3 + tau[0]) / a), (w2, ((c - a) * w3 * w1 + tau[1]) / b),
+              (w3, ((a - b) * w1 * w2 + tau[2]) / c),
               (x, half * (w * w1 + y * w3 - z * w2)), (y, half * (w * w2 + z * w1 - x * w3)),
               (z, half * (w * w3 + x * w2 - y * w1)), (w, -half * (x * w1 + y * w2 + z * w3))]
     start = np.array([*OMEGA, *parts["attitude"]], dtype=number)
@@ -100,7 +101,8 @@ def main():
                 own = dict(zip(("omega", "attitude"), until(span, rounded), strict=True))
                 cells += f"{error(*found, own):10.1e}"
         print(f"{name:30}{cells}{1e6 * seconds[name]:9.0f} us")
-    print(f"{'floor, by rounded inputs':30}" + "".join(f"{floors['until'][f'{span:.0f}']:16.1e}{'':10}" for span in SPANS))
+    print(f"{'floor, by rounded inputs':30}" + "".join(f"{floors['until'][f'{span:.0f}']:16.1e}{'':10}"
+                                                       for span in SPANS))
 
 
 if __name__ == "__main__":

@@ -2,9 +2,9 @@
 
     polhode chart scenes/*.toml -o results --budget 240s && python benchmarks/docs_results.py results
 
-Writes docs/results/charts.json (every point, to three digits), docs/results/charts.md (tables made from that file) and the
-pictures docs/pictures/overview.svg, limits.svg and those of some scenes. The charts of a report (its folder `charts`) serve too.
-`--tables` makes the tables anew from the file that is there.
+Writes docs/results/charts.json (every point, to three digits), docs/results/charts.md (tables made from that file) and
+the pictures docs/pictures/overview.svg, limits.svg and those of some scenes. The charts of a report (its folder
+`charts`) serve too. `--tables` makes the tables anew from the file that is there.
 """
 
 import json
@@ -26,8 +26,10 @@ def page(content):
     versions = ", ".join(f"{name} {version}" for name, version in content["versions"].items())
     parts = [
         "# Results of the charts",
-        "Made by `polhode chart` and `python benchmarks/docs_results.py`; every number is from [charts.json](charts.json).",
-        f"{machine['processor']}, {machine['cores']} cores, compiler {content['polhode']['compiler']}, simd {content['polhode']['simd']}, "
+        "Made by `polhode chart` and `python benchmarks/docs_results.py`; every number is from "
+        "[charts.json](charts.json).",
+        f"{machine['processor']}, {machine['cores']} cores, compiler {content['polhode']['compiler']}, simd "
+        f"{content['polhode']['simd']}, "
         f"Python {machine['python']}. {versions}.",
         f"What is measured: {content['measure']}.",
         "## The fastest at each error",

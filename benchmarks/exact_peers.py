@@ -2,10 +2,11 @@
 
     python benchmarks/exact_peers.py [-o results.json]
 
-polhode: the call from Python with the set-up included. heyoka: its best error (tolerance 2.3e-16), compilation not counted
-but printed. SciPy: DOP853 at rtol 2.3e-14 with a right-hand side in plain floats, its best. Times are medians of interleaved
-repeats of the thread's CPU time, all samples included; SciPy runs once. Orekit's TorqueFree (S1 to S3) runs in a JVM of
-its own where java and the package orekit-jpype are there (its jars alone are used): the least of 500 runs by the clock.
+polhode: the call from Python with the set-up included. heyoka: its best error (tolerance 2.3e-16), compilation not
+counted but printed. SciPy: DOP853 at rtol 2.3e-14 with a right-hand side in plain floats, its best. Times are medians
+of interleaved repeats of the thread's CPU time, all samples included; SciPy runs once. Orekit's TorqueFree (S1 to S3)
+runs in a JVM of its own where java and the package orekit-jpype are there (its jars alone are used): the least of 500
+runs by the clock.
 """
 
 import argparse
@@ -39,8 +40,10 @@ def derivative(name, y):
     i, j, k = PARTS[name]["inertia"]
     a, b, c, x, y_, z, w = y
     weight = 2.0 if name == "S4" else 0.0
-    return [((j - k) * b * c + weight * 2 * (y_ * z + w * x)) / i, ((k - i) * c * a - weight * 2 * (x * z - w * y_)) / j,
-            (i - j) / k * a * b, (w * a + y_ * c - z * b) / 2, (w * b + z * a - x * c) / 2, (w * c + x * b - y_ * a) / 2,
+    return [((j - k) * b * c + weight * 2 * (y_ * z + w * x)) / i,
+            ((k - i) * c * a - weight * 2 * (x * z - w * y_)) / j,
+            (i - j) / k * a * b, (w * a + y_ * c - z * b) / 2, (w * b + z * a - x * c) / 2,
+            (w * c + x * b - y_ * a) / 2,
             -(x * a + y_ * b + z * c) / 2]
 
 
@@ -53,7 +56,8 @@ def make_heyoka(name):
 
     variables = hy.make_vars("a", "b", "c", "x", "y", "z", "w")
     begin = time.perf_counter()
-    solver = hy.taylor_adaptive(list(zip(variables, derivative(name, variables), strict=True)), start(name), tol=2.3e-16)
+    solver = hy.taylor_adaptive(list(zip(variables, derivative(name, variables), strict=True)), start(name),
+                                tol=2.3e-16)
     print(f"{name}: heyoka compiled in {time.perf_counter() - begin:.2f} s", flush=True)
 
     def run(times):
@@ -67,7 +71,8 @@ def make_heyoka(name):
 def by_scipy(name, times):
     from scipy.integrate import solve_ivp
 
-    y = solve_ivp(lambda t, y: derivative(name, y), (0, times[-1]), start(name), "DOP853", times, rtol=2.3e-14, atol=1e-16).y.T
+    y = solve_ivp(lambda t, y: derivative(name, y), (0, times[-1]), start(name), "DOP853", times, rtol=2.3e-14,
+                  atol=1e-16).y.T
     return y[:, :3], y[:, 3:] / np.linalg.norm(y[:, 3:], axis=1)[:, None]
 
 
@@ -88,7 +93,7 @@ def by_orekit(name, times):
 
 
 def clock(run, times, least=2e-3):
-    """Seconds of one run, the mean over as many in a row as take `least` seconds: nobody starts with another's cache."""
+    """Seconds of one run, the mean of as many in a row as take `least` seconds: nobody starts with another's cache."""
     answer, count = run(times), 0
     begin = now = time.thread_time()
     while count == 0 or now - begin < least:
@@ -125,9 +130,11 @@ def main():
         results["scenes"][name] = {}
         for label, answer in answers.items():
             middle = statistics.median(seconds[label])
-            point = {"seconds": middle, "per_state": middle / times.size, "error": error(*answer, reference), "ratio": middle / ours}
+            point = {"seconds": middle, "per_state": middle / times.size, "error": error(*answer, reference),
+                     "ratio": middle / ours}
             results["scenes"][name][label] = point
-            print(f"{name}  {label:18}{middle * 1e6:12.1f} us  {point['per_state'] * 1e9:10.1f} ns a state  error {point['error']:.1e}"
+            print(f"{name}  {label:18}{middle * 1e6:12.1f} us  {point['per_state'] * 1e9:10.1f} ns a state  error "
+                  f"{point['error']:.1e}"
                   f"  x{point['ratio']:.0f}", flush=True)
     if options.output:
         pathlib.Path(options.output).write_text(json.dumps(results, indent=1) + "\n")

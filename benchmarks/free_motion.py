@@ -1,5 +1,5 @@
-"""The closed forms from Python: what each job costs, with its error and its goal beside. Each instruction set runs in its
-own process.
+"""The closed forms from Python: what each job costs, with its error and its goal beside. Each instruction set runs in
+its own process.
 
     python benchmarks/free_motion.py            # one core
     python benchmarks/free_motion.py --threads  # and two threads against one on 100 000 x 500 states (2.8 GB)
@@ -107,7 +107,8 @@ def measure():
     samples = np.linspace(0, 1000, 1001)
     cost["S1's 1001 samples, call and set-up [us]"] = best(lambda: ph.FreeMotion(*GENERIC).at(samples), 300) / 1e3
     motion = ph.FreeMotion(*GENERIC)
-    for name, work in ((".at(float) [us]", lambda: motion.at(1.5)), ("FreeMotion(...) [us]", lambda: ph.FreeMotion(*GENERIC)),
+    for name, work in ((".at(float) [us]", lambda: motion.at(1.5)),
+                       ("FreeMotion(...) [us]", lambda: ph.FreeMotion(*GENERIC)),
                        ("HeavyTop(...) [us]", lambda: ph.HeavyTop(*TOP))):
         cost[name] = best(lambda work=work: [work() for _ in range(100)], 100) / 1e5
     far = np.linspace(0, 1000, 4096)
@@ -129,7 +130,8 @@ def two_threads():
             processor[threads].append((time.process_time() - spent) / 5e-2)
     (one, two), (alone, both) = ([min(found[k]) for k in (1, 2)] for found in (wall, processor))
     print(f"outer grid 100 000 x 500, ns a state: by the clock {one:.2f} with one thread, {two:.2f} with two, "
-          f"{one / two:.2f} times faster (goal 1.7); processor time {alone:.2f} and {both:.2f}, so {2 * alone / both:.2f} "
+          f"{one / two:.2f} times faster (goal 1.7); processor time {alone:.2f} and {both:.2f}, so "
+          f"{2 * alone / both:.2f} "
           f"times on idle cores; load {os.getloadavg()[0]:.1f}")
 
 
@@ -158,7 +160,8 @@ def main():
         print(line)
     for level, answer in found.items():
         table, free, top = answer["errors"]
-        print(f"{level}: largest error over the stored table {table:.1e}; a grid from single times {free:.1e}, top {top:.1e}")
+        print(f"{level}: largest error over the stored table {table:.1e}; a grid from single times {free:.1e}, top "
+              f"{top:.1e}")
 
 
 if __name__ == "__main__":

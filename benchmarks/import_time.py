@@ -2,7 +2,8 @@
 
     python benchmarks/import_time.py [--repeat 21]
 
-NumPy is imported first, so polhode's line is what it adds. On a busy machine the processor's time tells more than the clock.
+NumPy is imported first, so polhode's line is what it adds. On a busy machine the processor's time tells more than the
+clock.
 """
 
 import argparse
@@ -36,7 +37,8 @@ def main():
     print(f"{'import':8} {'clock: median':>14} {'least':>6} {'processor: median':>18} {'least':>6}   [ms]")
     columns = list(zip(*runs))
     for name, clock, processor in (("numpy", *columns[:2]), ("polhode", *columns[2:])):
-        print(f"{name:8} {statistics.median(clock):14.1f} {min(clock):6.1f} {statistics.median(processor):18.1f} {min(processor):6.1f}")
+        print(f"{name:8} {statistics.median(clock):14.1f} {min(clock):6.1f} {statistics.median(processor):18.1f} "
+              f"{min(processor):6.1f}")
 
 
 if __name__ == "__main__":

@@ -2,8 +2,8 @@
 
     python benchmarks/inertia.py [--count 1000000] [--repeat 5]
 
-Times are the best of the repeats, one thread, arrays in memory. Errors are the worst over a sample, against mpmath in 50
-digits for the moments; the residual is |I V - V diag(moments)|, all as a part of the largest moment.
+Times are the best of the repeats, one thread, arrays in memory. Errors are the worst over a sample, against mpmath in
+50 digits for the moments; the residual is |I V - V diag(moments)|, all as a part of the largest moment.
 """
 
 import argparse

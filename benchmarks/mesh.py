@@ -2,9 +2,10 @@
 
     python benchmarks/mesh.py [--faces 1000000] [--repeat 5]
 
-A potato of triangles, near the origin and a thousand and a million of its sizes away. Times are the thread's own, the best
-of interleaved repeats, arrays in memory. Errors are those of the volume and of the moments about the centre, as a part of
-the largest, against sums in 80-bit numbers over the same triangles seen from nearby (their own error is below 1e-17).
+A potato of triangles, near the origin and a thousand and a million of its sizes away. Times are the thread's own, the
+best of interleaved repeats, arrays in memory. Errors are those of the volume and of the moments about the centre, as a
+part of the largest, against sums in 80-bit numbers over the same triangles seen from nearby (their own error is below
+1e-17).
 """
 
 import argparse
@@ -46,7 +47,10 @@ def reference(vertices, faces):
     s = a + b + c
     volume = d.sum() / 6
     centre = (d[:, None] * s).sum(axis=0) / 24 / volume
-    second = np.array([[(d * (a[:, i] * a[:, j] + b[:, i] * b[:, j] + c[:, i] * c[:, j] + s[:, i] * s[:, j])).sum() / 120
+    def moment(i, j):
+        return (d * (a[:, i] * a[:, j] + b[:, i] * b[:, j] + c[:, i] * c[:, j] + s[:, i] * s[:, j])).sum() / 120
+
+    second = np.array([[moment(i, j)
                         - volume * centre[i] * centre[j] for j in range(3)] for i in range(3)])
     return volume, np.trace(second) * np.eye(3) - second
 

@@ -2,10 +2,10 @@
 
     python benchmarks/racket.py
 
-The homework's block (0.20, 0.40, 0.52) is thrown at omega = (e, 5, e) rad/s and followed for 200 s, for e from 1 to 1e-15.
-Truth: the closed form of tests/reference with mpmath at 110 digits, at 41 times. Every solver runs at the tightest setting
-that its makers document or accept. A peer that is not installed is named as missing. Writes benchmarks/results/racket.json
-and docs/pictures/racket.svg and .png.
+The homework's block (0.20, 0.40, 0.52) is thrown at omega = (e, 5, e) rad/s and followed for 200 s, for e from 1 to
+1e-15. Truth: the closed form of tests/reference with mpmath at 110 digits, at 41 times. Every solver runs at the
+tightest setting that its makers document or accept. A peer that is not installed is named as missing. Writes
+benchmarks/results/racket.json and docs/pictures/racket.svg and .png.
 """
 
 import json
@@ -21,7 +21,7 @@ from measures import attitude_error, rates_error  # noqa: E402
 from mpmath import mp  # noqa: E402
 
 import polhode as ph  # noqa: E402
-from polhode.charts import style  # noqa: E402
+from polhode._plot import style  # noqa: E402
 
 BLOCK = (0.20, 0.40, 0.52)
 TIMES = np.linspace(0, 200, 41)
@@ -57,7 +57,8 @@ def by_heyoka(omega, _cache=[]):  # noqa: B006 one compiled integrator serves al
 
     if not _cache:
         variables = hy.make_vars("a", "b", "c", "x", "y", "z", "w")
-        _cache.append(hy.taylor_adaptive(list(zip(variables, derivative(0, variables), strict=True)), [*omega, *IDENTITY], tol=2.3e-16))
+        _cache.append(hy.taylor_adaptive(list(zip(variables, derivative(0, variables), strict=True)),
+                                         [*omega, *IDENTITY], tol=2.3e-16))
     solver = _cache[0]
     solver.time, solver.state[:] = 0.0, [*omega, *IDENTITY]
     y = solver.propagate_grid(TIMES)[-1]
@@ -75,13 +76,16 @@ def by_ellipj(omega):
         return None
     m = (j - i) * (energy * k - momentum) / ((k - j) * (momentum - energy * i))
     rate = np.sqrt((k - j) * (momentum - energy * i) / (i * j * k))
-    amplitude = np.arctan2(b / np.sqrt((energy * k - momentum) / (j * (k - j))), a / np.sqrt((energy * k - momentum) / (i * (k - i))))
+    amplitude = np.arctan2(b / np.sqrt((energy * k - momentum) / (j * (k - j))),
+                           a / np.sqrt((energy * k - momentum) / (i * (k - i))))
     sn, cn, dn, _ = ellipj(rate * TIMES + ellipkinc(amplitude, m), m)
-    return np.stack([np.sqrt((energy * k - momentum) / (i * (k - i))) * cn, np.sqrt((energy * k - momentum) / (j * (k - j))) * sn,
+    return np.stack([np.sqrt((energy * k - momentum) / (i * (k - i))) * cn,
+                     np.sqrt((energy * k - momentum) / (j * (k - j))) * sn,
                      np.sqrt((momentum - energy * i) / (k * (k - i))) * dn], axis=1), None
 
 
-SOLVERS = {"polhode, closed form": by_polhode, "polhode, rk45": by_rk45, "SciPy DOP853": by_scipy, "heyoka, Taylor": by_heyoka,
+SOLVERS = {"polhode, closed form": by_polhode, "polhode, rk45": by_rk45, "SciPy DOP853": by_scipy,
+           "heyoka, Taylor": by_heyoka,
            "textbook form, SciPy's ellipj": by_ellipj}
 
 
@@ -109,13 +113,15 @@ def measure():
                 if q is not None:
                     worst = max(worst, attitude_error(q / np.linalg.norm(q, axis=1)[:, None], attitude))
             results["errors"][name].append(float(worst) if np.isfinite(worst) else None)
-        print(f"{e:8.0e}  " + "  ".join(f"{name}: {errors[-1]:.1e}" if errors and errors[-1] is not None else f"{name}: -"
+        print(f"{e:8.0e}  " + "  ".join(f"{name}: {errors[-1]:.1e}" if errors
+                                        and errors[-1] is not None else f"{name}: -"
                                         for name, errors in results["errors"].items()), flush=True)
     return results
 
 
 COLOURS = {"polhode, closed form": style.colour("FreeMotion"), "polhode, rk45": style.colour("rk45"),
-           "SciPy DOP853": style.colour("SciPy DOP853"), "heyoka, Taylor": "#8c6bb1", "textbook form, SciPy's ellipj": "#a6761d"}
+           "SciPy DOP853": style.colour("SciPy DOP853"), "heyoka, Taylor": "#8c6bb1",
+           "textbook form, SciPy's ellipj": "#a6761d"}
 
 
 def draw(results):
@@ -128,15 +134,19 @@ def draw(results):
             if not points:
                 continue
             ours = name == "polhode, closed form"
-            axes.plot(*zip(*points, strict=True), color=COLOURS[name], marker="D" if ours else "o", markersize=6 if ours else 4,
-                      linewidth=2.4 if ours else 1.6, label=name, zorder=5 if ours else 3, markeredgecolor="white", markeredgewidth=0.6)
-        axes.set(xscale="log", yscale="log", xlim=(2, 5e-16), ylim=(2e-17, 30), xlabel="closeness e to the separatrix: thrown at (e, 5, e) rad/s",
+            axes.plot(*zip(*points, strict=True), color=COLOURS[name], marker="D" if ours else "o",
+                      markersize=6 if ours else 4,
+                      linewidth=2.4 if ours else 1.6, label=name, zorder=5 if ours else 3, markeredgecolor="white",
+                      markeredgewidth=0.6)
+        axes.set(xscale="log", yscale="log", xlim=(2, 5e-16), ylim=(2e-17, 30),
+                 xlabel="closeness e to the separatrix: thrown at (e, 5, e) rad/s",
                  ylabel="error after up to 200 s")
         axes.axhline(np.pi, color=style.FLOOR, linewidth=0.8)
         axes.text(1.4, 4.5, "upside down", color=style.QUIET, fontsize=8.5)
         axes.legend(frameon=False, loc="center right", bbox_to_anchor=(1.0, 0.42), fontsize=9)
         style.heading(figure, "The racket: every stepper loses it, the closed form does not",
-                      "Block (0.20, 0.40, 0.52) kg m², error of rates and attitude against 110 digits; every solver at its tightest setting",
+                      "Block (0.20, 0.40, 0.52) kg m², error of rates and attitude against 110 digits; every solver at "
+                      "its tightest setting",
                       0.09)
         paths = style.save(figure, folder, "racket")
         plt.close(figure)

@@ -40,7 +40,8 @@ def build_odeint(flags):
         return None
     path = pathlib.Path(tempfile.mkdtemp()) / "odeint.so"
     source = ROOT / "benchmarks/peers/odeint.cpp"
-    subprocess.run(["g++", "-O3", *flags, "-std=c++20", "-shared", "-fPIC", "-w", str(source), "-o", str(path)], check=True)
+    subprocess.run(["g++", "-O3", *flags, "-std=c++20", "-shared", "-fPIC", "-w", str(source), "-o", str(path)],
+                   check=True)
     library = ctypes.CDLL(str(path))
     library.run_odeint.restype = ctypes.c_double
     return library
@@ -56,7 +57,8 @@ def run_odeint(library, name, rtol):
     parts = PARTS[name]
     times = parts["times"]
     out = np.empty((times.size, 7))
-    keep = [array(v) for v in (parts["inertia"], parameters, [*parts["omega"], *parts.get("attitude", (0, 0, 0, 1))], times)]
+    keep = [array(v) for v in (parts["inertia"], parameters, [*parts["omega"], *parts.get("attitude", (0, 0, 0, 1))],
+                               times)]
     seconds = library.run_odeint(kind, keep[0][1], keep[1][1], keep[2][1], keep[3][1], ctypes.c_long(times.size),
                                  ctypes.c_double(rtol), out.ctypes.data_as(ctypes.c_void_p))
     return seconds, out[:, :3], out[:, 3:]
@@ -93,7 +95,8 @@ def derivative(name):
         rates = (tau - np.cross(omega, inertia * omega)) / inertia
         x, y, z, w = q
         a, b, c = 0.5 * omega
-        return np.array([*rates, w * a + y * c - z * b, w * b + z * a - x * c, w * c + x * b - y * a, -(x * a + y * b + z * c)])
+        return np.array([*rates, w * a + y * c - z * b, w * b + z * a - x * c, w * c + x * b - y * a,
+                         -(x * a + y * b + z * c)])
 
     return f
 
@@ -104,7 +107,8 @@ def run_scipy(name, rtol):
     parts = PARTS[name]
     start = np.array([*parts["omega"], *parts.get("attitude", (0, 0, 0, 1))], float)
     begin = time.thread_time()
-    solution = solve_ivp(derivative(name), (0, parts["times"][-1]), start, method="RK45", t_eval=parts["times"], rtol=rtol,
+    solution = solve_ivp(derivative(name), (0, parts["times"][-1]), start, method="RK45", t_eval=parts["times"],
+                         rtol=rtol,
                          atol=rtol * 1e-3)
     seconds = time.thread_time() - begin
     q = solution.y[3:].T
@@ -128,7 +132,8 @@ def main():
     options = parser.parse_args()
     libraries = {"odeint": build_odeint([]), "odeint native": build_odeint(["-march=native"])}
     results = {"machine": platform.processor() or platform.machine(), "polhode": ph.build_info(), "scenes": {}}
-    print(f"{'scene':6}{'error':>10}{'polhode':>12}{'odeint':>12}{'ratio':>8}{'native':>12}{'ratio':>8}{'SciPy':>12}{'ratio':>8}")
+    heads = "".join(f"{head:>12}{'ratio':>8}" for head in ("odeint", "native", "SciPy"))
+    print(f"{'scene':6}{'error':>10}{'polhode':>12}{heads}")
     for name in SCENES:
         one, reference = scene(name), truth(name)
         runs = {"polhode": lambda rtol, one=one: run_polhode(one, rtol)}
@@ -161,7 +166,8 @@ def main():
             row = f"{name:6}{level:10.1e}{ours * 1e6:9.0f} us"
             for label in ("odeint", "odeint native", "scipy"):
                 known = label in points and (label != "scipy" or level in levels)
-                row += f"{time_at(points[label], level) * 1e6:9.0f} us{time_at(points[label], level) / ours:8.2f}" if known else f"{'-':>12}{'-':>8}"
+                theirs = time_at(points[label], level) if known else 0.0
+                row += f"{theirs * 1e6:9.0f} us{theirs / ours:8.2f}" if known else f"{'-':>12}{'-':>8}"
             print(row, flush=True)
     if options.output:
         pathlib.Path(options.output).write_text(json.dumps(results, indent=1))

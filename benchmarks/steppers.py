@@ -44,7 +44,8 @@ def sweep(one, reference, taking_part):
             except Exception as why:
                 points.setdefault(candidate.name, []).append([label, str(why), None, None])
                 break
-            point = [label, error(answer.omega, answer.attitude, reference), seconds, lambda run=run, value=value: run(value, None)]
+            point = [label, error(answer.omega, answer.attitude, reference), seconds,
+                     lambda run=run, value=value: run(value, None)]
             points.setdefault(candidate.name, []).append(point)
             if seconds > LONGEST:
                 break
@@ -82,13 +83,14 @@ def least(function, repeats=9):
 
 
 def show_calls():
-    """The same torque built in, compiled and in Python: the difference for each right-hand side, and what is the callable's."""
+    """The same torque built in, compiled and in Python: the difference a right-hand side, and the callable's part."""
     values, methods = (0.01, -0.02, 0.03), {"dop853": 1e-12, "rk45": 1e-9}
     built_in = ph.torques.Constant(values)
 
     def extra(torque, repeats=25):
         """Seconds a right-hand side beyond the torque that is built in, by method; interleaved."""
-        one, other = (ph.Scene(inertia=(0.2, 0.4, 0.52), omega=(1, 2, 3), torques=[t], times=[0.0, 100.0]) for t in (torque, built_in))
+        one, other = (ph.Scene(inertia=(0.2, 0.4, 0.52), omega=(1, 2, 3), torques=[t], times=[0.0, 100.0])
+                      for t in (torque, built_in))
         best = {}
         for method, rtol in methods.items():
             cost = [np.inf, np.inf]
@@ -106,7 +108,8 @@ def show_calls():
 
     def show(name, torque, own):
         for method, seconds in extra(torque).items():
-            print(f"{name}, {method}: {1e9 * seconds:.1f} ns a call, {1e9 * own:.1f} of them its own, {1e9 * (seconds - own):.1f} ours")
+            print(f"{name}, {method}: {1e9 * seconds:.1f} ns a call, {1e9 * own:.1f} of them its own, "
+                  f"{1e9 * (seconds - own):.1f} ours")
 
     own = least(lambda: [python(0.0, None, None) for _ in range(100_000)])[0] / 1e5
     show("Python callable", ph.torques.Custom(python), own)
@@ -146,7 +149,8 @@ def main():
     results = {"polhode": ph.build_info(), "scenes": {}}
     for name in options.scenes:
         one = ph.Scene.load(name)
-        taking_part = [c for c in candidates(with_peers=not options.no_peers) if c.family in ("method", "peer") and not c.refuses(one)]
+        taking_part = [c for c in candidates(with_peers=not options.no_peers) if c.family in ("method", "peer")
+                       and not c.refuses(one)]
         results["scenes"][name] = sweep(one, truth(name), taking_part)
         show(name, results["scenes"][name])
     if options.output:

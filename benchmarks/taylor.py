@@ -42,15 +42,18 @@ def make_heyoka(name):
         elif kind == "GravityGradient":
             n = torque.mean_motion
             ct, st = hy.cos(n * hy.time), hy.sin(n * hy.time)
-            u = (ct * (1 - 2 * (y * y + z * z)) + st * 2 * (x * y + w * z), ct * 2 * (x * y - w * z) + st * (1 - 2 * (x * x + z * z)),
+            u = (ct * (1 - 2 * (y * y + z * z)) + st * 2 * (x * y + w * z),
+                 ct * 2 * (x * y - w * z) + st * (1 - 2 * (x * x + z * z)),
                  ct * 2 * (x * z + w * y) + st * 2 * (y * z - w * x))
-            tau = [3 * n * n * (c - b) * u[1] * u[2], 3 * n * n * (a - c) * u[2] * u[0], 3 * n * n * (b - a) * u[0] * u[1]]
+            tau = [3 * n * n * (c - b) * u[1] * u[2], 3 * n * n * (a - c) * u[2] * u[0],
+                   3 * n * n * (b - a) * u[0] * u[1]]
         elif kind == "Constant":
             tau = list(torque.torque)
         elif kind == "Damping":
             d = np.diag(torque.matrix)
             tau = [-d[0] * w1, -d[1] * w2, -d[2] * w3]
-    system = [(w1, ((b - c) * w2 * w3 + tau[0]) / a), (w2, ((c - a) * w3 * w1 + tau[1]) / b), (w3, ((a - b) * w1 * w2 + tau[2]) / c),
+    system = [(w1, ((b - c) * w2 * w3 + tau[0]) / a), (w2, ((c - a) * w3 * w1 + tau[1]) / b),
+              (w3, ((a - b) * w1 * w2 + tau[2]) / c),
               (x, 0.5 * (w * w1 + y * w3 - z * w2)), (y, 0.5 * (w * w2 + z * w1 - x * w3)),
               (z, 0.5 * (w * w3 + x * w2 - y * w1)), (w, -0.5 * (x * w1 + y * w2 + z * w3))]
     start = [*(float(v) for v in parts["omega"]), *(float(v) for v in parts.get("attitude", (0, 0, 0, 1)))]
@@ -97,7 +100,8 @@ def main():
         print("heyoka is not installed: pip install heyoka")
         peer = False
     results = {"polhode": ph.build_info(), "scenes": {}}
-    print(f"{'scene':6}{'error':>8}{'taylor, Python call':>22}{'in C++':>12}{'heyoka':>12}{'ratio':>8}   (compiled in s)")
+    print(f"{'scene':6}{'error':>8}{'taylor, Python call':>22}{'in C++':>12}{'heyoka':>12}{'ratio':>8}   (compiled in "
+          "s)")
     for name in options.scenes or PARTS:
         one, reference = scene(name), truth(name)
         points = {"taylor": [], "heyoka": []}
@@ -114,17 +118,20 @@ def main():
                 ours.append(run_polhode(one, tolerance))
                 if integrator is not None:
                     theirs.append(run(integrator))
-            points["taylor"].append({"rtol": float(tolerance), "seconds": min(r[0] for r in ours), "inside": min(r[3] for r in ours),
+            points["taylor"].append({"rtol": float(tolerance), "seconds": min(r[0] for r in ours),
+                                     "inside": min(r[3] for r in ours),
                                      "error": error(ours[-1][1], ours[-1][2], reference)})
             if theirs:
                 points["heyoka"].append({"rtol": float(tolerance), "seconds": min(r[0] for r in theirs),
                                          "error": error(theirs[-1][1], theirs[-1][2], reference)})
         results["scenes"][name] = points
         for level in LEVELS:
-            a, c, b = cheapest(points["taylor"], level), cheapest(points["taylor"], level, "inside"), cheapest(points["heyoka"], level)
+            a, c, b = cheapest(points["taylor"], level), cheapest(points["taylor"], level,
+                                                                  "inside"), cheapest(points["heyoka"], level)
             texts = [f"{v * 1e6:.0f} us" if v else "never" for v in (a, c, b)]
             ratio = f"{b / c:.2f}" if b and c else "-"
-            print(f"{name:6}{level:8.0e}{texts[0]:>22}{texts[1]:>12}{texts[2]:>12}{ratio:>8}   ({compiled:.2f})", flush=True)
+            print(f"{name:6}{level:8.0e}{texts[0]:>22}{texts[1]:>12}{texts[2]:>12}{ratio:>8}   ({compiled:.2f})",
+                  flush=True)
     if options.output:
         pathlib.Path(options.output).write_text(json.dumps(results, indent=1))
 

@@ -1,11 +1,13 @@
-"""Four ways to bound the error of a stepped motion, side by side on the scenes of family.py (free and stiff ones left out).
+"""Four ways to bound the error of a stepped motion, side by side on the scenes of family.py (free and stiff ones left
+out).
 
 Run: python benchmarks/planner/certificates.py [scenes] [--seed 3]
 
-carried: what solve() does with taylor, a linearised error that goes along with the run. pair: two runs, the coarser one with
-moved inputs. loose twin: one run, and one at a hundred times its tolerance, whose difference over 33 counts. margin: one run
-at a fifth of the forecast tolerance, for the scenes in which nothing is fed back from the attitude and nothing checked.
-All of them take taylor, begin at the same tolerance and are made again, tighter, while they claim more than is asked.
+carried: what solve() does with taylor, a linearised error that goes along with the run. pair: two runs, the coarser one
+with moved inputs. loose twin: one run, and one at a hundred times its tolerance, whose difference over 33 counts.
+margin: one run at a fifth of the forecast tolerance, for the scenes in which nothing is fed back from the attitude and
+nothing checked. All of them take taylor, begin at the same tolerance and are made again, tighter, while they claim more
+than is asked.
 """
 
 import argparse
@@ -48,7 +50,8 @@ def moved(scene):
 
 
 def apart(a, b):
-    return error(a, (0, b.omega if b.omega is not None else a.omega, b.attitude if b.attitude is not None else a.attitude))
+    return error(a, (0, b.omega if b.omega is not None else a.omega,
+                     b.attitude if b.attitude is not None else a.attitude))
 
 
 def pair(scene, accuracy, rtol, ratio=5, scale=1.5):
@@ -104,8 +107,10 @@ def main():
         false = claims & (found > accuracy)
         ratio = (claim / found)[claims & (found > 0)]
         worst = f", the worst by {(found / accuracy)[false].max():.2g}" if false.any() else ""
-        print(f"{name:10}: claims {claims.sum()} of {len(kept)}, false {false.sum()}{worst}; refused though within {(~claims & (found <= accuracy)).sum()}; "
-              f"claimed over true 1 ... 100 in {100 * np.mean((ratio >= 1) & (ratio <= 100)):.1f} %, median {np.median(ratio):.2g}; "
+        print(f"{name:10}: claims {claims.sum()} of {len(kept)}, false {false.sum()}{worst}; refused though within "
+              f"{(~claims & (found <= accuracy)).sum()}; "
+              f"claimed over true 1 ... 100 in {100 * np.mean((ratio >= 1) & (ratio <= 100)):.1f} %, median "
+              f"{np.median(ratio):.2g}; "
               f"regret median {np.nanmedian(regret[claims]):.2f}, q95 {np.nanquantile(regret[claims], .95):.2f}")
 
 

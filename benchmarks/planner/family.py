@@ -1,8 +1,8 @@
 """Random scenes for the planner: bodies, starts, torques, spans and accuracies over several decades, seeds fixed.
 
-A body is a solid box of unit mass with half sides 10^U(-1, 0); |omega| = 10^U(-1, 1), every direction and attitude alike;
-10^U(0, 2.5) turns at the start's rate; up to 1002 even samples. Half of the damped scenes have one axis damped 10^U(2, 5)
-times as much (class "stiff").
+A body is a solid box of unit mass with half sides 10^U(-1, 0); |omega| = 10^U(-1, 1), every direction and attitude
+alike; 10^U(0, 2.5) turns at the start's rate; up to 1002 even samples. Half of the damped scenes have one axis damped
+10^U(2, 5) times as much (class "stiff").
 """
 
 import ctypes
@@ -70,7 +70,8 @@ def draw(rng):
     want = ("omega", "attitude") if rng.uniform() < 0.7 else ("omega",)
     scene = ph.Scene(inertia=moments, omega=omega, attitude=attitude, torques=torques, want=want,
                      times=np.linspace(0, span, count), name=kind)
-    numbers = np.concatenate([moments, omega, scene.attitude, constant, moment, [mean_motion], np.diag(damping).ravel()])
+    numbers = np.concatenate([moments, omega, scene.attitude, constant, moment, [mean_motion],
+                              np.diag(damping).ravel()])
     return Drawn(kind, scene, accuracy, numbers)
 
 
@@ -106,6 +107,7 @@ def error(motion, truth):
     if motion.omega is not None:
         found.append(np.linalg.norm(motion.omega - omega, axis=1).max() / np.linalg.norm(omega, axis=1).max())
     if motion.attitude is not None:
-        near = np.minimum(np.linalg.norm(motion.attitude - attitude, axis=1), np.linalg.norm(motion.attitude + attitude, axis=1))
+        near = np.minimum(np.linalg.norm(motion.attitude - attitude, axis=1),
+                          np.linalg.norm(motion.attitude + attitude, axis=1))
         found.append(4 * np.arcsin(np.minimum(1, near.max() / 2)))
     return float(max(found))

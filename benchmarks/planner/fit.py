@@ -1,4 +1,7 @@
-"""Fit the forecasts of the methods' records: steps, errors and seconds on random scenes. Run: python benchmarks/planner/fit.py"""
+"""Fit the forecasts of the methods' records: steps, errors and seconds on random scenes.
+
+Run: python benchmarks/planner/fit.py
+"""
 
 import sys
 import time
@@ -44,9 +47,12 @@ def main(count=60):
             pick = small & (kind == k) & (rtol > 1e-11)
             if pick.any():
                 scaled = found[pick] / (rtol[pick] * turns[pick] * (1 + turns[pick] / 30))
-                print(f"  {label}: error / (rtol n (1 + n/30)): " + ", ".join(f"q{q} {np.quantile(scaled, q / 100):.2g}" for q in (5, 25, 50, 75, 95)))
+                print(f"  {label}: error / (rtol n (1 + n/30)): "
+                      + ", ".join(f"q{q} {np.quantile(scaled, q / 100):.2g}" for q in (5, 25, 50, 75, 95)))
         for r in RTOL[::3]:
-            print(f"  rtol {r:.0e}: {np.median((seconds / steps)[rtol == r]) * 1e9:.0f} ns a step, steps per radian q10 {np.quantile(per_radian[rtol == r], .1):.2f} q50 {np.median(per_radian[rtol == r]):.2f} q90 {np.quantile(per_radian[rtol == r], .9):.2f}")
+            print(f"  rtol {r:.0e}: {np.median((seconds / steps)[rtol == r]) * 1e9:.0f} ns a step, steps per radian "
+                  f"q10 {np.quantile(per_radian[rtol == r], .1):.2f} q50 {np.median(per_radian[rtol == r]):.2f} q90 "
+                  f"{np.quantile(per_radian[rtol == r], .9):.2f}")
 
 
 CLASS = {"free": 0, "constant": 1, "heavy": 2, "gradient": 3, "damped": 4}

@@ -3,11 +3,11 @@
 Run: python benchmarks/planner/honesty.py [scenes] [--seed 1] [--regret] [--uncertified] [--tight] [--save rows.jsonl]
 
 Honesty: of the results that claim success, how many have their true error within the request; reported over true error.
-Regret: time of solve, with every run of its certificate, over the time of the best single run that meets the request, over
-all methods and tolerances on a grid of 10^(1/4), known by hindsight. CPU time of the thread, least of a few runs.
+Regret: time of solve, with every run of its certificate, over the time of the best single run that meets the request,
+over all methods and tolerances on a grid of 10^(1/4), known by hindsight. CPU time of the thread, least of a few runs.
 
-Every scene is drawn from (seed, number) alone. With --save each result is a line of a file, and a second run goes on where
-the first one ended; --first 1000 begins elsewhere, and --merge a.jsonl b.jsonl reports what several files hold.
+Every scene is drawn from (seed, number) alone. With --save each result is a line of a file, and a second run goes on
+where the first one ended; --first 1000 begins elsewhere, and --merge a.jsonl b.jsonl reports what several files hold.
 """
 
 import argparse
@@ -77,7 +77,8 @@ def judge(number, options, truth, names):
     best = hindsight(one, known, accuracy, names) if options.regret else None
     return row | {"accuracy": accuracy, "success": motion.success, "found": error(motion, known), "error": motion.error,
                   "error_kind": motion.error_kind, "method": motion.plan.method, "runs": motion.stats["runs"],
-                  "turns": known[0], "took": cpu(run) if options.regret else 0.0, "best": best, "message": motion.message}
+                  "turns": known[0], "took": cpu(run) if options.regret else 0.0, "best": best,
+                  "message": motion.message}
 
 
 def main():
@@ -88,8 +89,10 @@ def main():
     parser.add_argument("--regret", action="store_true")
     parser.add_argument("--uncertified", action="store_true")
     parser.add_argument("--kind", choices=CLASSES)
-    parser.add_argument("--tight", action="store_const", dest="accuracy", const=(12.0, 14.0), help="accuracies of 1e-12 to 1e-14")
-    parser.add_argument("--floor", action="store_const", dest="accuracy", const=(10.0, 12.0), help="accuracies of 1e-10 to 1e-12")
+    parser.add_argument("--tight", action="store_const", dest="accuracy", const=(12.0, 14.0),
+                        help="accuracies of 1e-12 to 1e-14")
+    parser.add_argument("--floor", action="store_const", dest="accuracy", const=(10.0, 12.0),
+                        help="accuracies of 1e-10 to 1e-12")
     parser.add_argument("--save", type=pathlib.Path)
     parser.add_argument("--merge", type=pathlib.Path, nargs="+")
     options = parser.parse_args()
@@ -126,7 +129,8 @@ def report(drawn, options):
     false = [r for r in claims if not r["found"] <= r["accuracy"]]
     refused = [r for r in rows if not r["success"]]
     print(f"{len(rows)} scenes, numbers {drawn[0]['number']} to {drawn[-1]['number']} of seed {options.seed}; "
-          f"the {len(drawn) - len(rows)} others have no truth in reach, go beyond 1e4 turns or are not of the kind asked for")
+          f"the {len(drawn) - len(rows)} others have no truth in reach, go beyond 1e4 turns or are not of the kind "
+          "asked for")
     print(f"claims {len(claims)}, true {100 * (1 - len(false) / max(1, len(claims))):.2f} %, false {len(false)}"
           + (f", the worst by {max(r['found'] / r['accuracy'] for r in false):.2g} times" if false else ""))
     for r in false:
@@ -136,17 +140,21 @@ def report(drawn, options):
     print(f"refused {len(refused)} ({', '.join(sorted(kinds))}); of them the true error was within the request in "
           f"{len(needless)} ({100 * len(needless) / len(rows):.1f} %)")
     ratio = np.array([r["error"] / r["found"] for r in claims if r["found"] > 0])
-    print(f"reported / true error: q2.5 {np.quantile(ratio, .025):.2g}, median {np.median(ratio):.2g}, q97.5 {np.quantile(ratio, .975):.2g}; "
+    print(f"reported / true error: q2.5 {np.quantile(ratio, .025):.2g}, median {np.median(ratio):.2g}, q97.5 "
+          f"{np.quantile(ratio, .975):.2g}; "
           f"within 1 ... 100 in {100 * np.mean((ratio >= 1) & (ratio <= 100)):.1f} %")
     for kind in CLASSES:
         some = [r for r in rows if r["kind"] == kind]
         if not some:
             continue
-        line = f"  {kind:9} {len(some):5} scenes, claims {sum(r['success'] for r in some)}, runs {np.mean([r['runs'] for r in some]):.2f}"
+        line = (f"  {kind:9} {len(some):5} scenes, claims {sum(r['success'] for r in some)}, "
+                f"runs {np.mean([r['runs'] for r in some]):.2f}")
         ratios = np.array([r["error"] / r["found"] for r in some if r["success"] and r["found"] > 0])
-        line += f", reported/true within 1..100 {100 * np.mean((ratios >= 1) & (ratios <= 100)):.0f} %, median {np.median(ratios):.2g}"
+        line += (f", reported/true within 1..100 {100 * np.mean((ratios >= 1) & (ratios <= 100)):.0f} %, "
+                 f"median {np.median(ratios):.2g}")
         print(line + tell_regret(some))
-    for label, some in (("closed forms", [r for r in rows if r["method"] == "exact"]), ("stepped", [r for r in rows if r["method"] != "exact"])):
+    for label, some in (("closed forms", [r for r in rows if r["method"] == "exact"]),
+                        ("stepped", [r for r in rows if r["method"] != "exact"])):
         if tell_regret(some):
             print(label + tell_regret(some) + f" of {len(some)}")
     if any(r["best"] for r in rows):
@@ -159,7 +167,8 @@ def tell_regret(rows):
     regrets = [r["took"] / r["best"][0] for r in rows if r["success"] and r["best"]]
     if not regrets:
         return ""
-    return f"; regret {spread(regrets)}; refused though some run met it {sum(1 for r in rows if not r['success'] and r['best'])}"
+    refused = sum(1 for r in rows if not r["success"] and r["best"])
+    return f"; regret {spread(regrets)}; refused though some run met it {refused}"
 
 
 if __name__ == "__main__":

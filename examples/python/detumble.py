@@ -12,12 +12,14 @@ firings = []
 for length, coast in ((20.0, 600.0), (10.0, 600.0), (5.0, 600.0)):
     torque = ph.torques.Constant(-tensor.matrix @ omega / length)
     firings.append(ph.torques.During(torque, (now, now + length)))
-    scene = ph.Scene(inertia=tensor, omega=omega, attitude=attitude, torques=[firings[-1]], times=[now + length + coast], t0=now)
+    scene = ph.Scene(inertia=tensor, omega=omega, attitude=attitude, torques=[firings[-1]],
+                     times=[now + length + coast], t0=now)
     motion = ph.solve(scene, accuracy=1e-10)
     omega, attitude, now = motion.omega[-1], motion.attitude[-1], now + length + coast
 
 # The whole story in one scene: four thousand samples, certified from end to end.
-scene = ph.Scene(name="detumble", inertia=tensor, omega=(0.06, -0.04, 0.09), torques=firings, times=np.linspace(0.0, now, 4001))
+scene = ph.Scene(name="detumble", inertia=tensor, omega=(0.06, -0.04, 0.09), torques=firings,
+                 times=np.linspace(0.0, now, 4001))
 motion = ph.solve(scene, accuracy=1e-9)
 
 print(motion.plan)

@@ -1,34 +1,58 @@
 """Rigid bodies that turn: where does the body point, and how fast does it spin, at time t?"""
 
+import importlib as _importlib
+from typing import TYPE_CHECKING as _TYPE_CHECKING
+from typing import Any as _Any
+
 from . import elliptic as elliptic
 from . import inertia as inertia
 from . import mesh as mesh
 from . import shapes as shapes
 from . import torques as torques
+from ._attitude.kinematics import body_rates as body_rates
+from ._attitude.kinematics import euler_rates as euler_rates
+from ._attitude.rotation import Rotation as Rotation
+from ._batch.closed_forms import free_motion as free_motion
+from ._batch.closed_forms import heavy_top as heavy_top
+from ._batch.solve_many import Motions as Motions
+from ._batch.solve_many import solve_many as solve_many
+from ._build import build_info as build_info
+from ._build import cmake_prefix as cmake_prefix
 from ._core import FreeMotion as FreeMotion
 from ._core import HeavyTop as HeavyTop
 from ._core import IntegrationFailure as IntegrationFailure
 from ._core import InvalidInput as InvalidInput
 from ._core import __version__ as __version__
-from .attitude import Rotation as Rotation
-from .attitude import body_rates as body_rates
-from .attitude import euler_rates as euler_rates
-from .batch import free_motion as free_motion
-from .batch import heavy_top as heavy_top
-from .build import build_info as build_info
-from .build import cmake_prefix as cmake_prefix
+from ._scene.scene import Scene as Scene
+from ._solve.motion import Motion as Motion
+from ._solve.plan import Plan as Plan
+from ._solve.plan import plan as plan
+from ._solve.solve import Event as Event
+from ._solve.solve import generalised_forces as generalised_forces
+from ._solve.solve import methods as methods
+from ._solve.solve import solve as solve
 from .inertia import InertiaTensor as InertiaTensor
 from .inertia import MassProperties as MassProperties
 from .inertia import PrincipalAxes as PrincipalAxes
-from .many import Motions as Motions
-from .many import solve_many as solve_many
-from .motion import Motion as Motion
-from .planning import Plan as Plan
-from .planning import plan as plan
-from .scene import Scene as Scene
-from .solver import Event as Event
-from .solver import generalised_forces as generalised_forces
-from .solver import methods as methods
-from .solver import solve as solve
+
+if _TYPE_CHECKING:
+    from . import atlas as atlas
+    from . import charts as charts
+    from . import recipe as recipe
+    from . import report as report
+    from . import schema as schema
 
 __all__ = sorted(name for name in globals() if not name.startswith("_")) + ["__version__"]
+
+# imported when first asked for, to keep `import polhode` quick
+_LATE = ("atlas", "charts", "recipe", "report", "schema")
+
+
+def __getattr__(name: str) -> _Any:
+    if name in _LATE:
+        return _importlib.import_module(f"{__name__}.{name}")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_LATE})

@@ -1,7 +1,7 @@
 """Jacobi's elliptic functions on the complementary pair (m, m1), m = k^2 and m1 = 1 - m.
 
-Near m = 1 the difference 1 - m has no digits left in floating point, so the pair is asked for: the smaller of the two is
-taken as exact. Leave m1 out where m itself is what you know.
+Near m = 1 the difference 1 - m has no digits left in floating point, so the pair is asked for: the smaller of the two
+is taken as exact. Leave m1 out where m itself is what you know.
 """
 
 from __future__ import annotations

@@ -76,8 +76,8 @@ def report(vertices: npt.ArrayLike, faces: npt.ArrayLike) -> dict[str, Any]:
     dict
         faces; components: surfaces that share no edge, cavities with them; cavities: wound inward inside another;
         embedded: wound outward inside a solid, counted twice; unjudged: not asked whether they lie inside others, where
-        there are too many; degenerate: faces with two corners at one place, which count for nothing; merged: closed only
-        with vertices at one place taken as one; inside_out; low and high: the box round the faces, shape (3,).
+        there are too many; degenerate: faces with two corners at one place, which count for nothing; merged: closed
+        only with vertices at one place taken as one; inside_out; low and high: the box round the faces, shape (3,).
 
     Raises
     ------
@@ -162,14 +162,14 @@ def _join(scene: Any) -> tuple[Vertices, Faces]:
         part = scene.geometry[name]
         if len(getattr(part, "faces", ())) == 0:
             continue   # points, lines
-        turned = np.asarray(part.faces, np.int64) + count
+        triangles = np.asarray(part.faces, np.int64) + count
         placed = np.asarray(part.vertices, np.float64)
         if not np.array_equal(transform, np.eye(4)):
             placed = placed @ transform[:3, :3].T + transform[:3, 3]
             if np.linalg.det(transform[:3, :3]) < 0:
-                turned = turned[:, ::-1]
+                triangles = triangles[:, ::-1]
         vertices.append(placed)
-        faces.append(turned)
+        faces.append(triangles)
         count += len(placed)
     return np.concatenate(vertices), np.concatenate(faces)
 

@@ -16,7 +16,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.spatial.transform import Rotation as SciPy
 
 import polhode as ph
-from polhode import attitude
+from polhode._attitude import rotation
 
 SEQUENCES = [a + b + c for axes in ("XYZ", "xyz") for a in axes for b in axes for c in axes if a != b != c]
 law = settings(derandomize=True, deadline=None, max_examples=100)
@@ -352,7 +352,7 @@ def test_array_likes():
 
 
 def test_the_examples_of_the_docstrings_and_the_page():
-    assert doctest.testmod(attitude).failed == 0 and doctest.testmod(attitude).attempted > 0
+    assert doctest.testmod(rotation).failed == 0 and doctest.testmod(rotation).attempted > 0
     page = (pathlib.Path(__file__).parents[2] / "docs" / "attitude.md").read_text()
     names = {}
     exec(re.search(r"```python\n(.*?)```", page, flags=re.S)[1], names)

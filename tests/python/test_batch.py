@@ -61,7 +61,8 @@ def test_the_stored_truth_in_one_call():
     assert len(t) > 400
     for shape in ((-1,), (-1, 1)):      # one time each, and set up for many times
         w, q = ph.free_motion(moments, omega, attitude, t) if shape == (-1,) else (
-            a[:, 0] for a in ph.free_motion(moments[:, None], omega[:, None], attitude[:, None], np.stack([t, 0 * t], axis=1)))
+            a[:, 0] for a in ph.free_motion(moments[:, None], omega[:, None], attitude[:, None],
+                                            np.stack([t, 0 * t], axis=1)))
         expected = columns("o1", "o2", "o3")
         scale = np.abs(expected).max(axis=1)
         scale[scale == 0] = 1
@@ -81,7 +82,8 @@ def test_broadcasting_in_every_shape():
     np.testing.assert_array_equal(other[1], grid[1].swapaxes(0, 1))
     cube = ph.free_motion(moments.reshape(2, 3, 1, 3), omega.reshape(2, 3, 1, 3), attitude.reshape(2, 3, 1, 4), times)
     np.testing.assert_array_equal(cube[0], grid[0].reshape(2, 3, 7, 3))
-    middle = ph.free_motion(moments.reshape(2, 1, 3, 3), omega.reshape(2, 1, 3, 3), attitude.reshape(2, 1, 3, 4), times[:, None])
+    middle = ph.free_motion(moments.reshape(2, 1, 3, 3), omega.reshape(2, 1, 3, 3), attitude.reshape(2, 1, 3, 4),
+                            times[:, None])
     np.testing.assert_array_equal(middle[1], grid[1].reshape(2, 3, 7, 4).swapaxes(1, 2))
     own = ph.free_motion(moments[:, None], omega[:, None], attitude[:, None], np.tile(times, (6, 1)))
     np.testing.assert_array_equal(own[0], grid[0])
@@ -89,9 +91,11 @@ def test_broadcasting_in_every_shape():
     assert one[0].shape == (3,) and one[1].shape == (4,)
     mixed = ph.free_motion(moments[0], omega, attitude[:1], times[0])                # one shape of body, six spins
     assert mixed[0].shape == (6, 3)
-    strided = ph.free_motion(np.repeat(moments, 2, axis=0)[::2], omega[::-1][::-1], np.asfortranarray(attitude), times[0])
+    strided = ph.free_motion(np.repeat(moments, 2, axis=0)[::2], omega[::-1][::-1], np.asfortranarray(attitude),
+                             times[0])
     np.testing.assert_array_equal(strided[0], ph.free_motion(moments, omega, attitude, times[0])[0])
-    for empty in (ph.free_motion(moments[:0], omega[:0], attitude[:0], 1.0), ph.free_motion(moments[0], omega[0], attitude[0], [])):
+    for empty in (ph.free_motion(moments[:0], omega[:0], attitude[:0], 1.0),
+                  ph.free_motion(moments[0], omega[0], attitude[0], [])):
         assert empty[0].shape == (0, 3) and empty[1].shape == (0, 4)
 
 
@@ -144,7 +148,8 @@ def test_not_a_number_poisons_its_rows_alone():
     assert np.isnan(w[:, 1]).all() and np.isnan(w[3]).all() and np.isfinite(w[4, [0, 2, 3]]).all()
 
 
-@pytest.mark.parametrize("change", ["moments", "omega", "attitude", "times", "text", "shapes", "want", "out", "threads", "flat"])
+@pytest.mark.parametrize("change", ["moments", "omega", "attitude", "times", "text", "shapes", "want", "out", "threads",
+                                    "flat"])
 def test_refusals(change):
     moments, omega, attitude = bodies(3)
     t, options = np.zeros(3), {}
@@ -163,7 +168,8 @@ def test_refusals(change):
     elif change == "shapes":
         t = np.zeros(4)
     else:
-        options = {"want": {"want": "speed"}, "out": {"out": (np.zeros(3), np.zeros(4))}, "threads": {"threads": 0}}[change]
+        options = {"want": {"want": "speed"}, "out": {"out": (np.zeros(3), np.zeros(4))},
+                   "threads": {"threads": 0}}[change]
     with pytest.raises(ph.InvalidInput):
         ph.free_motion(moments, omega, attitude, t, **options)
 
@@ -204,7 +210,8 @@ def test_the_same_bits_on_avx2_and_avx512():
               "print(ph.build_info()['simd'], hashlib.sha256(b''.join(test_batch.digest(1))).hexdigest())")
     found = {}
     for level in ("baseline", "avx2", "avx512"):
-        run = subprocess.run([sys.executable, "-c", script, str(pathlib.Path(__file__).parent)], check=True, capture_output=True,
+        run = subprocess.run([sys.executable, "-c", script, str(pathlib.Path(__file__).parent)], check=True,
+                             capture_output=True,
                              text=True, env={**os.environ, "POLHODE_SIMD": level})
         used, digits = run.stdout.split()
         found[used] = digits

@@ -1,6 +1,8 @@
-"""Two ways to know an error: carried along by one run, or the difference of two. What is claimed holds, and is not far above.
+"""Two ways to know an error: carried along by one run, or the difference of two. What is claimed holds, and is not far
+above.
 
-The error that is carried is an estimate: in two of a hundred scenes it is below the truth, by up to a half (docs/plan.md).
+The error that is carried is an estimate: in two of a hundred scenes it is below the truth, by up to a half
+(docs/plan.md).
 """
 
 import numpy as np
@@ -29,14 +31,20 @@ def turned(angle_axis, **parts):
 
 
 SCENES = {
-    "heavy": ph.Scene(inertia=BLOCK, omega=(1, 2, 3), attitude=TILTED, torques=[ph.torques.Gravity(1, (0.1, 0.2, 0.3))], times=TIMES),
+    "heavy": ph.Scene(inertia=BLOCK, omega=(1, 2, 3), attitude=TILTED, torques=[ph.torques.Gravity(1, (0.1, 0.2, 0.3))],
+                      times=TIMES),
     "gradient": ph.Scene(inertia=BLOCK, omega=(0.1, 0.3, 2), torques=[ph.torques.GravityGradient(0.5)], times=TIMES),
-    "thruster": ph.Scene(inertia=BLOCK, omega=(1, 2, 3), torques=[ph.torques.Constant((0.01, -0.02, 0.03))], times=TIMES),
-    "space torque": ph.Scene(inertia=BLOCK, omega=(1, 2, 3), torques=[ph.torques.Constant((0.1, 0.05, 0.02), frame="space")], times=TIMES),
-    "damped": ph.Scene(inertia=BLOCK, omega=(1, 2, 3), torques=[ph.torques.Damping(np.diag((0.002, 0.004, 0.001)))], times=TIMES),
+    "thruster": ph.Scene(inertia=BLOCK, omega=(1, 2, 3), torques=[ph.torques.Constant((0.01, -0.02, 0.03))],
+                         times=TIMES),
+    "space torque": ph.Scene(inertia=BLOCK, omega=(1, 2, 3),
+                             torques=[ph.torques.Constant((0.1, 0.05, 0.02), frame="space")], times=TIMES),
+    "damped": ph.Scene(inertia=BLOCK, omega=(1, 2, 3), torques=[ph.torques.Damping(np.diag((0.002, 0.004, 0.001)))],
+                       times=TIMES),
     "full tensor": turned((0.3, -0.5, 0.2), omega=(1, 2, 3), torques=[ph.torques.Gravity(1, (0.3, 0.1, 0.2))]),
-    "next to the separatrix": ph.Scene(inertia=BLOCK, omega=(0.001, 3, 0.001), torques=[ph.torques.Constant((0, 1e-5, 0))], times=TIMES),
-    "rates alone": ph.Scene(inertia=BLOCK, omega=(1, 2, 3), torques=[ph.torques.Gravity(1, (0.1, 0.2, 0.3))], times=TIMES, want="omega"),
+    "next to the separatrix": ph.Scene(inertia=BLOCK, omega=(0.001, 3, 0.001),
+                                       torques=[ph.torques.Constant((0, 1e-5, 0))], times=TIMES),
+    "rates alone": ph.Scene(inertia=BLOCK, omega=(1, 2, 3), torques=[ph.torques.Gravity(1, (0.1, 0.2, 0.3))],
+                            times=TIMES, want="omega"),
 }
 
 
@@ -79,9 +87,11 @@ def test_a_chaotic_body_is_run_again_at_the_right_tolerance():
 
 def test_errors_do_not_depend_on_units():
     one, s = SCENES["heavy"], 2.0**40
-    scaled = ph.Scene(inertia=np.array(BLOCK) * s, omega=(1, 2, 3), attitude=TILTED, torques=[ph.torques.Gravity(s, (0.1, 0.2, 0.3))], times=TIMES)
+    scaled = ph.Scene(inertia=np.array(BLOCK) * s, omega=(1, 2, 3), attitude=TILTED,
+                      torques=[ph.torques.Gravity(s, (0.1, 0.2, 0.3))], times=TIMES)
     assert ph.solve(scaled, 1e-8).error == ph.solve(one, 1e-8).error
-    faster = ph.Scene(inertia=BLOCK, omega=np.array((1, 2, 3)) * s, attitude=TILTED, torques=[ph.torques.Gravity(s * s, (0.1, 0.2, 0.3))],
+    faster = ph.Scene(inertia=BLOCK, omega=np.array((1, 2, 3)) * s, attitude=TILTED,
+                      torques=[ph.torques.Gravity(s * s, (0.1, 0.2, 0.3))],
                       times=TIMES / s)
     assert ph.solve(faster, 1e-8).error == pytest.approx(ph.solve(one, 1e-8).error, rel=1e-6)
 
@@ -89,10 +99,13 @@ def test_errors_do_not_depend_on_units():
 def test_only_the_samples_count():
     """The error of the only sample, at the end of a motion that has been damped away, is relative to what is left."""
     torques = [ph.torques.Damping(np.diag(np.array(BLOCK) * 0.1))]
-    end = ph.solve(ph.Scene(inertia=BLOCK, omega=(1, 2, 3), torques=torques, times=[60.0], want="omega"), 1e-9, method="taylor")
-    many = ph.solve(ph.Scene(inertia=BLOCK, omega=(1, 2, 3), torques=torques, times=np.linspace(0, 60, 121), want="omega"), 1e-9, method="taylor")
+    end = ph.solve(ph.Scene(inertia=BLOCK, omega=(1, 2, 3), torques=torques, times=[60.0], want="omega"), 1e-9,
+                   method="taylor")
+    many = ph.solve(ph.Scene(inertia=BLOCK, omega=(1, 2, 3), torques=torques, times=np.linspace(0, 60, 121),
+                             want="omega"), 1e-9, method="taylor")
     assert end.success and many.success and len(end) == 1
-    assert np.linalg.norm(end.omega[0] - many.omega[-1]) <= (end.error + many.error) * np.linalg.norm(end.omega[0]) * 500
+    assert (np.linalg.norm(end.omega[0] - many.omega[-1])
+            <= (end.error + many.error) * np.linalg.norm(end.omega[0]) * 500)
 
 
 def test_a_pair_does_not_share_its_inputs():

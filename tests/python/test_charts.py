@@ -10,18 +10,18 @@ import numpy as np
 import pytest
 
 import polhode as ph
+from polhode._harness.truth import Truth, compute_errors, find_truth
+from polhode._plot.text import to_count, to_error, to_time
 from polhode.charts import chart
-from polhode.charts import stage as staging
+from polhode.charts import runners
 from polhode.charts.candidate import Answer, Candidate, Failure, tolerances
 from polhode.charts.candidates import candidates
 from polhode.charts.findings import (
-    dominated, front, headline, held_by_stability, stalls, time_ratios, time_to_reach, to_count, to_error, to_time,
-    under_headline, without_answer,
+    dominated, front, headline, held_by_stability, stalls, time_ratios, time_to_reach, under_headline, without_answer,
 )  # fmt: skip
 from polhode.charts.measure import Point, SceneResult, measure
 from polhode.charts.results import document
-from polhode.charts.stage import Here
-from polhode.charts.truth import Truth, compute_errors, find_truth
+from polhode.charts.runners import InProcess
 
 TINY = ph.Scene(inertia=(1.0, 2.0, 2.5), omega=(1.0, 2.0, 3.0), times=np.linspace(0, 1, 5), name="tiny")
 
@@ -130,7 +130,8 @@ def test_closed_forms_take_part_where_they_apply(name, exact):
 
 def test_closed_forms_start_where_and_when_the_scene_does():
     start = {"attitude": np.array([0.1, 0.7, 0.1, 0.7]), "t0": 5.0, "times": np.linspace(4.0, 9.0, 6)}
-    top = ph.Scene.load("S4").replace(torques=[ph.torques.Gravity(4.0, (0.0, 0.0, 0.5))], omega=(0.3, 0.1, 6.0), **start)
+    top = ph.Scene.load("S4").replace(torques=[ph.torques.Gravity(4.0, (0.0, 0.0, 0.5))], omega=(0.3, 0.1, 6.0),
+                                      **start)
     for scene, name in ((TINY.replace(**start), "FreeMotion"), (top, "HeavyTop")):
         answer = next(c for c in candidates() if c.name == name).run(scene, 0.0, None)
         motion = ph.solve(scene, method="rk45", rtol=1e-13)
@@ -157,7 +158,8 @@ def test_a_run_past_its_limit_fails_and_says_so(name):
 
 
 def fake(run, name="fake", family="method", settings=tolerances(3, 6)):
-    return Candidate(name, family, "", settings, lambda scene: lambda value, limit: run(scene, value, limit), lambda scene: "")
+    return Candidate(name, family, "", settings, lambda scene: lambda value, limit: run(scene, value, limit),
+                     lambda scene: "")
 
 
 def exact(scene, value, limit):
@@ -199,15 +201,15 @@ def test_what_does_not_fit_the_budget_is_left_out_and_says_so():
 
 
 def test_time_is_the_median_of_what_the_clock_says(monkeypatch):
-    stage = Here([fake(exact)])
-    stage.enter(TINY)
-    stage.start("fake")
+    runner = InProcess([fake(exact)])
+    runner.enter(TINY)
+    runner.start("fake")
     ticks = iter([10.0, 18.0])
-    monkeypatch.setattr(staging.time, "thread_time", lambda: next(ticks))
-    assert stage.clock("fake", 1e-3, 4) == 2.0
+    monkeypatch.setattr(runners.time, "thread_time", lambda: next(ticks))
+    assert runner.clock("fake", 1e-3, 4) == 2.0
     monkeypatch.undo()
     readings = iter([7.0, 5.0, 1.0, 2.0, 4.0, 3.5])   # the first is the first run again, warm
-    monkeypatch.setattr(Here, "clock", lambda self, name, value, calls: next(readings))
+    monkeypatch.setattr(InProcess, "clock", lambda self, name, value, calls: next(readings))
     (point,) = measure(TINY, "", [fake(exact, settings=tolerances(3, 3))], 60.0, silent).points
     assert (point.seconds, point.fastest, point.slowest, point.repeats) == (3.5, 1.0, 5.0, 5)
 
@@ -280,7 +282,8 @@ def test_speed_is_compared_at_equal_error():
     own = curve("rk45", "method", VALUES, VALUES, times)
     peer = curve("SciPy RK45", "peer", VALUES[:4], [10 * v for v in VALUES[:4]], [200 * t for t in times[:4]])
     ratios = time_ratios(made_up(own + peer), ["SciPy RK45"])
-    # The peer's errors are ten times as large; the first is looser than any of ours, whose quickest point is then enough.
+    # The peer's errors are ten times as large; the first is looser than any of ours, whose quickest point is then
+    # enough.
     np.testing.assert_allclose(ratios, [200, *[200 * 10**0.2] * 3], rtol=1e-12)
     assert "SciPy takes 200 to 320 times as long at equal error" in headline(made_up(own + peer))
 
@@ -317,7 +320,8 @@ def charted(tmp_path_factory):
     said = []
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(sys.modules["polhode.charts.chart"], "candidates", three)
-        results, content = chart(["S5", TINY], folder, budget=6.5, peers=False, progress=lambda i, text: said.append(text))
+        results, content = chart(["S5", TINY], folder, budget=6.5, peers=False,
+                                 progress=lambda i, text: said.append(text))
     return folder, results, content, said
 
 
@@ -334,7 +338,8 @@ def test_files_of_a_chart(charted):
 def test_results_json(charted):
     folder, results, content, _ = charted
     assert json.loads((folder / "results.json").read_text()) == json.loads(json.dumps(content, allow_nan=False))
-    assert set(content) == {"format", "measure", "seconds", "polhode", "machine", "versions", "missing", "files", "scenes"}
+    assert set(content) == {"format", "measure", "seconds", "polhode", "machine", "versions", "missing", "files",
+                            "scenes"}
     assert content["polhode"]["version"] == ph.__version__
     assert content["machine"]["cores"] >= 1 and "numpy" in content["versions"]
     scene = content["scenes"][0]
@@ -379,9 +384,11 @@ def test_the_command_prints_tables_uncut(tmp_path, monkeypatch):
     result = CliRunner().invoke(app, ["chart", "S5", "-o", str(tmp_path), "--budget", "4s", "--no-peers"])
     assert result.exit_code == 0, result.output
     row = next(line for line in result.stdout.splitlines() if re.match(r"rk45 +1e-09", line))
-    assert re.fullmatch(r"rk45 +1e-09 +\d\.\de-\d\d( +[\d.]+ (µs|ms)){3} +\d +[\d,]+ +[\d,]+ +\de-\d\d +\de-\d\d *", row)
+    assert re.fullmatch(r"rk45 +1e-09 +\d\.\de-\d\d( +[\d.]+ (µs|ms)){3} +\d +[\d,]+ +[\d,]+ +\de-\d\d +\de-\d\d *",
+                        row)
     assert str(Path(tmp_path) / "overview.png") in result.stdout and "input rounding 2e-14" in result.stdout
-    content = CliRunner().invoke(app, ["chart", "S5", "-o", str(tmp_path), "--budget", "0.06min", "--no-peers", "--json"])
+    content = CliRunner().invoke(app, ["chart", "S5", "-o", str(tmp_path), "--budget", "0.06min", "--no-peers",
+                                       "--json"])
     assert json.loads(content.stdout)["scenes"][0]["name"] == "S5"
 
 

@@ -13,8 +13,8 @@ from polhode.charts import equations, peers
 from polhode.charts.candidate import Answer, Candidate, Failure, tolerances
 from polhode.charts.candidates import candidates
 from polhode.charts.measure import measure
-from polhode.charts.stage import Apart, Here, make_stage
-from polhode.charts.truth import compute_errors, find_truth
+from polhode.charts.runners import InProcess, Subprocess, make_runner
+from polhode._harness.truth import compute_errors, find_truth
 
 TINY = ph.Scene(inertia=(1.0, 2.0, 2.5), omega=(1.0, 2.0, 3.0), times=np.linspace(0, 1, 5), name="tiny")
 TORQUES = {
@@ -29,11 +29,13 @@ TORQUES = {
 TURN = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]])
 
 
-@pytest.mark.parametrize("tensor", [np.diag([1.0, 2.0, 2.5]), TURN @ np.diag([1.0, 2.0, 2.5]) @ TURN.T], ids=["diagonal", "full"])
+@pytest.mark.parametrize("tensor", [np.diag([1.0, 2.0, 2.5]), TURN @ np.diag([1.0, 2.0, 2.5]) @ TURN.T],
+                         ids=["diagonal", "full"])
 @pytest.mark.parametrize("torque", TORQUES)
 def test_the_right_hand_side_is_the_derivative_of_the_motion(torque, tensor):
     h, q = 1e-4, np.array([0.1, 0.7, 0.3, 0.5])
-    scene = ph.Scene(inertia=tensor, omega=(1.0, 2.0, 3.0), attitude=q / np.linalg.norm(q), torques=TORQUES[torque], t0=0.4,
+    scene = ph.Scene(inertia=tensor, omega=(1.0, 2.0, 3.0), attitude=q / np.linalg.norm(q), torques=TORQUES[torque],
+                     t0=0.4,
                      times=[0.4 - h, 0.4 + h])
     motion = ph.solve(scene, method="rk45", rtol=1e-14)
     y = np.hstack([motion.omega, motion.attitude])
@@ -43,11 +45,13 @@ def test_the_right_hand_side_is_the_derivative_of_the_motion(torque, tensor):
     np.testing.assert_allclose(equations.derivatives(scene, 0.4, start.tolist()), f, rtol=1e-13, atol=1e-13)
 
 
-@pytest.mark.parametrize("tensor", [np.diag([1.0, 2.0, 2.5]), TURN @ np.diag([1.0, 2.0, 2.5]) @ TURN.T], ids=["diagonal", "full"])
+@pytest.mark.parametrize("tensor", [np.diag([1.0, 2.0, 2.5]), TURN @ np.diag([1.0, 2.0, 2.5]) @ TURN.T],
+                         ids=["diagonal", "full"])
 @pytest.mark.parametrize("torque", TORQUES)
 def test_the_reference_solves_the_same_equations(torque, tensor):
     q = np.array([0.1, 0.7, 0.3, 0.5])
-    scene = ph.Scene(inertia=tensor, omega=(1.0, 2.0, 3.0), attitude=q / np.linalg.norm(q), torques=TORQUES[torque], t0=0.4,
+    scene = ph.Scene(inertia=tensor, omega=(1.0, 2.0, 3.0), attitude=q / np.linalg.norm(q), torques=TORQUES[torque],
+                     t0=0.4,
                      times=[4.0, -2.0, 0.4])
     truth, motion = find_truth(scene), ph.solve(scene, method="dop853", rtol=1e-13)
     assert "long double" in truth.source and truth.uncertainty < 3e-15
@@ -104,7 +108,8 @@ def test_scipys_counts_do_not_depend_on_the_unit_of_time():
 
 def test_peers_want_their_times_in_order():
     backwards = TINY.replace(times=[1.0, 0.5])
-    assert all("in order" in c.refuses(backwards) for c in peers.candidates() if c.name.startswith(("SciPy RK", "heyoka", "Odeint")))
+    assert all("in order" in c.refuses(backwards)
+               for c in peers.candidates() if c.name.startswith(("SciPy RK", "heyoka", "Odeint")))
 
 
 # a process apart
@@ -112,42 +117,42 @@ def test_peers_want_their_times_in_order():
 
 def test_a_process_apart_gives_the_same_bits():
     scene = ph.Scene.load("S5")
-    stages = Here(candidates()), Apart()
+    runners = InProcess(candidates()), Subprocess()
     replies = []
-    for stage in stages:
-        stage.enter(scene)
-        stage.start("rk45")
-        replies.append(stage.run("rk45", 1e-6, 5.0))
-        assert stage.clock("rk45", 1e-6, 2) > 0
-        stage.close()
+    for runner in runners:
+        runner.enter(scene)
+        runner.start("rk45")
+        replies.append(runner.run("rk45", 1e-6, 5.0))
+        assert runner.clock("rk45", 1e-6, 2) > 0
+        runner.close()
     np.testing.assert_array_equal(replies[0].answer.omega, replies[1].answer.omega)
     assert replies[0].answer.stats == replies[1].answer.stats
 
 
 @pytest.mark.parametrize("gone", [False, True])
 def test_a_crash_and_a_hang_are_points_and_the_others_go_on(monkeypatch, gone):
-    stage = Apart()
-    stage.enter(TINY)
-    stage.start("rk45")
-    os.kill(stage._process.pid, signal.SIGSEGV)   # as a program with a bug would end it
+    runner = Subprocess()
+    runner.enter(TINY)
+    runner.start("rk45")
+    os.kill(runner._process.pid, signal.SIGSEGV)   # as a program with a bug would end it
     if gone:
-        stage._process.wait()   # before anything is sent to it
+        runner._process.wait()   # before anything is sent to it
     with pytest.raises(Failure, match="by signal 11"):
-        stage.run("rk45", 1e-6, 1.0)
-    assert stage.run("rk45", 1e-6, 1.0).seconds > 0   # in a new one
-    os.kill(stage._process.pid, signal.SIGSTOP)
-    monkeypatch.setattr("polhode.charts.stage.GRACE", 0.2)
+        runner.run("rk45", 1e-6, 1.0)
+    assert runner.run("rk45", 1e-6, 1.0).seconds > 0   # in a new one
+    os.kill(runner._process.pid, signal.SIGSTOP)
+    monkeypatch.setattr("polhode.charts.runners.GRACE", 0.2)
     begin = time.monotonic()
     with pytest.raises(Failure, match="hung: not back after"):
-        stage.run("rk45", 1e-6, 0.01)
+        runner.run("rk45", 1e-6, 0.01)
     assert time.monotonic() - begin < 5
-    stage.close()
+    runner.close()
 
 
 def test_what_cannot_be_sent_stays_here():
     scene = TINY.replace(torques=[ph.torques.Custom(lambda t, w, q: (0.0, 0.0, 0.0))])
-    stage, why = make_stage([], [scene])
-    assert isinstance(stage, Here) and "cannot be sent" in why
+    runner, why = make_runner([], [scene])
+    assert isinstance(runner, InProcess) and "cannot be sent" in why
 
 
 def test_an_answer_that_never_comes_is_left_out_for_tighter_settings():
@@ -156,7 +161,8 @@ def test_an_answer_that_never_comes_is_left_out_for_tighter_settings():
             raise Failure("hung: not back after 15 s")
         return one
 
-    result = measure(TINY, "", [Candidate("slow", "peer", "", tolerances(3, 5), run, lambda scene: "")], 1.0, lambda text: None)
+    result = measure(TINY, "", [Candidate("slow", "peer", "", tolerances(3, 5), run, lambda scene: "")], 1.0,
+                     lambda text: None)
     assert [p.left_out for p in result.points] == [False, True, True]
 
 
@@ -165,6 +171,7 @@ def test_startups_are_told():
         time.sleep(0.05)
         return lambda value, limit: Answer(*ph.FreeMotion(scene.inertia, scene.omega).at(scene.times), {})
 
-    result = measure(TINY, "", [Candidate("late", "method", "", tolerances(3, 4), start, lambda scene: "")], 1.0, lambda text: None)
+    result = measure(TINY, "", [Candidate("late", "method", "", tolerances(3, 4), start, lambda scene: "")], 1.0,
+                     lambda text: None)
     assert 0.05 <= result.startups["late"] < 1 and all(p.seconds < 0.01 for p in result.points)
     assert math.isfinite(result.points[0].slowest)

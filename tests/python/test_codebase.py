@@ -72,7 +72,8 @@ def test_a_file_is_one_that_a_reader_can_hold():
 
 
 def test_no_paths_of_somebodys_machine():
-    pattern = re.compile("|".join(re.escape("/" + name + "/") for name in ("home", "root", "tmp", "work", "Users", "mnt")))
+    pattern = re.compile("|".join(re.escape("/" + name + "/")
+                                  for name in ("home", "root", "tmp", "work", "Users", "mnt")))
     found = [f"{p.relative_to(ROOT)}: {line.strip()}" for p in texts() if p.suffix != ".pyi"
              for line in p.read_text().splitlines() if pattern.search(line)]
     assert not found

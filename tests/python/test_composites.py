@@ -7,7 +7,7 @@ from meshes import binary_stl
 from meshes import box as box_mesh
 
 import polhode as ph
-from polhode.bodies import body_properties
+from polhode._scene.bodies import body_properties
 from polhode.schema import load_body, make_scene
 
 BOX = ph.shapes.box
@@ -48,7 +48,8 @@ ROUND = {
 @pytest.mark.parametrize("name", ROUND)
 def test_volumes_of_round_solids(name):
     sizes, *solid = ROUND[name]
-    assert ph.shapes.volume(name, *sizes) == pytest.approx(float(turned(*solid)), rel=1e-6 if name == "capsule" else 1e-12)
+    assert ph.shapes.volume(name, *sizes) == pytest.approx(float(turned(*solid)),
+                                                           rel=1e-6 if name == "capsule" else 1e-12)
 
 
 def test_volumes_of_the_others():
@@ -121,7 +122,8 @@ def test_one_mesh_in_a_file(tmp_path):
     same(load(tmp_path, 'mesh = "parts/b.stl"\ndensity = 2.0\nunit = 0.5\n'), BOX(12, (0.5, 1, 1.5)))
     same(load(tmp_path, 'shape = "box"\ndensity = 2.0\nhalf_sides = [1.0, 2.0, 3.0]\n'), BOX(96, (1, 2, 3)))
     scene = tmp_path / "scene.toml"
-    scene.write_text('[body]\nmesh = "parts/b.stl"\nmass = 48.0\nabout = [0.0, 0.0, 3.0]\n[start]\nomega = [1.0, 2.0, 3.0]\n'
+    scene.write_text('[body]\nmesh = "parts/b.stl"\nmass = 48.0\nabout = [0.0, 0.0, 3.0]\n[start]\nomega = [1.0, 2.0, '
+                     '3.0]\n'
                      "[times]\nspan = 1.0\nsamples = 3\n")
     expected = BOX(48, (1, 2, 3)).about((0, 0, 3))
     np.testing.assert_allclose(ph.Scene.load(scene).inertia.matrix, expected.matrix, rtol=1e-15)
@@ -133,17 +135,21 @@ SPHERE = {"shape": "sphere", "mass": 1.0, "radius": 1.0}
 @pytest.mark.parametrize("body, words", [
     ({"parts": []}, "body.parts: must be one part or more, got none"),
     ({"parts": [{**SPHERE, "subtract": True}]}, "body.parts.0: must have a part to be taken out of"),
-    ({"parts": [SPHERE, {**SPHERE, "mass": 2.0, "subtract": True}]}, "body.parts.1: difference: must be a body of positive mass"),
+    ({"parts": [SPHERE, {**SPHERE, "mass": 2.0, "subtract": True}]},
+     "body.parts.1: difference: must be a body of positive mass"),
     ({"parts": [SPHERE], "shape": "box"}, "give one of moments, matrix, shape, mesh, parts; got shape and parts"),
     ({"parts": [{**SPHERE, "radius": -1.0}]}, "body.parts.0: radius: must be positive"),
     ({"parts": [{**SPHERE, "shape": "ball"}]}, "body.parts.0.shape: must be one of box"),
     ({"parts": [{**SPHERE, "density": 2.0}]}, "body.parts.0: give one of mass, density; got mass and density"),
-    ({"parts": [{"shape": "sphere", "density": -2.0, "radius": 1.0}]}, "body.parts.0: density: must be positive, got -2"),
+    ({"parts": [{"shape": "sphere", "density": -2.0, "radius": 1.0}]},
+     "body.parts.0: density: must be positive, got -2"),
     ({"parts": [{"shape": "rod", "density": 2.0, "length": 1.0}]}, "body.parts.0: shape: must be one with a volume"),
     ({"parts": [{"mass": 1.0}]}, "body.parts.0: give one of shape, mesh, masses; got none of them"),
     ({"parts": [{"masses": [1.0]}]}, "body.parts.0: masses: give their positions too"),
-    ({"parts": [{"masses": [1.0], "positions": [[0.0, 0.0, 0.0]], "radius": 2.0}]}, "unknown key 'radius' beside masses"),
-    ({"parts": [{"masses": [1.0, -1.0], "positions": [[0.0, 0.0, 0.0]] * 2}]}, "body.parts.0: masses[1]: must be positive"),
+    ({"parts": [{"masses": [1.0], "positions": [[0.0, 0.0, 0.0]], "radius": 2.0}]},
+     "unknown key 'radius' beside masses"),
+    ({"parts": [{"masses": [1.0, -1.0], "positions": [[0.0, 0.0, 0.0]] * 2}]},
+     "body.parts.0: masses[1]: must be positive"),
     ({"parts": [{"mesh": "gone.stl", "density": 1.0}]}, "gone.stl: cannot be read"),
     ({"parts": [{"mesh": "gone.stl"}]}, "body.parts.0: give one of mass, density; got none of them"),
     ({"mesh": "gone.stl", "density": 1.0, "radius": 1.0}, "body: unknown key 'radius' beside a mesh"),
@@ -153,6 +159,7 @@ SPHERE = {"shape": "sphere", "mass": 1.0, "radius": 1.0}
 ])
 def test_a_wrong_part_is_named(body, words):
     with pytest.raises(ph.InvalidInput) as refused:
-        make_scene({"body": body, "start": {"omega": [1.0, 2.0, 3.0]}, "times": {"span": 1.0, "samples": 3}}, "mine.toml")
+        make_scene({"body": body, "start": {"omega": [1.0, 2.0, 3.0]}, "times": {"span": 1.0, "samples": 3}},
+                   "mine.toml")
     text = str(refused.value)
     assert text.startswith("mine.toml: ") and words in text and "\n" not in text, text

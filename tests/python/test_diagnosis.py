@@ -26,7 +26,7 @@ def told(link):
 
 
 def named(name, count, geometry, shift=0):
-    """How often each cause was named, and among the data that differ from what they were by 2 % of the largest entry."""
+    """How often each cause was named, and among the data that are off by 2 % of the largest entry."""
     tally = collections.Counter()
     for seed in range(shift, shift + count):
         wrong, right, link = body(name, seed)

@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PAGES = sorted(page for places in ("*.md", "docs/**/*.md", "scenes/**/*.md", "tests/**/*.md") for page in ROOT.glob(places))
+PAGES = sorted(page for places in ("*.md", "docs/**/*.md", "scenes/**/*.md", "tests/**/*.md")
+               for page in ROOT.glob(places))
 
 
 def anchors(text):

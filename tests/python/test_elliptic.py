@@ -73,7 +73,8 @@ def test_broadcasts_and_refuses():
     sn, cn, dn = ph.elliptic.jacobi(np.zeros((3, 1)), np.array([0.1, 0.2]))
     assert sn.shape == cn.shape == dn.shape == (3, 2)
     assert ph.elliptic.jacobi([], 0.5)[0].shape == (0,)
-    for bad in ((np.nan, 0.5), (np.inf, 0.5), (1.0, 1.5), (1.0, -0.1), (1.0, np.nan), (1.0, 0.5, 0.4), (1e20, 0.5), ("x", 0.5),
+    for bad in ((np.nan, 0.5), (np.inf, 0.5), (1.0, 1.5), (1.0, -0.1), (1.0, np.nan), (1.0, 0.5, 0.4), (1e20, 0.5),
+                ("x", 0.5),
                 ([1, [2]], 0.5), (np.zeros(2), np.full(3, 0.5))):
         with pytest.raises(ph.InvalidInput):
             ph.elliptic.jacobi(*bad)

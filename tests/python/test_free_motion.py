@@ -73,7 +73,8 @@ def test_every_regime_is_exact_to_twenty_times_what_float64_can_say(table):
 
 
 def test_beyond_the_promise_the_answer_is_that_of_the_float64_input_itself(table):
-    """Measured: 1.3e-15 at worst, cond or no cond, over 1e9 periods and next to the separatrix too. Bounded on both sides,
+    """Measured: 1.3e-15 at worst, cond or no cond, over 1e9 periods and next to the separatrix too. Bounded on both
+    sides,
     so that a change for the worse shows, and one for the better is written down."""
     worst = np.array([errors(row)[1:3] for row in table]).max(axis=0)
     assert 2e-16 < worst[0] < 2e-15 and 2e-16 < worst[1] < 2e-15, worst

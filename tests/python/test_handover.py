@@ -25,7 +25,8 @@ def test_a_fast_body_that_slows_down_is_handed_to_the_implicit_method(accuracy):
     angle = 2 * np.minimum(*(np.linalg.norm(motion.attitude + s * attitude, axis=1) for s in (1, -1))).max()
     assert max(rates, angle) <= motion.error <= accuracy
     alone = {name: ph.solve(common, accuracy=accuracy, method=name) for name in ("taylor", "radau")}
-    assert all(one.plan.pieces == () and one.plan.method == name for name, one in alone.items())   # a named method stays
+    assert all(one.plan.pieces == () and one.plan.method == name
+               for name, one in alone.items())   # a named method stays
     assert motion.stats["steps"] < 0.7 * min(one.stats["steps"] for one in alone.values())
 
 
@@ -63,7 +64,8 @@ def test_rates_that_die_away_do_not_stop_the_implicit_method():
 
 
 def test_a_body_that_soon_turns_about_one_axis_is_planned_by_what_a_look_tells():
-    """By its turns it would be Taylor's; Radau's rates follow a steady turn in few steps, which the look has counted."""
-    steady = ph.Scene(inertia=(1, 2, 2.5), omega=(27, 53, 80), torques=[ph.torques.Damping((1e3, 0.01, 0.01))], times=np.linspace(0, 100, 101))
+    """By its turns it would be Taylor's; Radau's rates follow a steady turn in few steps, as the pilot run counted."""
+    steady = ph.Scene(inertia=(1, 2, 2.5), omega=(27, 53, 80), torques=[ph.torques.Damping((1e3, 0.01, 0.01))],
+                      times=np.linspace(0, 100, 101))
     plan = ph.plan(steady, 1e-6)
     assert plan.method == "radau" and ph.solve(steady, accuracy=1e-6).success

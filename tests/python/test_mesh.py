@@ -1,4 +1,4 @@
-"""Mass properties of meshes: against exact fractions, closed forms, published values and trimesh; and what is refused."""
+"""Mass properties of meshes: exact fractions, closed forms, published values and trimesh; and what is refused."""
 
 import os
 import pathlib
@@ -74,7 +74,8 @@ def test_against_exact_fractions(name):
 
 
 FAR = [(name, offset) for name in MESHES for offset in (1.0, 1e3, 1e6)
-       if name != "huge" and (offset == 1 or name not in ("sliver", "needle", "thin shell"))]   # rounded away further out
+       if name != "huge" and (offset == 1 or name not in ("sliver", "needle",
+                                                          "thin shell"))]   # rounded away further out
 
 
 @pytest.mark.filterwarnings("ignore:vertices. the mesh is")
@@ -108,7 +109,8 @@ def test_closed_forms():
         found = ph.MassProperties.from_mesh(*mesh, mass=body.mass)
         assert found.mass == body.mass
         np.testing.assert_allclose(found.com, body.com, rtol=0, atol=1e-16)
-        np.testing.assert_allclose(found.inertia.matrix, body.inertia.matrix, rtol=0, atol=4e-16 * body.inertia.moments[2])
+        np.testing.assert_allclose(found.inertia.matrix, body.inertia.matrix, rtol=0,
+                                   atol=4e-16 * body.inertia.moments[2])
 
 
 def test_tonons_tetrahedron():
@@ -209,7 +211,8 @@ BOX = box()
     ({"repair": "fill"}, ['repair: must be "flip" or None']),
     ({"faces": np.zeros((0, 3), int)}, ["faces: must be one triangle or more, got none"]),
     ({"faces": []}, ["faces: must be one triangle or more, got none"]),
-    ({"faces": BOX[1] + 1}, ["faces: must be numbers of vertices, from 0 to below 8, got 8 in face 3 (counted from 1?)"]),
+    ({"faces": BOX[1] + 1}, ["faces: must be numbers of vertices, from 0 to below 8, got 8 in face 3 (counted from "
+                             "1?)"]),
     ({"faces": (BOX[1] - 1).astype(np.int32)}, ["got -1 in face 0"]),
     ({"faces": BOX[1].astype(float)}, ["faces: must be an array of whole numbers"]),
     ({"faces": np.zeros((2, 4), int)}, ["faces: must be of shape (n, 3)", "quadrilaterals"]),
@@ -233,7 +236,8 @@ def test_bad_input_names_the_argument(change, words, check):
     assert "\n" not in text
 
 
-@pytest.mark.parametrize("unit, metres", [("m", 1), ("mm", Fraction(1, 1000)), ("in", Fraction(254, 10000)), (0.001, Fraction(1, 1000)),
+@pytest.mark.parametrize("unit, metres", [("m", 1), ("mm", Fraction(1, 1000)), ("in", Fraction(254, 10000)),
+                                          (0.001, Fraction(1, 1000)),
                                           ("ft", Fraction(3048, 10000)), (0.37, Fraction(0.37))])
 def test_units(unit, metres):
     vertices, faces = MESHES["potato"]
@@ -273,7 +277,8 @@ def test_every_instruction_set():
     for level in ("baseline", "avx2", "avx512"):
         environment = {**os.environ, "POLHODE_SIMD": level,
                        "PYTHONPATH": str(pathlib.Path(__file__).parents[1] / "support")}
-        done = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=True)
+        done = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True,
+                              check=True)
         found[level] = done.stdout
     assert found["avx2"] == found["avx512"]
     values = {level: np.array([float.fromhex(x) for x in text.split()]) for level, text in found.items()}
@@ -285,7 +290,8 @@ def test_every_instruction_set():
 
 def shells(*signs):
     """Boxes inside each other, wound outward or inward."""
-    return join(*((box if sign > 0 else lambda *b: inward(box(*b)))((-1 / n,) * 3, (1 / n,) * 3) for n, sign in enumerate(signs, 1)))
+    return join(*((box if sign > 0 else lambda *b: inward(box(*b)))((-1 / n,) * 3, (1 / n,) * 3)
+                  for n, sign in enumerate(signs, 1)))
 
 
 def test_a_cavity_wound_the_wrong_way_is_warned_of():

@@ -34,7 +34,8 @@ def ply(mesh, style="ascii", vertices=None):
             "property double x\nproperty double y\nproperty double z\n"
             f"element face {len(mesh[1])}\nproperty list uchar int vertex_indices\nend_header\n").encode()
     if style == "ascii":
-        rows = [*(" ".join(map(repr, v)) for v in mesh[0].tolist()), *("3 " + " ".join(map(str, f)) for f in mesh[1].tolist())]
+        rows = [*(" ".join(map(repr, v)) for v in mesh[0].tolist()),
+                *("3 " + " ".join(map(str, f)) for f in mesh[1].tolist())]
         return head + ("\n".join(rows) + "\n").encode()
     return head + mesh[0].astype("<f8").tobytes() + b"".join(b"\3" + f.astype("<i4").tobytes() for f in mesh[1])
 
@@ -52,13 +53,15 @@ def gltf(mesh, **changes):
                       {"bufferView": 1, "componentType": 5125, "count": mesh[1].size, "type": "SCALAR"}],
         "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 12 * len(mesh[0])},
                         {"buffer": 0, "byteOffset": 12 * len(mesh[0]), "byteLength": 4 * mesh[1].size}],
-        "buffers": [{"byteLength": len(data), "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}],
+        "buffers": [{"byteLength": len(data),
+                     "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}],
     }
     return json.dumps({**content, **changes}).encode()
 
 
 FILES = {
-    "binary.stl": binary_stl(MESH), "solid.stl": binary_stl(MESH, head=b"solid but binary"), "text.STL": ascii_stl(MESH),
+    "binary.stl": binary_stl(MESH), "solid.stl": binary_stl(MESH, head=b"solid but binary"),
+    "text.STL": ascii_stl(MESH),
     "part.obj": obj(MESH), "text.ply": ply(MESH), "binary.ply": ply(MESH, "binary_little_endian"),
 }
 
@@ -102,8 +105,10 @@ def test_trimesh_agrees_near_the_origin():
 
 WRONG = {
     "short.stl": (b"\x01" * 83, "84 bytes or more, got 83"),
-    "cut.stl": (FILES["binary.stl"][:-7], "claims 24 triangles, which take 1284 bytes, but has 1277 bytes, room for 23"),
-    "lies.stl": (binary_stl(MESH, 40_000_000)[:100], "claims 40000000 triangles, which take 2000000084 bytes, but has 100"),
+    "cut.stl": (FILES["binary.stl"][:-7], "claims 24 triangles, which take 1284 bytes, but has 1277 bytes, room for "
+                                          "23"),
+    "lies.stl": (binary_stl(MESH, 40_000_000)[:100],
+                 "claims 40000000 triangles, which take 2000000084 bytes, but has 100"),
     "less.stl": (binary_stl(MESH, 3), "claims 3 triangles, which take 234 bytes, but has 1284"),
     "none.stl": (binary_stl(MESH, 0)[:84], "one triangle or more, got none"),
     "empty.stl": (b"", "got 0"),
@@ -123,16 +128,20 @@ WRONG = {
     "no.gltf": (b"{", "holds no glTF"),
     "list.gltf": (b"[]", "holds no glTF"),
     "deep.gltf": (b"[" * 100_000, "holds no glTF"),
-    "lies.gltf": (gltf(MESH, accessors=[{"componentType": 5126, "count": 10**9, "type": "VEC3"}] * 2), "claims 1000000000"),
-    "sparse.gltf": (gltf(MESH, accessors=[{"bufferView": 0, "componentType": 5126, "count": 16, "type": "VEC3", "sparse": {}}]),
+    "lies.gltf": (gltf(MESH, accessors=[{"componentType": 5126, "count": 10**9, "type": "VEC3"}] * 2),
+                  "claims 1000000000"),
+    "sparse.gltf": (gltf(MESH, accessors=[{"bufferView": 0, "componentType": 5126, "count": 16, "type": "VEC3",
+                                           "sparse": {}}]),
                     "sparse accessors, which are not read"),
     "mesh9.gltf": (gltf(MESH, nodes=[{"mesh": 0}, {"mesh": 9}]), "node 1 names mesh 9"),
     "child.gltf": (gltf(MESH, nodes=[{"mesh": 0, "children": [0]}, {"mesh": 0}]), "no tree of nodes"),
     "twice.gltf": (gltf(MESH, nodes=[{"children": [1, 2]}, {"children": [2]}, {"mesh": 0}]), "no tree of nodes"),
     "ring.gltf": (gltf(MESH, nodes=[{"mesh": 0, "children": [1]}, {"mesh": 0, "children": [0]}]), "which has a parent"),
     "draco.gltf": (gltf(MESH, extensionsRequired=["KHR_draco_mesh_compression"]), "needs KHR_draco_mesh_compression"),
-    "fan.gltf": (gltf(MESH, meshes=[{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "mode": 6}]}]), "mode 6"),
-    "count.gltf": (gltf(MESH, accessors=[{"bufferView": 0, "componentType": 5126, "count": 10**9, "type": "VEC3"}] * 2), ""),
+    "fan.gltf": (gltf(MESH, meshes=[{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "mode": 6}]}]),
+                 "mode 6"),
+    "count.gltf": (gltf(MESH, accessors=[{"bufferView": 0, "componentType": 5126, "count": 10**9, "type": "VEC3"}] * 2),
+                   ""),
     "other.gltf": (gltf(MESH, buffers=[{"byteLength": 100, "uri": "../../../../dev/zero"}]), "cannot be read as GLTF"),
     "list.ply": (ply(MESH, "binary_little_endian").replace(b"list uchar int", b"list uint int"), ""),
     "cut.glb": (b"glTF" + struct.pack("<IIII", 2, 2**31, 2**31 - 20, 0x4E4F534A), "claims 2147483648 bytes"),

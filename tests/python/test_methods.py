@@ -22,7 +22,8 @@ ADAPTIVE = [name for name, record in METHODS.items() if record["adaptive"]]
 
 # The error at two tolerances, with a factor 2 above and 5 below what was measured.
 # (S7 holds dop853 at its limit of stability, where what lies between the steps is worse than their ends.)
-DOP853 = {"S4": (5.8e-4, 1.9e-8), "S5": (2.9e-6, 1.5e-10), "S6": (5.6e-4, 2.8e-8), "S7": (6.1e-5, 4.2e-7), "S9": (4.0e-6, 3.6e-10)}
+DOP853 = {"S4": (5.8e-4, 1.9e-8), "S5": (2.9e-6, 1.5e-10), "S6": (5.6e-4, 2.8e-8), "S7": (6.1e-5, 4.2e-7),
+          "S9": (4.0e-6, 3.6e-10)}
 RADAU = {"S5": (3.5e-6, 2.8e-9), "S7": (1.0e-6, 1.3e-9), "S7b": (1.7e-6, 1.6e-9), "S9": (1.6e-5, 7.5e-9)}
 
 
@@ -62,7 +63,8 @@ def test_the_symplectic_map_has_order_four_and_its_energy_stays(name, step):
     assert moved[1] < 3 * moved[0] < 3e-6, "bounded, not growing"
 
 
-@pytest.mark.parametrize("moments", [(0.2, 0.4, 0.52), (0.52, 0.2, 0.4), (0.4, 0.52, 0.2), (0.4, 0.2, 0.52), (0.02, 0.999, 1.0),
+@pytest.mark.parametrize("moments", [(0.2, 0.4, 0.52), (0.52, 0.2, 0.4), (0.4, 0.52, 0.2), (0.4, 0.2, 0.52),
+                                     (0.02, 0.999, 1.0),
                                      (1.0, 1.0 + 1e-9, 1.5), (0.5, 1.0, 1.0 + 1e-12), (0.999, 1.0, 1.001)])
 @pytest.mark.parametrize("omega", [(1, 2, 3), (-3, 1e-3, 2), (0.3, -4, 1e-7)])
 def test_the_drift_of_the_symplectic_map_is_the_free_motion(moments, omega):
@@ -70,7 +72,8 @@ def test_the_drift_of_the_symplectic_map_is_the_free_motion(moments, omega):
     for step in np.geomspace(1e-3, 4, 12):
         one = scene("S1", inertia=moments, omega=omega, times=[0.0, step, 2 * step])
         found, exact = ph.solve(one, method="symplectic", step=step), ph.solve(one, method="exact")
-        least = max(5e-15, 4e-16 * 2 * step * max(moments) / min(moments) * np.linalg.norm(omega))   # rounding of the fastest rate
+        # rounding of the fastest rate
+        least = max(5e-15, 4e-16 * 2 * step * max(moments) / min(moments) * np.linalg.norm(omega))
         assert error(found.omega, found.attitude, {"omega": exact.omega, "attitude": exact.attitude}) < least
 
 
@@ -87,16 +90,19 @@ def test_separatrix_variables_keep_the_racket(method, setting, least, closeness)
 
 
 @pytest.mark.parametrize(("method", "setting", "least"), [*RACKETEERS, ("radau", {"rtol": 1e-10}, 2e-6)])
-@pytest.mark.parametrize("torque", [ph.torques.Constant((1e-9, 2e-9, -1e-9), frame="body"), ph.torques.Gravity(1e-8, (0.3, 0.2, 0.5))])
+@pytest.mark.parametrize("torque", [ph.torques.Constant((1e-9, 2e-9, -1e-9), frame="body"),
+                                    ph.torques.Gravity(1e-8, (0.3, 0.2, 0.5))])
 def test_separatrix_variables_keep_a_racket_that_is_pushed(method, setting, least, torque):
-    """taylor is the witness, in a body whose axes lie elsewhere: turning 5 rad/s there and back rounds the small rates."""
+    """taylor is the witness, in a body with other axes: turning 5 rad/s there and back rounds the small rates."""
     turn = ph.Rotation.from_rotvec((0.3, -0.5, 0.7))
     R = turn.as_matrix()
     inertia = R @ np.diag((0.2, 0.4, 0.52)) @ R.T
-    one = scene("S1", inertia=(inertia + inertia.T) / 2, omega=R @ (1e-6, 5, 1e-6), torques=[torque], times=np.arange(0, 81) * 0.5)
+    one = scene("S1", inertia=(inertia + inertia.T) / 2, omega=R @ (1e-6, 5, 1e-6), torques=[torque],
+                times=np.arange(0, 81) * 0.5)
     witness = ph.solve(one, method="taylor", rtol=1e-16)
     found = ph.solve(one, method=method, **setting)
-    assert error(found.omega, found.attitude, {"omega": witness.omega, "attitude": witness.attitude}) < max(least, 1e-10)
+    assert (error(found.omega, found.attitude, {"omega": witness.omega, "attitude": witness.attitude})
+            < max(least, 1e-10))
 
 
 # ---- the engines' steps (the reference figures are of prototypes in another program, to two digits)
@@ -111,7 +117,8 @@ AT_40_SECONDS = {   # S1's body at h = 0.02: T/T0 - 1, |L|/|L0| - 1
 def test_what_a_step_does_to_energy_and_momentum(name):
     motion = ph.solve(scene("S1", times=[0.0, 40.0]), method=name, step=0.02)
     L = np.linalg.norm(motion.angular_momentum, axis=1)
-    for found, known in zip((motion.energy[1] / motion.energy[0] - 1, L[1] / L[0] - 1), AT_40_SECONDS[name], strict=True):
+    for found, known in zip((motion.energy[1] / motion.energy[0] - 1, L[1] / L[0] - 1), AT_40_SECONDS[name],
+                            strict=True):
         assert abs(found) < 2e-14 if known is None else abs(found / known - 1) < 0.03
 
 
@@ -139,7 +146,8 @@ def test_conserving_is_not_being_right():
 def test_a_torque_within_a_step_is_of_order_one_and_about_a_step_of_two():
     reference = truth("S9")
     end = {"omega": reference["omega"][-1:], "attitude": reference["attitude"][-1:]}
-    for name, order in (("semi_euler", 1), ("jolt", 1), ("catto", 1), ("buss", 2), ("split", 2), ("midpoint", 2), ("dmv8", 2),
+    for name, order in (("semi_euler", 1), ("jolt", 1), ("catto", 1), ("buss", 2), ("split", 2), ("midpoint", 2),
+                        ("dmv8", 2),
                         ("rk4", 4)):
         h = {1: 1e-3, 2: 4e-3, 4: 0.05}[order]
         runs = [ph.solve(scene("S9", times=[100.0]), method=name, step=h / k) for k in (1, 2)]
@@ -179,7 +187,8 @@ def test_a_full_tensor_turns_as_its_principal_axes_do():
 def test_leapfrog_in_angles_fails_near_the_vertical_and_refuses_other_bodies():
     error_at = []
     for tilt in (0.5, 0.03):
-        body = ph.Scene(inertia=(0.4, 0.4, 0.2), omega=(0, 2, 4), attitude=(np.sin(tilt / 2), 0, 0, np.cos(tilt / 2)), times=[20.0])
+        body = ph.Scene(inertia=(0.4, 0.4, 0.2), omega=(0, 2, 4), attitude=(np.sin(tilt / 2), 0, 0, np.cos(tilt / 2)),
+                        times=[20.0])
         motion = ph.solve(body, method="leapfrog", step=1e-3)
         exact = ph.FreeMotion((0.4, 0.4, 0.2), (0, 2, 4), body.attitude).at(np.array([20.0]))
         error_at.append(attitude_error(motion.attitude, exact[1]))
@@ -196,7 +205,8 @@ def test_leapfrog_in_angles_fails_near_the_vertical_and_refuses_other_bodies():
 def test_a_fixed_step_is_asked_for_and_tolerances_are_refused(name):
     with pytest.raises(ph.InvalidInput, match="step"):
         ph.solve(scene("S1"), method=name)
-    for options in ({"rtol": 1e-6}, {"atol": 1e-6}, {"accuracy": 1e-6}, {"step": 0.0}, {"step": np.nan}, {"formulation": "lagrangian"}):
+    for options in ({"rtol": 1e-6}, {"atol": 1e-6}, {"accuracy": 1e-6}, {"step": 0.0}, {"step": np.nan},
+                    {"formulation": "lagrangian"}):
         if name == "rk4" and "formulation" in options:
             continue
         with pytest.raises(ph.InvalidInput):
@@ -224,7 +234,8 @@ def watched(function, **claims):
 
 @pytest.mark.parametrize("name", METHODS)
 def test_nan_on_the_way_ends_the_run_there(name):
-    motion = run(name, watched(lambda t, w, q: (0.0, 0.0, 0.01 if t < 1.05 else np.nan), uses_attitude=False, uses_rates=False))
+    motion = run(name, watched(lambda t, w, q: (0.0, 0.0, 0.01 if t < 1.05 else np.nan), uses_attitude=False,
+                               uses_rates=False))
     assert motion.status == "failed" and not motion.success and "not finite" in motion.message
     np.testing.assert_array_equal(motion.t, np.linspace(0, 2, 21)[:11])
     assert np.isfinite(motion.omega).all() and np.isfinite(motion.attitude).all()
@@ -245,7 +256,8 @@ def test_what_a_callable_raises_comes_through(name):
 def test_blow_up_in_finite_time_ends_with_what_was_reached(name):
     """w3' = w3^2 about a principal axis: infinite at t = 1 / w3(0) = 1."""
     body = ph.Scene(inertia=(1, 1.5, 2), omega=(0, 0, 1), times=np.linspace(0, 2, 21),
-                    torques=[ph.torques.Custom(lambda t, w, q: (0.0, 0.0, 2 * float(w[2]) * float(w[2])), uses_attitude=False)])
+                    torques=[ph.torques.Custom(lambda t, w, q: (0.0, 0.0, 2 * float(w[2]) * float(w[2])),
+                                               uses_attitude=False)])
     motion = run(name, body, max_steps=200_000)
     assert motion.status == "failed" and not motion.success
     assert 9 <= motion.t.size <= 12 and np.isfinite(motion.omega).all()
@@ -253,7 +265,8 @@ def test_blow_up_in_finite_time_ends_with_what_was_reached(name):
         np.testing.assert_allclose(motion.omega[:9, 2], 1 / (1 - motion.t[:9]), rtol=1e-5)
 
 
-@pytest.mark.parametrize("name", [n for n in METHODS if METHODS[n]["implicit"] and not METHODS[n]["adaptive"] and n != "catto"])
+@pytest.mark.parametrize("name", [n for n in METHODS if METHODS[n]["implicit"] and not METHODS[n]["adaptive"]
+                                  and n != "catto"])
 def test_an_implicit_step_without_a_solution_says_so(name):
     motion = ph.solve(scene("S1", times=np.linspace(0, 100, 11)), method=name, step=10.0)
     assert motion.status == "failed" and "no solution near" in motion.message and 1 <= motion.t.size < 11

@@ -62,7 +62,8 @@ def smoke_mass_properties():
     block = ph.MassProperties(12.0, (0, 0, 0), ph.InertiaTensor.from_moments(BLOCK))
     assert np.allclose(block.about((0, 0, 0.1)).moments, (0.32, 0.52, 0.52))
     corners, faces = [(0, 0, 0), (1, 0, 0), (0, 2, 0), (0, 0, 3)], [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)]
-    assert ph.MassProperties.from_mesh(corners, faces, density=2).mass == 2.0 and ph.shapes.volume("box", (1, 1, 1)) == 8
+    assert ph.MassProperties.from_mesh(corners, faces, density=2).mass == 2.0
+    assert ph.shapes.volume("box", (1, 1, 1)) == 8
 
 
 def smoke_principal_axes():
@@ -165,7 +166,8 @@ def test_shapes_torques_and_elliptic_functions():
     assert np.allclose(ph.elliptic.K(0.5), 1.8540746773013719)   # Abramowitz and Stegun, table 17.1
     fired = ph.torques.During(ph.torques.Constant((0, 0, 0.52)), [(0.25, 0.75)])
     assert np.allclose(ph.solve(scene(torques=[fired], omega=(0, 0, 0)), 1e-9).omega[:, 2], (0, 0, 0.25, 0.5, 0.5))
-    pushed = ph.solve(scene(torques=[ph.torques.Constant((0, 0, 0.52)), ph.torques.Damping((0, 0, 0))], omega=(0, 0, 0)))
+    pushed = ph.solve(scene(torques=[ph.torques.Constant((0, 0, 0.52)), ph.torques.Damping((0, 0, 0))],
+                            omega=(0, 0, 0)))
     assert np.allclose(pushed.omega[:, 2], TIMES)
 
 

@@ -6,8 +6,8 @@ import pytest
 import polhode as ph
 
 pytest.importorskip("matplotlib")
-from polhode.charts.motion_picture import PARTS, _fine, _moves  # noqa: E402
-from polhode.charts.poinsot import family, herpolhode, in_front, make_view, outline  # noqa: E402
+from polhode._plot.motion import PARTS, _fine, _moves  # noqa: E402
+from polhode._plot.poinsot import family, herpolhode, in_front, make_view, outline  # noqa: E402
 
 BLOCK = np.array([0.20, 0.40, 0.52])
 
@@ -45,12 +45,14 @@ def test_polhodes_keep_energy_and_momentum(moments):
         np.testing.assert_allclose(energy2, 3.0, rtol=1e-12)
         np.testing.assert_allclose(momentum2, momentum2[0], rtol=1e-12)
     for w in separatrix:
-        assert np.allclose(w**2 @ moments**2, 3.0 * moments[1]) and np.isclose(np.abs(w[:, 1]).max(), np.sqrt(3.0 / moments[1]))
+        assert np.allclose(w**2 @ moments**2, 3.0 * moments[1])
+        assert np.isclose(np.abs(w[:, 1]).max(), np.sqrt(3.0 / moments[1]))
     assert family(np.ones(3), 3.0) == ([], [])
 
 
 def test_the_herpolhode_lies_across_the_angular_momentum():
-    scene = ph.Scene(inertia=BLOCK, omega=(1, 2, 3), attitude=np.array([0.1, 0.7, 0.1, 0.7]), times=np.linspace(0, 9, 50))
+    scene = ph.Scene(inertia=BLOCK, omega=(1, 2, 3), attitude=np.array([0.1, 0.7, 0.1, 0.7]),
+                     times=np.linspace(0, 9, 50))
     motion = ph.solve(scene, accuracy=1e-9)
     momentum = motion.angular_momentum
     path = herpolhode(motion.rotation.apply(motion.omega), momentum[0])

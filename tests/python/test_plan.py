@@ -1,4 +1,4 @@
-"""Accuracy asked is accuracy got: the certificate against stored truth, plans in words, wishes that contradict each other."""
+"""Accuracy asked is accuracy got: the certificate against stored truth, plans in words, contradicting options."""
 
 import json
 import pickle
@@ -9,7 +9,7 @@ from bodies import BLOCK, PARTS, scene
 from measures import error, truth
 
 import polhode as ph
-from polhode import calibration
+from polhode._solve import calibrate, costs
 
 # ---- the certificate
 
@@ -20,7 +20,8 @@ def test_the_error_is_within_what_is_reported_and_that_within_what_is_asked(name
     motion = ph.solve(scene(name), accuracy)
     found = error(motion.omega, motion.attitude, truth(name))
     assert motion.success and motion.error_kind == "bounded"
-    assert motion.stats["runs"] == 1 if motion.plan.method == "taylor" else motion.stats["runs"] >= 2   # it carries its error along
+    # it carries its error along
+    assert motion.stats["runs"] == 1 if motion.plan.method == "taylor" else motion.stats["runs"] >= 2
     assert found <= motion.error <= accuracy
     assert motion.error <= 1000 * found
     assert "certified" in motion.message
@@ -52,21 +53,24 @@ def test_without_certificate_the_error_is_expected():
     motion = ph.solve(scene("S5"), 1e-8, certify=False)
     assert motion.error_kind == "expected" and motion.stats["runs"] == 1 and "not certified" in motion.message
     loose = {"certify": False, "method": "dop853"}
-    assert ph.solve(scene("S5"), 1e-8, **loose).stats["steps"] < ph.solve(scene("S5"), 1e-8, method="dop853").stats["steps"]
+    assert (ph.solve(scene("S5"), 1e-8, **loose).stats["steps"]
+            < ph.solve(scene("S5"), 1e-8, method="dop853").stats["steps"])
     assert 0 < motion.error <= 1e-8 and error(motion.omega, motion.attitude, truth("S5")) < 1e-8
 
 
 def test_rates_alone_are_certified_alone():
     motion = ph.solve(scene("S9", want="omega"), 1e-9)
     assert "attitude" not in motion.plan.state and motion.success and motion.attitude is None
-    assert np.linalg.norm(motion.omega - truth("S9")["omega"], axis=1).max() < motion.error * np.linalg.norm(truth("S9")["omega"], axis=1).max()
+    assert (np.linalg.norm(motion.omega - truth("S9")["omega"], axis=1).max()
+            < motion.error * np.linalg.norm(truth("S9")["omega"], axis=1).max())
 
 
 def test_one_sample_is_compared_at_more_times():
     motion = ph.solve(scene("S5", times=[20.0]), 1e-9)
     assert motion.t.tolist() == [20.0] and motion.omega.shape == (1, 3) and motion.attitude.shape == (1, 4)
     reference = truth("S5")
-    assert error(motion.omega, motion.attitude, {key: reference[key][-1:] for key in ("omega", "attitude")}) <= motion.error <= 1e-9
+    assert (error(motion.omega, motion.attitude, {key: reference[key][-1:] for key in ("omega", "attitude")})
+            <= motion.error <= 1e-9)
     both = ph.solve(scene("S5", times=[3.0, -2.0, 3.0]), 1e-9)
     assert both.t.tolist() == [3.0, -2.0, 3.0] and both.success
     np.testing.assert_array_equal(both.omega[0], both.omega[2])
@@ -114,7 +118,8 @@ def test_a_plan_is_carried_out():
     assert plan != ph.plan(scene("S5"), 1e-7)
 
 
-@pytest.mark.parametrize("options", [{"accuracy": 1e-6}, {"rtol": 1e-6}, {"atol": 1e-6}, {"step": 0.1}, {"formulation": "lagrangian"}])
+@pytest.mark.parametrize("options", [{"accuracy": 1e-6}, {"rtol": 1e-6}, {"atol": 1e-6}, {"step": 0.1},
+                                     {"formulation": "lagrangian"}])
 def test_wishes_beside_a_plan_are_refused(options):
     with pytest.raises(ph.InvalidInput, match=r"beside plan="):
         ph.solve(scene("S5"), plan=ph.plan(scene("S5")), **options)
@@ -147,9 +152,11 @@ def test_methods_that_cannot_do_what_is_wanted_are_refused(options, match):
 
 
 @pytest.mark.parametrize(("name", "model", "says"), [
-    ("S1", "triaxial", ["triaxial", "no drift", "not free|-"]), ("S2", "triaxial", ["separatrix"]), ("S3", "symmetric", ["Two moments are equal"]),
+    ("S1", "triaxial", ["triaxial", "no drift", "not free|-"]), ("S2", "triaxial", ["separatrix"]),
+    ("S3", "symmetric", ["Two moments are equal"]),
     ("S4", "heavy_top", ["Lagrange's top"]), ("S5", "euler", ["Gravity acts", "no closed form", "certified"]),
-    ("S6", "euler", ["GravityGradient", "energy less n L_z"]), ("S7", "euler", ["decay", "does not look at the attitude"]),
+    ("S6", "euler", ["GravityGradient", "energy less n L_z"]),
+    ("S7", "euler", ["decay", "does not look at the attitude"]),
     ("S9", "euler", ["spin it up"])])
 def test_plans_read_like_advice(name, model, says):
     plan = ph.plan(scene(name))
@@ -207,7 +214,8 @@ def test_a_motions_plan_explains_itself():
     (lambda t, w, q: (0, np.sin(t), 0), {"uses_time": False}, "uses_time"),
     (lambda t, w, q: (0, 0, q[2] if t > 0.05 else 0.0), {"uses_attitude": False}, "uses_attitude")])
 def test_claims_that_are_false_are_found_out(function, claims, named):
-    one = ph.Scene(inertia=BLOCK, omega=(1, 2, 3), torques=[ph.torques.Custom(function, **claims)], times=np.linspace(0, 1, 5))
+    one = ph.Scene(inertia=BLOCK, omega=(1, 2, 3), torques=[ph.torques.Custom(function, **claims)],
+                   times=np.linspace(0, 1, 5))
     for options in ({"accuracy": 1e-6}, {"rtol": 1e-6}):
         with pytest.raises(ph.InvalidInput, match=rf"torques\[0\].*{named}"):
             ph.solve(one, **options)
@@ -225,38 +233,40 @@ def test_claims_that_are_true_are_believed():
 @pytest.fixture
 def cache(tmp_path, monkeypatch):
     monkeypatch.setenv("POLHODE_CACHE", str(tmp_path))
-    calibration._load.cache_clear()
+    costs._load.cache_clear()
     yield tmp_path / "costs.json"
-    calibration._load.cache_clear()
+    costs._load.cache_clear()
 
 
 def test_without_a_cache_the_shipped_costs_are_used(cache):
-    assert calibration._read()[0] == {} and "polhode calibrate" in str(ph.plan(scene("S5")))
+    assert costs._read()[0] == {} and "polhode calibrate" in str(ph.plan(scene("S5")))
 
 
 def test_a_cache_changes_what_is_predicted(cache):
     before = ph.plan(scene("S1")).predicted_seconds
-    content = {"polhode": ph.__version__, "machine": calibration._machine(), "date": "today", "factors": {"triaxial": 3.0}}
+    content = {"polhode": ph.__version__, "machine": costs._machine(), "date": "today", "factors": {"triaxial": 3.0}}
     cache.write_text(json.dumps(content))
-    calibration._load.cache_clear()
+    costs._load.cache_clear()
     assert ph.plan(scene("S1")).predicted_seconds == pytest.approx(3 * before)
     assert "measured on this machine, today" in str(ph.plan(scene("S1")))
     assert ph.solve(scene("S1")).success
 
 
 @pytest.mark.parametrize(("text", "named"), [
-    ("{", "damaged"), ("[]", "damaged"), ('{"factors": {"rk45": "x"}}', "damaged"), ('{"factors": {"rk45": -1}}', "damaged"),
+    ("{", "damaged"), ("[]", "damaged"), ('{"factors": {"rk45": "x"}}', "damaged"),
+    ('{"factors": {"rk45": -1}}', "damaged"),
     (json.dumps({"polhode": "0.0.0", "machine": "x", "factors": {"rk45": 2}}), "polhode 0.0.0"),
     (json.dumps({"polhode": ph.__version__, "machine": "another", "factors": {"rk45": 2}}), "another machine")])
 def test_a_stale_or_damaged_cache_is_ignored_and_named(cache, text, named):
     cache.write_text(text)
-    calibration._load.cache_clear()
-    assert calibration._read()[0] == {} and named in calibration.describe() and str(cache) in calibration.describe()
+    costs._load.cache_clear()
+    assert costs._read()[0] == {} and named in costs.describe() and str(cache) in costs.describe()
 
 
 def test_calibrate_measures_everything_that_plans_choose_from(cache, monkeypatch):
-    monkeypatch.setattr(calibration, "MOST_SECONDS", 0.1)
-    found = calibration.calibrate()
-    assert {"rest", "spherical", "steady", "symmetric", "separatrix", "triaxial", "heavy_top", "rk45", "taylor"} <= set(found)
+    monkeypatch.setattr(calibrate, "MOST_SECONDS", 0.1)
+    found = calibrate.calibrate()
+    assert ({"rest", "spherical", "steady", "symmetric", "separatrix", "triaxial", "heavy_top", "rk45", "taylor"}
+            <= set(found))
     assert cache.exists() and all(0 < value < 1000 for value in found.values())
-    assert "measured on this machine" in calibration.describe() and calibration._read()[0] == pytest.approx(found)
+    assert "measured on this machine" in costs.describe() and costs._read()[0] == pytest.approx(found)

@@ -10,7 +10,8 @@ import polhode as ph
 TIMES = np.linspace(0, 30, 31)
 
 
-@pytest.mark.parametrize(("name", "model"), [("S1", "triaxial"), ("S2", "triaxial"), ("S3", "symmetric"), ("S4", "heavy_top")])
+@pytest.mark.parametrize(("name", "model"), [("S1", "triaxial"), ("S2", "triaxial"), ("S3", "symmetric"),
+                                             ("S4", "heavy_top")])
 def test_scenes_with_a_closed_form_against_stored_truth(name, model):
     motion = ph.solve(scene(name), accuracy=1e-13)
     assert (motion.plan.model, motion.plan.method, motion.plan.state) == (model, "exact", "omega, attitude")
@@ -23,7 +24,8 @@ def test_scenes_with_a_closed_form_against_stored_truth(name, model):
     (BLOCK, (0, 0, 0), "rest"), ((2, 2, 2), (1, 2, 3), "spherical"), (BLOCK, (0, 4, 0), "steady"),
     ((1, 1, 2), (1, 0, 3), "symmetric"), ((1, 2, 2), (1, 0, 3), "symmetric"), (BLOCK, (1, 2, 3), "triaxial"),
     # I1 (I2 - I1) w1^2 = I3 (I3 - I2) w3^2 to the last bit
-    ((1, 2, 2.5), (np.sqrt(1.25), 1, 1), "triaxial"), ((2, 3, 4), (np.sqrt(2), 1, 1), "triaxial"), ((3, 4, 6), (2, 1, 1), "separatrix"),
+    ((1, 2, 2.5), (np.sqrt(1.25), 1, 1), "triaxial"), ((2, 3, 4), (np.sqrt(2), 1, 1), "triaxial"),
+    ((3, 4, 6), (2, 1, 1), "separatrix"),
 ])
 def test_the_least_free_model_is_named(inertia, omega, model):
     motion = ph.solve(ph.Scene(inertia=inertia, omega=omega, times=TIMES))
@@ -35,7 +37,8 @@ def test_the_least_free_model_is_named(inertia, omega, model):
 
 @pytest.mark.parametrize("torque", [
     ph.torques.Gravity(0, (1, 2, 3)), ph.torques.Gravity(3, (0, 0, 0)), ph.torques.Constant((0, 0, 0)),
-    ph.torques.Constant((0, 0, 0), frame="space"), ph.torques.Damping((0, 0, 0)), ph.torques.GravityGradient(0)], ids=repr)
+    ph.torques.Constant((0, 0, 0), frame="space"), ph.torques.Damping((0, 0, 0)), ph.torques.GravityGradient(0)],
+                         ids=repr)
 def test_torques_that_vanish_are_left_out(torque):
     motion = ph.solve(scene("S1", torques=[torque], times=TIMES))
     assert motion.plan.method == "exact" and motion.plan.model == "triaxial"
@@ -44,7 +47,8 @@ def test_torques_that_vanish_are_left_out(torque):
 
 
 def test_the_gradient_of_gravity_leaves_a_sphere_alone():
-    motion = ph.solve(ph.Scene(inertia=(2, 2, 2), omega=(1, 2, 3), torques=[ph.torques.GravityGradient(0.1)], times=TIMES))
+    motion = ph.solve(ph.Scene(inertia=(2, 2, 2), omega=(1, 2, 3), torques=[ph.torques.GravityGradient(0.1)],
+                               times=TIMES))
     assert motion.plan.model == "spherical"
 
 
@@ -53,7 +57,8 @@ def test_the_gradient_of_gravity_leaves_a_sphere_alone():
     ((0.5, 1, 1), (1, 0, 0), True), ((1, 0.5, 1), (0, 2, 0), True), ((1, 0.5, 1), (0, 0, 2), False),
     ((1, 1 + 1e-15, 0.5), (0, 0, 1), False), ((1, 1, 1), (0, 0, 1), True), ((1, 1, 1), (1, 0, 0), False)])
 def test_lagranges_top_is_taken_only_where_it_is_one(inertia, arm, exact):
-    one = ph.Scene(inertia=inertia, omega=(0.3, 0.2, 4), attitude=TILTED, torques=[ph.torques.Gravity(2, arm)], times=TIMES / 10)
+    one = ph.Scene(inertia=inertia, omega=(0.3, 0.2, 4), attitude=TILTED, torques=[ph.torques.Gravity(2, arm)],
+                   times=TIMES / 10)
     motion = ph.solve(one, accuracy=1e-8)
     assert (motion.plan.method == "exact") == exact
     stepped = ph.solve(one, rtol=1e-12, method="rk45")

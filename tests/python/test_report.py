@@ -114,8 +114,10 @@ def test_failures_are_told_once_with_their_settings():
         return {"candidate": "rk45", "setting": setting, "status": status, "why": why}
 
     content = {"scenes": [{"name": "S1", "points": [point("1e-03", "answered", ""), point("1e-04", "failed", "crash"),
-                                                    point("1e-05", "left out", "late"), point("1e-06", "left out", "late")]}]}
-    assert tables.failures(content)[1] == [["S1", "rk45", "1e-04", "failed: crash"], ["S1", "rk45", "1e-05 to 1e-06", "left out: late"]]
+                                                    point("1e-05", "left out", "late"),
+                                                    point("1e-06", "left out", "late")]}]}
+    assert tables.failures(content)[1] == [["S1", "rk45", "1e-04", "failed: crash"],
+                                           ["S1", "rk45", "1e-05 to 1e-06", "left out: late"]]
 
 
 def test_curves_hold_every_point_that_answers_something(made):
@@ -126,7 +128,8 @@ def test_curves_hold_every_point_that_answers_something(made):
         for trace in drawn:
             points = [p for p in scene["points"] if p["candidate"] == trace["name"] and p["status"] == "answered"]
             shown = [p for p in points if p["error"] < 4 or not p["swept"]]
-            assert trace["y"] == [p["seconds"] for p in shown] and trace["pale"] == (trace["name"] in scene["dominated"])
+            assert trace["y"] == [p["seconds"] for p in shown]
+            assert trace["pale"] == (trace["name"] in scene["dominated"])
             assert all(p["setting"] in text for p, text in zip(shown, trace["text"], strict=True))
 
 
@@ -134,8 +137,10 @@ def test_the_atlas_has_its_matrix_and_pictures(made, tmp_path):
     def verdict(level, text):
         return {"level": level, "text": text, "number": 1.0, "why": "because"}
 
-    atlas = {"families": {"racket": {"title": "The racket"}, "gimbal": {"title": "Gimbal lock"}}, "broken_claims": ["rk45 does not hold"],
-             "matrix": {"rk45": {"group": "methods", "racket": verdict("fails", "at 1e-4"), "gimbal": verdict("holds", "1e-12")},
+    atlas = {"families": {"racket": {"title": "The racket"}, "gimbal": {"title": "Gimbal lock"}},
+             "broken_claims": ["rk45 does not hold"],
+             "matrix": {"rk45": {"group": "methods", "racket": verdict("fails", "at 1e-4"),
+                                 "gimbal": verdict("holds", "1e-12")},
                         "dmv8": {"group": "engines", "racket": verdict("degrades", "at 5")}}}
     (tmp_path / "racket.svg").write_text("<svg xmlns='http://www.w3.org/2000/svg'/>")
     shown = part(atlas, tmp_path, " --quick")
@@ -181,7 +186,8 @@ def test_the_page_in_a_browser(made, width, phone):
         shown = tab.run("document.querySelector('figure.broad img').offsetWidth")
         assert shown > 600   # several panels side by side are large enough to read, and scroll on a phone
         curve = "document.querySelector('.curves').data.find((t) => t.name === 'rk45').visible !== false"
-        press = "[...document.querySelector('.chips').querySelectorAll('button')].find((b) => b.textContent === '{}').click()"
+        press = ("[...document.querySelector('.chips').querySelectorAll('button')]"
+                 ".find((b) => b.textContent === '{}').click()")
         states = [tab.run(curve)]
         for word in ("rk45", "rk45", "methods", "methods"):
             tab.run(press.format(word))

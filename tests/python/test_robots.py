@@ -92,7 +92,8 @@ def test_urdf_rotations_are_about_fixed_axes(write):
 def stl(vertices, faces):
     lines = ["solid part"]
     for face in faces:
-        lines += ["facet normal 0 0 0", "outer loop", *(f"vertex {x!r} {y!r} {z!r}" for x, y, z in vertices[face].tolist()),
+        lines += ["facet normal 0 0 0", "outer loop",
+                  *(f"vertex {x!r} {y!r} {z!r}" for x, y, z in vertices[face].tolist()),
                   "endloop", "endfacet"]
     return "\n".join([*lines, "endsolid part", ""])
 
@@ -155,13 +156,16 @@ def test_mjcf_orientations_agree(write):
     quarter = np.pi / 2
     block = ph.shapes.box(12.0, (0.1, 0.2, 0.3)).inertia.matrix.diagonal()
     turned = block[[0, 2, 1]]   # a quarter turn about x
-    ways = ['quat="0.70710678118654757 0.70710678118654757 0 0"', f'euler="{quarter} 0 0"', f'axisangle="2 0 0 {quarter}"',
+    ways = ['quat="0.70710678118654757 0.70710678118654757 0 0"', f'euler="{quarter} 0 0"',
+            f'axisangle="2 0 0 {quarter}"',
             'xyaxes="1 0 0 0 0 2"', 'zaxis="0 -1 0"']
-    bodies = "".join(f'<body name="{i}" childclass="seen"><inertial pos="0 0 0" {way} mass="12" diaginertia="{moments(turned)}"/>'
+    bodies = "".join(f'<body name="{i}" childclass="seen"><inertial pos="0 0 0" {way} mass="12" '
+                     f'diaginertia="{moments(turned)}"/>'
                      '<geom size="0.1 0.2 0.3"/></body>' for i, way in enumerate(ways))
     status, links = judged(write("a.xml", mjcf(bodies)))
     assert status == 0 and len(links) == 5 and all(link["misfit"] < 1e-9 for link in links.values())
-    both = '<body name="b"><inertial pos="0 0 0" euler="90 0 0" mass="12" diaginertia="%s"/><geom type="box" size="0.1 0.2 0.3"/></body>'
+    both = ('<body name="b"><inertial pos="0 0 0" euler="90 0 0" mass="12" diaginertia="%s"/>'
+            '<geom type="box" size="0.1 0.2 0.3"/></body>')
     degrees = mjcf(both % moments(turned)).replace('angle="radian"', "")
     assert judged(write("b.xml", degrees))[1]["b"]["misfit"] < 1e-9
 
@@ -177,15 +181,18 @@ def test_mjcf_euler_sequences(write, sequence):
         turn = turn * single if letter.islower() else single * turn
     quat = np.roll(turn.as_quat(), 1)
     block = ph.shapes.box(12.0, (0.1, 0.2, 0.3)).inertia.matrix.diagonal()
-    text = mjcf(f'<body name="b"><inertial pos="0 0 0" euler="{" ".join(map(str, angles))}" mass="12" diaginertia="{moments(block)}"/>'
-                f'<geom type="box" size="0.1 0.2 0.3" quat="{" ".join(map(str, quat))}"/></body>').replace("XYZ", sequence)
+    text = mjcf(f'<body name="b"><inertial pos="0 0 0" euler="{" ".join(map(str, angles))}" mass="12" '
+                f'diaginertia="{moments(block)}"/>'
+                f'<geom type="box" size="0.1 0.2 0.3" quat="{" ".join(map(str, quat))}"/></body>')
+    text = text.replace("XYZ", sequence)
     assert judged(write("a.xml", text))[1]["b"]["misfit"] < 1e-9
 
 
 def test_mjcf_masses_from_geoms(write):
     status, links = judged(write("a.xml", mjcf('<body name="b"><geom type="box" size="0.1 0.2 0.3"/></body>')))
     expected = ph.shapes.box(2000 * 0.2 * 0.4 * 0.6, (0.1, 0.2, 0.3))
-    assert links["b"]["mass"] == pytest.approx(expected.mass) and links["b"]["moments"] == pytest.approx(expected.inertia.moments)
+    assert links["b"]["mass"] == pytest.approx(expected.mass)
+    assert links["b"]["moments"] == pytest.approx(expected.inertia.moments)
     text = mjcf('<body name="b"><inertial pos="0 0 0" mass="1" diaginertia="1 1 9"/><geom size="0.1" mass="3"/></body>',
                 'inertiafromgeom="true"')
     status, links = judged(write("b.xml", text))
@@ -211,14 +218,16 @@ def test_mjcf_full_inertia_has_its_own_order(write):
     assert judged(write("a.xml", text))[1]["b"]["matrix"] == [[4, 0.1, 0.2], [0.1, 5, 0.3], [0.2, 0.3, 6]]
 
 
-SDF = """<sdf version="1.9"><world name="w"><model name="m"><link name="a"><inertial><pose{attributes}>{pose}</pose><mass>12</mass>
-<inertia><ixx>{0}</ixx><iyy>{1}</iyy><izz>{2}</izz></inertia></inertial>
-<collision name="c"><pose>0.1 0 0 0 0 0</pose><geometry><box><size>0.2 0.4 0.6</size></box></geometry></collision></link>
+SDF = """<sdf version="1.9"><world name="w"><model name="m"><link name="a">
+<inertial><pose{attributes}>{pose}</pose><mass>12</mass><inertia><ixx>{0}</ixx><iyy>{1}</iyy><izz>{2}</izz></inertia></inertial>
+<collision name="c"><pose>0.1 0 0 0 0 0</pose><geometry><box><size>0.2 0.4 0.6</size></box></geometry></collision>
+</link>
 <model name="n"><link name="b"/><link name="c"><inertial auto="true"/></link></model></model></world></sdf>"""
 
 
 @pytest.mark.parametrize("attributes, pose", [("", f"0.1 0 0 {np.pi / 2!r} 0 0"), (' degrees="true"', "0.1 0 0 90 0 0"),
-                                              (' rotation_format="quat_xyzw"', "0.1 0 0 0.7071067811865476 0 0 0.7071067811865476")])
+                                              (' rotation_format="quat_xyzw"',
+                                               "0.1 0 0 0.7071067811865476 0 0 0.7071067811865476")])
 def test_sdf(write, attributes, pose):
     block = ph.shapes.box(12.0, (0.1, 0.2, 0.3)).inertia.matrix.diagonal()
     status, links = judged(write("a.sdf", SDF.format(*block[[0, 2, 1]].tolist(), attributes=attributes, pose=pose)))
@@ -253,17 +262,22 @@ OUTSIDE = '<!DOCTYPE robot [<!ENTITY a SYSTEM "file:///etc/hostname">]><robot na
 
 
 @pytest.mark.parametrize("text, said", [
-    (BOMB, "entities"), (OUTSIDE, "entities"), ('<!DOCTYPE robot SYSTEM "http://a/b.dtd"><robot/>', "document type"), ("<robot><link", "is no XML"), ("", "is no XML"), ("<html/>", "must have the root"),
+    (BOMB, "entities"), (OUTSIDE, "entities"), ('<!DOCTYPE robot SYSTEM "http://a/b.dtd"><robot/>', "document type"),
+    ("<robot><link", "is no XML"), ("", "is no XML"), ("<html/>", "must have the root"),
     ("<robot/>", "<link> is missing"), ('<robot name="r"><link/></robot>', "name is missing"),
-    (urdf("<inertia ixx='1'/>"), "'a'> <inertial>: <mass> is missing"), (urdf('<mass value="1"/>'), "<inertia> is missing"),
+    (urdf("<inertia ixx='1'/>"), "'a'> <inertial>: <mass> is missing"),
+    (urdf('<mass value="1"/>'), "<inertia> is missing"),
     (urdf('<mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0"/>'), "izz is missing"),
-    (urdf('<mass value="heavy"/>'), "value: must be numbers, got 'heavy'"), (urdf('<mass value="nan"/>'), "value: must be finite"),
+    (urdf('<mass value="heavy"/>'), "value: must be numbers, got 'heavy'"),
+    (urdf('<mass value="nan"/>'), "value: must be finite"),
     (urdf('<origin xyz="0 0"/><mass value="1"/>'), "xyz: must be 3 numbers"),
     ('<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r"><xacro:macro/></robot>', "xacro"),
     ("<robot>" + "<link>" * 2000 + "</link>" * 2000 + "</robot>", "nested"),
-    ('<mujoco><worldbody><body name="b"><inertial pos="0 0 0" mass="1"/></body></worldbody></mujoco>', "diaginertia or fullinertia"),
+    ('<mujoco><worldbody><body name="b"><inertial pos="0 0 0" mass="1"/></body></worldbody></mujoco>',
+     "diaginertia or fullinertia"),
     ('<mujoco><worldbody><body><geom size="1" quat="0 0 0 0"/></body></worldbody></mujoco>', "length zero"),
-    (urdf('<mass value="1e40"/>'), "below 1e+30"), ('<mujoco><worldbody/></mujoco>', "no <body>"), ("<sdf/>", "<link> is missing"),
+    (urdf('<mass value="1e40"/>'), "below 1e+30"), ('<mujoco><worldbody/></mujoco>', "no <body>"),
+    ("<sdf/>", "<link> is missing"),
 ])
 def test_what_is_no_robot_is_one_line(write, text, said):
     file = write("bad.urdf", text)

@@ -33,7 +33,8 @@ def test_error_against_stored_truth(name):
 
 @pytest.mark.parametrize("name", ["S5", "S9"])
 def test_error_goes_as_the_tolerance_down_to_rounding(name):
-    found = [error(m.omega, m.attitude, truth(name)) for m in (ph.solve(scene(name), rtol=r) for r in 10.0 ** -np.arange(4, 13))]
+    found = [error(m.omega, m.attitude, truth(name))
+             for m in (ph.solve(scene(name), rtol=r) for r in 10.0 ** -np.arange(4, 13))]
     gains = np.array(found[:-1]) / found[1:]
     assert np.all(gains > 2) and 5 < np.exp(np.log(gains).mean()) < 20
 
@@ -97,7 +98,8 @@ def test_a_full_tensor_turns_as_its_principal_axes_do(name):
         torques.append(torque)
     times = parts["times"][:51]
     a = ph.solve(scene(name, times=times), rtol=1e-12)
-    b = ph.solve(ph.Scene(inertia=(inertia + inertia.T) / 2, omega=R.T @ parts["omega"], attitude=turned, torques=torques,
+    b = ph.solve(ph.Scene(inertia=(inertia + inertia.T) / 2, omega=R.T @ parts["omega"], attitude=turned,
+                          torques=torques,
                           times=times), rtol=1e-12)
     assert rates_error(b.omega @ R.T, a.omega) < 1e-9
     L = a.angular_momentum
@@ -193,7 +195,8 @@ def test_start_time_shifts_a_torque_that_sees_time():
 def test_next_to_rest_far_from_zero_the_first_step_is_one_that_time_can_take(method, rate):
     """Steps as short as such rates ask for are below the spacing of the times around 1000 s."""
     push = ph.torques.Constant((0.1, 0.2, 0.3))
-    one = ph.Scene(inertia=(1, 2, 2.5), omega=(rate, 0, 0), torques=[push], t0=1000.0, times=np.linspace(1000, 1010, 11))
+    one = ph.Scene(inertia=(1, 2, 2.5), omega=(rate, 0, 0), torques=[push], t0=1000.0,
+                   times=np.linspace(1000, 1010, 11))
     motion, known = ph.solve(one, method=method, rtol=1e-9), ph.solve(one, method="taylor", rtol=1e-13)
     assert motion.status == "finished"
     assert np.abs(motion.omega - known.omega).max() < 1e-7
@@ -207,7 +210,8 @@ def test_everything_scales(power):
     """Inertia by s; rates by r and times by 1/r: the same numbers of steps and the same motion."""
     base = ph.solve(scene("S5"), rtol=1e-9)
     s = 2.0**power
-    heavier = ph.solve(scene("S5", inertia=np.array((1, 2, 2.5)) * s, torques=[ph.torques.Gravity(2 * s, (0.3, 0.2, 0.5))]), rtol=1e-9)
+    heavier = ph.solve(scene("S5", inertia=np.array((1, 2, 2.5)) * s,
+                             torques=[ph.torques.Gravity(2 * s, (0.3, 0.2, 0.5))]), rtol=1e-9)
     np.testing.assert_array_equal(heavier.omega, base.omega)
     r = 2.0 ** (power // 3)
     faster = ph.solve(scene("S5", omega=np.array((0.3, 0.2, 3)) * r, times=PARTS["S5"]["times"] / r,
@@ -241,7 +245,8 @@ def test_order_of_the_continuous_extension():
     found = []
     for rtol in (1e-7, 1e-9):
         motion = ph.solve(scene("S1", times=times), rtol=rtol)
-        found.append((error(motion.omega, motion.attitude, {"omega": omega, "attitude": attitude}), motion.stats["steps"]))
+        found.append((error(motion.omega, motion.attitude, {"omega": omega, "attitude": attitude}),
+                      motion.stats["steps"]))
     (e1, n1), (e2, n2) = found
     assert np.log(e1 / e2) / np.log(n2 / n1) > 3.8
 
@@ -258,7 +263,8 @@ def test_max_steps_gives_what_was_reached():
 def test_progress_is_told_and_can_stop():
     seen = []
     long = scene("S1", times=[0.0, 1e5])
-    full = ph.solve(scene("S1", times=[0.0, 2e4]), rtol=1e-9, progress=lambda reached, last: seen.append((reached, last)))
+    full = ph.solve(scene("S1", times=[0.0, 2e4]), rtol=1e-9,
+                    progress=lambda reached, last: seen.append((reached, last)))
     assert full.status == "finished" and seen and all(last == 2e4 and 0 < reached <= 2e4 for reached, last in seen)
     stopped = ph.solve(long, rtol=1e-12, progress=lambda reached, last: False)
     assert stopped.status == "stopped" and not stopped.success and 0 < stopped.stats["steps"]
@@ -300,10 +306,12 @@ BAD_SCENES = [
     ({"omega": (1, 2)}, "omega"), ({"omega": "abc"}, "omega"), ({"omega": (1, 2, np.nan)}, "omega"),
     ({"omega": None}, "omega"), ({"omega": (1, 2, 3j)}, "omega"), ({"omega": ((1, 2, 3),)}, "omega"),
     ({"inertia": (1, 2)}, "inertia"), ({"inertia": (1, 2, 4)}, "inequality|sum"), ({"inertia": (0, 1, 1)}, "positive"),
-    ({"inertia": (-1, 1, 1)}, "moment|positive|negative"), ({"inertia": [[1, 0.1, 0], [0, 1, 0], [0, 0, 1]]}, "symmetric"),
+    ({"inertia": (-1, 1, 1)}, "moment|positive|negative"),
+    ({"inertia": [[1, 0.1, 0], [0, 1, 0], [0, 0, 1]]}, "symmetric"),
     ({"inertia": None}, "inertia"), ({"attitude": (0, 0, 0, 0)}, "norm 0"), ({"attitude": (0, 0, 0, 2)}, "norm"),
     ({"attitude": (0, 0, 1)}, "attitude"), ({"attitude": (0, 0, np.inf, 1)}, "attitude"),
-    ({"times": []}, "times"), ({"times": [np.nan]}, "times"), ({"times": [[0.0, 1.0]]}, "times"), ({"times": "now"}, "times"),
+    ({"times": []}, "times"), ({"times": [np.nan]}, "times"), ({"times": [[0.0, 1.0]]}, "times"),
+    ({"times": "now"}, "times"),
     ({"want": ["energy"]}, "want"), ({"want": []}, "want"), ({"want": 3}, "want"), ({"t0": np.inf}, "t0"),
     ({"torques": 5}, "torques"), ({"torques": [lambda t, w, q: w]}, "Custom"), ({"name": 3}, "name"),
 ]
@@ -316,7 +324,8 @@ def test_bad_scenes_are_refused(changes, match):
 
 
 BAD_OPTIONS = [
-    {"accuracy": 0}, {"accuracy": -1e-3}, {"accuracy": np.nan}, {"accuracy": 2}, {"accuracy": "high"}, {"accuracy": [1e-3, 1e-4]},
+    {"accuracy": 0}, {"accuracy": -1e-3}, {"accuracy": np.nan}, {"accuracy": 2}, {"accuracy": "high"},
+    {"accuracy": [1e-3, 1e-4]},
     {"accuracy": 1e-6, "rtol": 1e-6}, {"rtol": 0}, {"rtol": np.inf}, {"atol": -1}, {"method": "rk5"}, {"method": 5},
     {"step": 0.1}, {"max_steps": 0}, {"max_steps": 1.5}, {"formulation": "newton"}, {"events": 3}, {"events": [3]},
 ]
@@ -363,7 +372,8 @@ def test_energy_and_momentum_are_what_they_say():
     vertical = np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)], axis=1)
     energy = 0.5 * (motion.omega**2 @ np.array((1, 2, 2.5))) + 2 * vertical @ np.array((0.3, 0.2, 0.5))
     np.testing.assert_allclose(motion.energy, energy, rtol=1e-14)
-    np.testing.assert_allclose(motion.angular_momentum[:, 2], np.sum(vertical * motion.omega * (1, 2, 2.5), axis=1), rtol=1e-12)
+    np.testing.assert_allclose(motion.angular_momentum[:, 2], np.sum(vertical * motion.omega * (1, 2, 2.5), axis=1),
+                               rtol=1e-12)
     assert set(motion.drift) == {"energy", "vertical_momentum"}
     assert set(ph.solve(scene("S1", times=[1.0])).drift) == {"energy", "angular_momentum"}
     assert set(ph.solve(scene("S6", times=[1.0])).drift) == {"jacobi"}

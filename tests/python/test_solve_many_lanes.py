@@ -36,7 +36,8 @@ def common(torques=(), times=TIMES, **parts):
 
 def same(a, b):
     return all((x is None and y is None) or np.array_equal(x, y, equal_nan=True)
-               for x, y in ((a.omega, b.omega), (a.attitude, b.attitude), (a.steps, b.steps), (a.t_reached, b.t_reached)))
+               for x, y in ((a.omega, b.omega), (a.attitude, b.attitude), (a.steps, b.steps),
+                            (a.t_reached, b.t_reached)))
 
 
 def picked(rows):
@@ -55,7 +56,8 @@ def test_each_is_the_motion_that_solve_finds(torques, want):
     many = ph.solve_many(one, rtol=1e-14, **STARTS)
     assert many.lanes.all() and set(many.status) == {"finished"} and (many.t_reached == 7.5).all()
     for i in range(0, N, 3):
-        alone = ph.solve(one.replace(inertia=MOMENTS[i], omega=SPINS[i], attitude=TURNS[i]), method="dop853", rtol=1e-14)
+        alone = ph.solve(one.replace(inertia=MOMENTS[i], omega=SPINS[i], attitude=TURNS[i]), method="dop853",
+                         rtol=1e-14)
         size = np.abs(alone.omega).max()
         assert np.abs(many.omega[i] - alone.omega).max() < 2e-11 * size
         if "attitude" in want:
@@ -67,7 +69,8 @@ def test_the_tolerance_is_kept_against_the_closed_form(rtol, bound):
     many = ph.solve_many(common(), rtol=rtol, **STARTS)
     omega, attitude = ph.free_motion(MOMENTS[:, None], SPINS[:, None], TURNS[:, None], np.array(TIMES))
     sizes = np.linalg.norm(omega, axis=-1).max(axis=1)
-    error = max((np.linalg.norm(many.omega - omega, axis=-1).max(axis=1) / sizes).max(), distance(many.attitude, attitude))
+    error = max((np.linalg.norm(many.omega - omega, axis=-1).max(axis=1) / sizes).max(),
+                distance(many.attitude, attitude))
     assert error < bound
     assert many.success.all() or rtol == 1e-16   # no drift of 1e-16 can be kept
     assert many.steps.max() > 3 * many.steps.min()   # lanes were left and taken at different times
@@ -113,7 +116,8 @@ def test_avx2_and_avx512_give_the_same_bits():
         pytest.skip("needs AVX-512")
     found = {}
     for level in ("avx2", "avx512"):
-        run = subprocess.run([sys.executable, "-c", PRINT.format(path=sys.path)], env={**os.environ, "POLHODE_SIMD": level},
+        run = subprocess.run([sys.executable, "-c", PRINT.format(path=sys.path)],
+                             env={**os.environ, "POLHODE_SIMD": level},
                              capture_output=True, text=True, check=True)
         *found[level], simd = run.stdout.split("\n")[:-1]
         assert simd == level
@@ -128,7 +132,8 @@ def test_a_failing_body_leaves_its_neighbours_alone():
     damped = [one.replace(torques=[T.Damping((0.1, 0.1, 0.1))]) for one in tame]
     quiet = ph.solve_many(tame + damped, method="taylor", rtol=1e-9)
     assert set(quiet.status) == {"finished"}
-    many = ph.solve_many(tame[:3] + [blown, huge] + tame[3:] + damped + [blown], method="taylor", rtol=1e-9, max_steps=3000)
+    many = ph.solve_many(tame[:3] + [blown, huge] + tame[3:] + damped + [blown], method="taylor", rtol=1e-9,
+                         max_steps=3000)
     good = [i for i in range(23) if i not in (3, 4, 22)]
     assert np.array_equal(many.omega[good], quiet.omega) and np.array_equal(many.attitude[good], quiet.attitude)
     for i in (3, 4, 22):
@@ -140,13 +145,15 @@ def test_a_failing_body_leaves_its_neighbours_alone():
 def test_too_many_steps_are_told_and_what_was_reached_is_kept():
     one = common(times=(0, 0.5, 400))
     many = ph.solve_many(one, rtol=1e-10, max_steps=30, **STARTS)
-    alone = [ph.solve(one.replace(inertia=MOMENTS[i], omega=SPINS[i], attitude=TURNS[i]), method="taylor", rtol=1e-10, max_steps=30)
+    alone = [ph.solve(one.replace(inertia=MOMENTS[i], omega=SPINS[i], attitude=TURNS[i]), method="taylor", rtol=1e-10,
+                      max_steps=30)
              for i in range(N)]
     assert many.status == tuple(motion.status for motion in alone) and "max_steps" in many.status
     stopped = [i for i in range(N) if many.status[i] == "max_steps"]
     assert (many.steps[stopped] == 30).all() and np.isnan(many.omega[stopped, 2]).all()
     assert all("max_steps = 30" in many.message[i] for i in stopped)
-    back = ph.solve_many(common(times=(-400, 0.5)), rtol=1e-10, max_steps=30, **STARTS)   # who fails there goes no further
+    back = ph.solve_many(common(times=(-400, 0.5)), rtol=1e-10, max_steps=30,
+                         **STARTS)   # who fails there goes no further
     assert back.status.count("max_steps") > 5 and all(
         np.isnan(back.omega[i, 1]).all() == (back.status[i] == "max_steps") for i in range(N))
 
@@ -162,13 +169,15 @@ def test_times_in_any_order_and_at_the_start():
     assert (at_rest.omega == 0).all() and set(at_rest.status) == {"finished"}
     later = ph.solve_many(common(times=(12.0, 8.0), t0=10.0), rtol=1e-13, **STARTS)
     assert np.array_equal(later.omega.shape, (N, 2, 3)) and distance(
-        later.attitude, ph.free_motion(MOMENTS[:, None], SPINS[:, None], TURNS[:, None], np.array((2.0, -2.0)))[1]) < 1e-11
+        later.attitude, ph.free_motion(MOMENTS[:, None], SPINS[:, None], TURNS[:, None],
+                                       np.array((2.0, -2.0)))[1]) < 1e-11
 
 
 @pytest.mark.parametrize("scale", [1e-12, 1e12])
 def test_units_make_no_difference(scale):
     many = ph.solve_many(common(), rtol=1e-10, **STARTS)
-    fast = ph.solve_many(common(times=tuple(t / scale for t in TIMES)), **{**STARTS, "omega": SPINS * scale, "rtol": 1e-10})
+    fast = ph.solve_many(common(times=tuple(t / scale for t in TIMES)),
+                         **{**STARTS, "omega": SPINS * scale, "rtol": 1e-10})
     assert distance(many.attitude, fast.attitude) < 1e-8
     heavy = ph.solve_many(common(), **{**STARTS, "inertia": MOMENTS * scale, "rtol": 1e-10})
     assert distance(many.attitude, heavy.attitude) < 1e-8

@@ -1,4 +1,4 @@
-"""rk45 with eight bodies side by side: each is what solve() makes of it, bit for bit, at every level of instructions."""
+"""rk45 with eight bodies side by side: each is what solve() makes of it, bit for bit, at every instruction set."""
 
 import os
 import subprocess
@@ -27,7 +27,8 @@ TORQUES = {
     "damping": [T.Damping([[0.05, 0.01, 0], [-0.02, 0.03, 0.004], [0.003, 0, 0.02]])],
     "gradient": [T.GravityGradient(mean_motion=0.3, phase=0.7)],
     "all": [T.GravityGradient(mean_motion=0.3), T.Gravity(1, (0, 0.1, 0.3)), SPACE, T.Damping((0.01, 0.05, 0.02)),
-            T.Constant((0.1, -0.2, 0.05)), T.GravityGradient(mean_motion=-0.1, phase=2), SPACE, T.Gravity(0.3, (0.2, 0, 0))],
+            T.Constant((0.1, -0.2, 0.05)), T.GravityGradient(mean_motion=-0.1, phase=2), SPACE,
+            T.Gravity(0.3, (0.2, 0, 0))],
     "none": [T.Gravity(0, (1, 0, 0)), T.Damping((0, 0, 0)), T.GravityGradient(mean_motion=0)],
 }
 
@@ -37,7 +38,8 @@ def make_scenes(torques, times=TIMES, want=("omega", "attitude"), skew=False, sc
     found = []
     for moments, spin, turn, other in zip(MOMENTS, SPINS, TURNS, np.roll(TURNS, 1, axis=0), strict=True):
         inertia = ph.InertiaTensor.from_moments(moments * scale)
-        found.append(ph.Scene(inertia=inertia.rotated(ph.Rotation(other)) if skew else inertia, omega=spin, attitude=turn,
+        found.append(ph.Scene(inertia=inertia.rotated(ph.Rotation(other)) if skew else inertia, omega=spin,
+                              attitude=turn,
                               torques=torques, times=times, want=want, **parts))
     return found
 
@@ -74,8 +76,10 @@ def test_each_body_is_what_solve_makes_of_it_to_the_bit(torques, want, skew):
 
 
 def test_each_body_has_torques_of_its_own():
-    # next to each other: orbit angles that the polynomials take, that the library takes, and that pass from one to the other
-    scenes = [one.replace(torques=[T.GravityGradient(0.2 + 0.01 * i, (0.5, 3e5, 1e5 - 1)[i % 3]), T.Gravity(0.1 * i, (0, 0.1, -0.02 * i))])
+    # next to each other: orbit angles that the polynomials take, that the library takes, and that pass from one to the
+    # other
+    scenes = [one.replace(torques=[T.GravityGradient(0.2 + 0.01 * i, (0.5, 3e5, 1e5 - 1)[i % 3]),
+                                   T.Gravity(0.1 * i, (0, 0.1, -0.02 * i))])
               for i, one in enumerate(make_scenes([]))]
     many = ph.solve_many(scenes, method="rk45", rtol=1e-6)
     require_same(many, scenes, method="rk45", rtol=1e-6)
@@ -86,7 +90,8 @@ def test_the_tolerance_is_kept_against_the_closed_form(rtol, bound):
     many = ph.solve_many(make_scenes([]), rtol=rtol)   # rk45 is what solve() takes where only a tolerance is given
     omega, attitude = ph.free_motion(MOMENTS[:, None], SPINS[:, None], TURNS[:, None], np.array(TIMES))
     rates = np.linalg.norm(many.omega - omega, axis=-1).max(axis=1) / np.linalg.norm(SPINS, axis=1)
-    turns = np.minimum(np.linalg.norm(many.attitude - attitude, axis=-1), np.linalg.norm(many.attitude + attitude, axis=-1))
+    turns = np.minimum(np.linalg.norm(many.attitude - attitude, axis=-1),
+                       np.linalg.norm(many.attitude + attitude, axis=-1))
     assert many.lanes.all() and rates.max() < bound and 2 * turns.max() < bound
 
 
@@ -123,7 +128,8 @@ def test_every_level_gives_the_same_bits():
         pytest.skip("needs AVX2")
     found = {}
     for level in there:
-        run = subprocess.run([sys.executable, "-c", PRINT.format(path=sys.path)], env={**os.environ, "POLHODE_SIMD": level},
+        run = subprocess.run([sys.executable, "-c", PRINT.format(path=sys.path)],
+                             env={**os.environ, "POLHODE_SIMD": level},
                              capture_output=True, text=True, check=True)
         *found[level], simd = run.stdout.split("\n")[:-1]
         assert simd == level and len(found[level]) == 2 * len(TORQUES)
@@ -132,11 +138,13 @@ def test_every_level_gives_the_same_bits():
 
 def test_bodies_that_fail_do_so_alone_and_say_what_solve_says():
     tame = make_scenes(TORQUES["gravity"], times=(0, 1, 50))
-    growing = [one.replace(torques=[T.Damping((-0.3, -0.3, -0.3))]) for one in tame[:5]]     # rates grow as exp(0.3 t / I)
+    growing = [one.replace(torques=[T.Damping((-0.3, -0.3, -0.3))])
+               for one in tame[:5]]     # rates grow as exp(0.3 t / I)
     blown = ph.Scene(inertia=(0.01, 0.011, 0.012), omega=(1, 1, 1), torques=[T.Damping((-1, -1, -1))], times=(0, 1, 50))
     huge = blown.replace(torques=[T.Constant((1e308, 1e308, 1e308))])
     late = tame[0].replace(t0=1e17, times=(1e17 + 64,))   # times are 16 s apart there: no step is short enough
-    still = [tame[0].replace(times=(0, 0, 0)), tame[1].replace(times=(0, -3, 0)), tame[2].replace(omega=(0, 0, 0), torques=[])]
+    still = [tame[0].replace(times=(0, 0, 0)), tame[1].replace(times=(0, -3, 0)),
+             tame[2].replace(omega=(0, 0, 0), torques=[])]
     scenes = [*tame[:3], blown, huge, *growing, *tame[3:], *still, blown, huge]
     options = {"method": "rk45", "rtol": 1e-7, "max_steps": 900}
     many = ph.solve_many(scenes, **options)

@@ -22,7 +22,8 @@ def angle_error(a, b):
 
 
 # what is reached at the finest tolerance, at every level of instructions; S3 is three times its floor (docs/scenes.md)
-@pytest.mark.parametrize(("name", "reached"), [("S1", 2e-13), ("S2", 3e-13), ("S3", 3e-12), ("S4", 5e-13), ("S5", 1e-14), ("S6", 3e-13),
+@pytest.mark.parametrize(("name", "reached"), [("S1", 2e-13), ("S2", 3e-13), ("S3", 3e-12), ("S4", 5e-13),
+                                               ("S5", 1e-14), ("S6", 3e-13),
                                                ("S7", 5e-14), ("S9", 5e-14)])
 def test_stored_truth_is_reached(name, reached):
     motion = ph.solve(scene(name), method="taylor", rtol=1e-16)
@@ -40,18 +41,23 @@ def test_the_error_follows_the_tolerance(name):
     assert errors[1] < errors[0] / 50 and errors[2] < errors[1] / 50
 
 
-MOMENTS = {"sorted": (1, 2, 2.5), "cyclic": (2.5, 1, 2), "odd": (2, 1, 2.5), "oblate": (1, 1, 1.8), "prolate": (1, 2, 2),
+MOMENTS = {"sorted": (1, 2, 2.5), "cyclic": (2.5, 1, 2), "odd": (2, 1, 2.5), "oblate": (1, 1, 1.8),
+           "prolate": (1, 2, 2),
            "sphere": (1, 1, 1), "nearly oblate": (1, 1.001, 1.9), "turned": None}
-ACTING = {"free": [], "gravity": [ARM], "space": [PUSH], "damped": [DRAG], "orbit": [ORBIT], "orbit and space": [ORBIT, PUSH],
-          "pivot": [ARM, PUSH, DRAG, THRUST], "all": [ORBIT, ARM, PUSH, DRAG, THRUST], "twice": [ARM, ARM, ORBIT, ORBIT]}
+ACTING = {"free": [], "gravity": [ARM], "space": [PUSH], "damped": [DRAG], "orbit": [ORBIT],
+          "orbit and space": [ORBIT, PUSH],
+          "pivot": [ARM, PUSH, DRAG, THRUST], "all": [ORBIT, ARM, PUSH, DRAG, THRUST],
+          "twice": [ARM, ARM, ORBIT, ORBIT]}
 
 
 @pytest.mark.parametrize("body", MOMENTS)
 @pytest.mark.parametrize("acting", ACTING)
 def test_every_body_and_sum_of_torques_agrees_with_dop853(body, acting):
-    inertia = MOMENTS[body] or ph.InertiaTensor.from_moments((1, 2, 2.5)).rotated(ph.Rotation.from_rotvec((0.3, 0.5, -0.7)))
+    inertia = MOMENTS[body] or ph.InertiaTensor.from_moments((1, 2,
+                                                              2.5)).rotated(ph.Rotation.from_rotvec((0.3, 0.5, -0.7)))
     for times in (np.linspace(0, 3, 7), -np.linspace(0, 3, 7)):
-        parts = {"inertia": inertia, "omega": (0.7, -0.4, 1.2), "attitude": TURNED, "torques": ACTING[acting], "times": times}
+        parts = {"inertia": inertia, "omega": (0.7, -0.4, 1.2), "attitude": TURNED, "torques": ACTING[acting],
+                 "times": times}
         other = ph.solve(ph.Scene(**parts), method="dop853", rtol=1e-13)
         size = np.abs(other.omega).max()
         motion = ph.solve(ph.Scene(**parts), method="taylor", rtol=1e-15)
@@ -75,7 +81,8 @@ def test_only_what_is_needed_is_carried():
 def test_the_racket_keeps_its_digits_however_near_the_separatrix():
     for eps in 10.0 ** -np.arange(0, 9):
         parts = {"inertia": (0.20, 0.40, 0.52), "omega": (eps, 5, eps), "times": np.linspace(0, 200, 401)}
-        exact = dict(zip(("omega", "attitude"), ph.free_motion(parts["inertia"], parts["omega"], (0, 0, 0, 1), parts["times"]),
+        exact = dict(zip(("omega", "attitude"), ph.free_motion(parts["inertia"], parts["omega"], (0, 0, 0, 1),
+                                                               parts["times"]),
                          strict=True))
         motion = ph.solve(ph.Scene(**parts), method="taylor", rtol=1e-16)
         assert error(motion.omega, motion.attitude, exact) < 1e-12, eps
@@ -103,14 +110,16 @@ def test_units_of_time_and_inertia_change_nothing():
     for power in (-40, 40):
         s, i = 2.0**power, 2.0 ** (2 * power)
         motion = ph.solve(one, method="taylor", rtol=1e-12)
-        other = ph.solve(scene("S5", inertia=np.array(PARTS["S5"]["inertia"]) / i, omega=s * np.array(PARTS["S5"]["omega"]),
+        other = ph.solve(scene("S5", inertia=np.array(PARTS["S5"]["inertia"]) / i,
+                               omega=s * np.array(PARTS["S5"]["omega"]),
                                times=PARTS["S5"]["times"] / s), method="taylor", rtol=1e-12)
         assert (other.omega == s * motion.omega).all() and (other.attitude == motion.attitude).all()
 
 
 @pytest.mark.parametrize("factor", [1e-12, 1e12])
 def test_decimal_scales_too(factor):
-    one = scene("S9", inertia=np.array((0.20, 0.40, 0.52)) * factor, torques=[T.Constant(factor * np.array((0.01, -0.02, 0.03)))])
+    one = scene("S9", inertia=np.array((0.20, 0.40, 0.52)) * factor,
+                torques=[T.Constant(factor * np.array((0.01, -0.02, 0.03)))])
     motion = ph.solve(one, method="taylor", rtol=1e-14)
     assert error(motion.omega, motion.attitude, truth("S9")) < 1e-12
 
@@ -146,7 +155,8 @@ def test_what_cannot_be_done_is_said():
         ph.solve(scene("S6", torques=[T.GravityGradient(1e-3), T.GravityGradient(2e-3)]), method="taylor")
     assert "raised to 1e-16" in ph.solve(scene("S5"), method="taylor", rtol=1e-18).message
     # Damping of the wrong sign: beyond float64 in finite time. What was reached is returned.
-    wild = ph.Scene(inertia=(1, 2, 3), omega=(1, 1, 1), torques=[T.Damping((-1, -1, -1))], times=np.linspace(0, 1e4, 101))
+    wild = ph.Scene(inertia=(1, 2, 3), omega=(1, 1, 1), torques=[T.Damping((-1, -1, -1))],
+                    times=np.linspace(0, 1e4, 101))
     motion = ph.solve(wild, method="taylor", max_steps=20000)
     assert motion.status in ("failed", "max_steps") and not motion.success
     assert 0 < motion.t.size < 101 and np.isfinite(motion.omega).all()

@@ -93,7 +93,8 @@ def test_a_weight_next_to_nothing_does_not_cost_the_racket_its_flips():
 
 def test_released_from_rest_and_back_through_it():
     """Where a body stands still its rates tell nothing of the energy: they are not moved there."""
-    scene = ph.Scene(inertia=(1, 2, 2.5), omega=(0, 0, 0), attitude=TILTED, torques=[ph.torques.Gravity(2.0, (0.0, 0.0, 0.5))],
+    scene = ph.Scene(inertia=(1, 2, 2.5), omega=(0, 0, 0), attitude=TILTED,
+                     torques=[ph.torques.Gravity(2.0, (0.0, 0.0, 0.5))],
                      times=np.linspace(0, 30, 301))
     motion = ph.solve(scene, method="taylor", rtol=1e-14)
     other = ph.solve(scene, method="dop853", rtol=1e-13)

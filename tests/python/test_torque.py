@@ -66,14 +66,17 @@ def test_each_torque_is_its_formula(torque, formula):
     np.testing.assert_allclose(acceleration(torque, OMEGA, Q, t0=2.0), formula(matrix(Q)), rtol=1e-9, atol=1e-10)
 
 
-@pytest.mark.parametrize("torque", [Gravity(2, (0.3, 0.2, 0.5)), GravityGradient(0.3, phase=0.7)], ids=["gravity", "gradient"])
+@pytest.mark.parametrize("torque", [Gravity(2, (0.3, 0.2, 0.5)), GravityGradient(0.3, phase=0.7)],
+                         ids=["gravity", "gradient"])
 def test_a_potentials_gradient_is_the_torque(torque):
     """dV = -tau_B . dtheta for a small turn dtheta in body axes."""
     def potential(turn):
-        h = np.array([*np.sin(np.linalg.norm(turn) / 2) * turn / np.linalg.norm(turn), np.cos(np.linalg.norm(turn) / 2)])
+        h = np.array([*np.sin(np.linalg.norm(turn) / 2) * turn / np.linalg.norm(turn),
+                      np.cos(np.linalg.norm(turn) / 2)])
         x, y, z, w = Q
         a, b, c, d = h
-        q = [w * a + x * d + y * c - z * b, w * b - x * c + y * d + z * a, w * c + x * b - y * a + z * d, w * d - x * a - y * b - z * c]
+        q = [w * a + x * d + y * c - z * b, w * b - x * c + y * d + z * a, w * c + x * b - y * a + z * d,
+             w * d - x * a - y * b - z * c]
         still = ph.Scene(inertia=(1, 2, 2.5), omega=(0, 0, 0), attitude=q, torques=[torque], times=[2.0], t0=2.0)
         return ph.solve(still).energy[0]
 
@@ -83,12 +86,14 @@ def test_a_potentials_gradient_is_the_torque(torque):
 
 
 def test_torques_add_up():
-    parts = [Constant((0.1, 0, 0)), Constant((0, 0.2, 0), "space"), Gravity(2, (0.3, 0.2, 0.5)), Damping((0.1, 0.2, 0.3))]
+    parts = [Constant((0.1, 0, 0)), Constant((0, 0.2, 0), "space"), Gravity(2, (0.3, 0.2, 0.5)),
+             Damping((0.1, 0.2, 0.3))]
     total = sum(acceleration(one, OMEGA, Q) for one in parts)
     times = np.linspace(0, 1e-3, 3)
     motion = ph.solve(ph.Scene(inertia=(1, 2, 2.5), omega=OMEGA, attitude=Q, torques=parts, times=times), rtol=1e-14)
     rate = (-3 * motion.omega[0] + 4 * motion.omega[1] - motion.omega[2]) / 1e-3
-    np.testing.assert_allclose(np.array((1, 2, 2.5)) * rate + np.cross(OMEGA, np.array((1, 2, 2.5)) * OMEGA), total, atol=1e-5)
+    np.testing.assert_allclose(np.array((1, 2, 2.5)) * rate + np.cross(OMEGA, np.array((1, 2, 2.5)) * OMEGA), total,
+                               atol=1e-5)
     summed = ph.solve(scene("S9", torques=[Constant((0.01, 0, 0)), Constant((0, -0.02, 0.03))]), rtol=1e-10)
     np.testing.assert_allclose(summed.omega, ph.solve(scene("S9"), rtol=1e-10).omega, rtol=1e-9)
 
@@ -108,7 +113,8 @@ def height(t, attitude):
 
 
 def test_a_python_callable_is_the_same_torque():
-    mine = ph.solve(scene("S5", torques=[Custom(gravity, uses_time=False, uses_rates=False, potential=height)]), rtol=1e-9)
+    mine = ph.solve(scene("S5", torques=[Custom(gravity, uses_time=False, uses_rates=False, potential=height)]),
+                    rtol=1e-9)
     built_in = ph.solve(scene("S5"), rtol=1e-9)
     np.testing.assert_allclose(mine.omega, built_in.omega, atol=1e-11)
     assert mine.drift["energy"] == pytest.approx(built_in.drift["energy"], rel=1e-2)

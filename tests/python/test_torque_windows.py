@@ -23,7 +23,8 @@ def nothing(t, omega, attitude):
     return (0.0, 0.0, 0.0)
 
 
-@pytest.mark.parametrize("torque", [FIRING, Gravity(2, (0.3, 0.2, 0.5)), GravityGradient(1e-3), Damping((1, 2, 3)), Custom(nothing)], ids=repr)
+@pytest.mark.parametrize("torque", [FIRING, Gravity(2, (0.3, 0.2, 0.5)), GravityGradient(1e-3), Damping((1, 2, 3)),
+                                    Custom(nothing)], ids=repr)
 def test_it_is_a_value(torque):
     one = During(torque, [(30, 40), (0, 10)])
     again = pickle.loads(pickle.dumps(one))
@@ -31,7 +32,8 @@ def test_it_is_a_value(torque):
     assert one.windows == ((0.0, 10.0), (30.0, 40.0)) and one.torque == torque
     assert one != During(torque, [(0, 10)]) and one != torque and one != During(Constant((9, 9, 9)), one.windows)
     assert one.traits == {**torque.traits, "uses_time": True}
-    assert During(torque, (0, 10)) == During(torque, [[0, 10]]) and During(torque, np.array([(0, 5), (5, 10)])) == During(torque, (0, 10))
+    assert During(torque, (0, 10)) == During(torque, [[0, 10]])
+    assert During(torque, np.array([(0, 5), (5, 10)])) == During(torque, (0, 10))
     held = scene(one)
     if not isinstance(torque, Custom):
         assert eval(repr(one), {"polhode": ph}) == one and pickle.loads(pickle.dumps(held)) == held != scene(torque)
@@ -39,7 +41,8 @@ def test_it_is_a_value(torque):
 
 @pytest.mark.parametrize(("windows", "words"), [
     ([(10, 0)], "got [10, 0] (begin and end are swapped)"), ([(5, 5)], "got [5, 5] (an empty window"),
-    ([(0, 10), (5, 15)], "apart from each other, got [0, 10] and [5, 15] (what acts twice"), ([(0, np.nan)], "got [0, nan]"),
+    ([(0, 10), (5, 15)], "apart from each other, got [0, 10] and [5, 15] (what acts twice"),
+    ([(0, np.nan)], "got [0, nan]"),
     ([(np.nan, 1)], "got [nan, 1]"), ([(0, 1, 2)], "pairs (begin, end), got shape (1, 3)"), ("soon", "During.windows"),
     ([(INF, INF)], "got [inf, inf]"), ([0, 1, 2, 3], "pairs"), (None, "During.windows"),
 ])
@@ -84,7 +87,8 @@ def test_a_scene_file_has_windows(tmp_path):
 
 @pytest.mark.parametrize(("windows", "words"), [
     ("[[10, 0]]", "During.windows: must be pairs of a begin and a later end"), ("[[0, nan]]", "During.windows"),
-    ("[[0, 1, 2]]", "torques.0.constant.during.0: must have at most 2 items"), ('"soon"', "torques.0.constant.during: must be a list"),
+    ("[[0, 1, 2]]", "torques.0.constant.during.0: must have at most 2 items"),
+    ('"soon"', "torques.0.constant.during: must be a list"),
     ("[[0, 10], [5, 7]]", "apart from each other"),
 ])
 def test_bad_windows_in_a_file(tmp_path, windows, words):

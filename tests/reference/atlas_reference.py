@@ -106,7 +106,8 @@ def parts(programs):
         "racket": lambda: {**many("racket", map(scenes.racket, scenes.RACKET), lambda c: free(c.scene)),
                            "racket/flips": np.array([first_flip(e) for e in scenes.RACKET])},
         "long": lambda: many("long", map(scenes.long, scenes.LONG), lambda c: free(c.scene)),
-        "near": lambda: many("near", [scenes.near(kind, gap) for kind in ("sphere", "symmetric") for gap in scenes.NEAR],
+        "near": lambda: many("near", [scenes.near(kind, gap) for kind in ("sphere", "symmetric")
+                                      for gap in scenes.NEAR],
                              lambda c: free(c.scene)),
         "gimbal": lambda: many("gimbal", [scenes.gimbal(kind, d) for kind in ("free", "top") for d in scenes.GIMBAL],
                                lambda c: driven(programs, c.scene)),

@@ -1,6 +1,7 @@
 """Makes elliptic.csv: Jacobi's functions, K and the nome by mpmath, on the complementary pair (m, m1).
 
-The smaller of m and m1 is a float64 number taken as exact; digits enough for 1 - 1e-300. Run: python elliptic_reference.py
+The smaller of m and m1 is a float64 number taken as exact; digits enough for 1 - 1e-300. Run: python
+elliptic_reference.py
 """
 
 import csv
@@ -15,8 +16,10 @@ TABLE = pathlib.Path(__file__).with_name("elliptic.csv")
 def main():
     rng = random.Random(7)
     pairs = [(0.5, 0.5), (0.97, 0.03), (0.03, 0.97)]
-    pairs += [(None, 10.0 ** -rng.uniform(0.1, 3)) for _ in range(40)] + [(None, 10.0 ** (-300 * i / 39)) for i in range(1, 40)]
-    pairs += [(10.0 ** -rng.uniform(0.1, 3), None) for _ in range(15)] + [(10.0 ** (-300 * i / 14), None) for i in range(1, 15)]
+    pairs += [(None, 10.0 ** -rng.uniform(0.1, 3)) for _ in range(40)]
+    pairs += [(None, 10.0 ** (-300 * i / 39)) for i in range(1, 40)]
+    pairs += [(10.0 ** -rng.uniform(0.1, 3), None) for _ in range(15)]
+    pairs += [(10.0 ** (-300 * i / 14), None) for i in range(1, 15)]
     with TABLE.open("w", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(["u", "m", "m1", "sn", "cn", "dn", "K", "nome"])
@@ -29,7 +32,8 @@ def main():
                 u = float(rng.choice((-1, 1)) * 10.0**size * K)
                 reduced = mpf(u) - 4 * K * nint(mpf(u) / (4 * K))
                 values = [float(ellipfun(f, reduced, m=M)) for f in ("sn", "cn", "dn")]
-                writer.writerow([repr(u), repr(float(M)), repr(float(1 - M)), *map(repr, values), repr(float(K)), repr(float(q))])
+                writer.writerow([repr(u), repr(float(M)), repr(float(1 - M)), *map(repr, values), repr(float(K)),
+                                 repr(float(q))])
 
 
 if __name__ == "__main__":

@@ -261,9 +261,11 @@ def families(random):
         ([1.0, 1.0, 2.0], [1.0, 0.0, 0.0]), ([1.0, 1.0, 2.0], [1.0, 1.0, 0.0]), ([1.0, 1.0, 2.0], [0.0, 0.0, 1.0]),
         ([1.0, 1.0, 2.0], [1.0, 0.5, 1.0]), ([1.0, 2.0, 2.0], [1.0, 0.0, 0.0]), ([1.0, 2.0, 2.0], [0.0, 0.6, 0.8]),
         ([1.0, 2.0, 2.0], [1.0, 0.6, 0.8]), ([2.0, 1.0, 2.0], [1.0, -3.0, 0.1]), ([0.4, 0.4, 0.2], [0.5, 0.0, 4.0]),
-        ([0.2, 0.4, 0.52], [1.0, 2.0, 3.0]), ([0.2, 0.4, 0.52], [1e-4, 5.0, 1e-4]), ([10.0, 20.0, 26.0], [1.0, 15.0, 1.0]),
+        ([0.2, 0.4, 0.52], [1.0, 2.0, 3.0]), ([0.2, 0.4, 0.52], [1e-4, 5.0, 1e-4]),
+        ([10.0, 20.0, 26.0], [1.0, 15.0, 1.0]),
     ]
-    # Exactly on the separatrix: I1 (I2 - I1) w1^2 = I3 (I3 - I2) w3^2 in integers, both branches, w2 of either sign or 0.
+    # Exactly on the separatrix: I1 (I2 - I1) w1^2 = I3 (I3 - I2) w3^2 in integers, both branches, w2 of either sign or
+    # 0.
     for I, ratio in (([2.0, 5.0, 6.0], 1.0), ([3.0, 4.0, 6.0], 2.0), ([3.0, 5.0, 6.0], 1.0), ([4.0, 5.0, 9.0], 3.0)):
         for w2 in (0.0, 0.75, -20.0, 1e-8):
             exact.append((I, [random.choice((-1, 1)) * ratio, w2, random.choice((-1, 1)) * 1.0]))
@@ -313,7 +315,8 @@ def main():
         writer.writerow(COLUMNS)
         for family, I, omega, q, t in rows():
             answer, cond = answer_and_condition(I, omega, q, t)
-            writer.writerow([family, *map(repr, [*I, *omega, *q, t]), *(repr(float(c)) for c in [*answer[0], *answer[1]]),
+            writer.writerow([family, *map(repr, [*I, *omega, *q, t]),
+                             *(repr(float(c)) for c in [*answer[0], *answer[1]]),
                              f"{float(cond):.3e}"])
 
 

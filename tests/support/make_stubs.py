@@ -45,14 +45,18 @@ def tidy_signature(line: str, public: list[str], home: str) -> str:
 
 def torque_signatures(text: str) -> str:
     """The torques' constructors take *args and read them by their records; the records know the signature too."""
-    types_of = {"real": "float", "vector": "numpy.typing.ArrayLike", "matrix": "numpy.typing.ArrayLike", "choice": "str"}
+    types_of = {"real": "float", "vector": "numpy.typing.ArrayLike", "matrix": "numpy.typing.ArrayLike",
+                "choice": "str"}
     for record in polhode.torques.records():
-        parameters = [f"{p['name']}: {types_of[p['kind']]}" + (f" = {p['default']!r}" if p["default"] is not None else "")
+        parameters = [f"{p['name']}: "
+                      f"{types_of[p['kind']]}" + (f" = {p['default']!r}" if p["default"] is not None else "")
                       for p in record["parameters"]]
         start = text.index(f"class {record['name']}:")
         head, body = text[:start], text[start:]
-        text = head + body.replace("(self, *args, **kwargs)", f"({', '.join(['self', *parameters])})", 1) if parameters else text
-    return text.replace("import typing\n", "import numpy\nimport numpy.typing\nimport typing\n", 1) if "numpy." in text else text
+        text = head + body.replace("(self, *args, **kwargs)", f"({', '.join(['self', *parameters])})",
+                                   1) if parameters else text
+    return text.replace("import typing\n", "import numpy\nimport numpy.typing\nimport typing\n",
+                        1) if "numpy." in text else text
 
 
 def tidy(text: str, public: list[str], home: str) -> str:

@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ..charts.truth import Truth, find_truth
-from ..motion import Floats
-from ..scene import Scene
+from .._harness.truth import Truth, find_truth
+from .._solve.motion import Floats
+from .._scene.scene import Scene
 
 S1_MOMENTS = (0.2, 0.4, 0.52)
 STORE = pathlib.Path(__file__).with_name("truth.npz")

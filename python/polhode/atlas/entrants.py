@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from ..solver import methods
+from .._solve.solve import methods
 
 TIGHT = 1e-14       # the tolerance of methods that choose their steps, where nothing else is swept
 PER_TURN = 40       # steps a turn of those that do not

@@ -50,7 +50,8 @@ def page(content: dict[str, Any], pictures: str = "", introduction: str = "") ->
     said = "; ".join(f"{name}: {family['number']}" for name, family in content["families"].items())
     lines += [f"![Methods against families: what holds, what degrades, what fails]({pictures}matrix.svg)", "",
               f"`polhode atlas{whole}`, polhode {content['polhode']['version']}, {machine['processor']}, "
-              f"{content['made']}; {content['cpu_seconds']:.0f} s of CPU time. ● holds, ◐ degrades, ✕ fails, ? too slow to be known, empty: does not apply.",
+              f"{content['made']}; {content['cpu_seconds']:.0f} s of CPU time. ● holds, ◐ degrades, ✕ fails, ? too "
+              "slow to be known, empty: does not apply.",
               "", *_matrix(content), "", f"What the cells say: {said}.", ""]
     for name, family in content["families"].items():
         lines += [f"## {name}", "", f"**{family['title']}.** {family['about']}", "",

@@ -7,11 +7,11 @@ import pathlib
 import textwrap
 from typing import Any
 
-from ..charts import style
+from .._plot import style
 from .entrants import KINDS, WITNESS, entrants
 from .family import Family, Point
-from .look import LEVELS, WORDS, looks
 from .results import FamilyResult, matrix
+from .style import LEVELS, WORDS, line_styles
 
 PANEL, MARGIN, LABELS = 4.6, 0.85, 1.75   # inches: a panel, what is left of it, the names at its right
 APART = 0.034                            # of the axes' height: names closer than that share a line
@@ -58,7 +58,7 @@ def _points(points: list[Point], series: str) -> list[Point]:
 def _panel(axes: Any, result: FamilyResult, series: str, title: str, y: str, label: str,
            limits: tuple[float, float] | None) -> None:
     """The curves of one series, or of one more value."""
-    family, everyone = result.family, looks([*entrants(), WITNESS])
+    family, everyone = result.family, line_styles([*entrants(), WITNESS])
     curves = {name: _points(points, series) for name, points in result.rows.items()}
     curves = {name: sorted(points, key=lambda p: p.x) for name, points in curves.items() if points}
     values = sorted({p.x for points in curves.values() for p in points}, reverse=family.x_inverted)
@@ -76,13 +76,13 @@ def _panel(axes: Any, result: FamilyResult, series: str, title: str, y: str, lab
     if family.y_log:
         axes.set_yscale("log")
     for name, points in curves.items():
-        look = everyone[name]
+        line_style = everyone[name]
         xs, ys = [places[p.x] for p in points], [clip(abs(p.get(y))) for p in points]
-        axes.plot(xs, ys, clip_on=False, **look)
+        axes.plot(xs, ys, clip_on=False, **line_style)
         broken = [(x, y) for x, y, p in zip(xs, ys, points) if p.status == "failed"]
         if broken:
-            axes.plot(*zip(*broken), linestyle="", marker="x", color=look["color"], markersize=7, markeredgewidth=1.6,
-                      clip_on=False, zorder=8)
+            axes.plot(*zip(*broken), linestyle="", marker="x", color=line_style["color"], markersize=7,
+                      markeredgewidth=1.6, clip_on=False, zorder=8)
         last = xs.index(min(xs) if family.x_inverted and family.x_scale != "list" else max(xs))
         ends.append((ys[last], name))
     axes.set_ylim(low, high)
@@ -96,7 +96,8 @@ def _panel(axes: Any, result: FamilyResult, series: str, title: str, y: str, lab
         if low <= value <= high:
             axes.axhline(value, color=style.QUIET, linewidth=1, linestyle=(0, (1, 1.5)), zorder=2)
             axes.annotate(word, (0, value), xycoords=("axes fraction", "data"), xytext=(3, 2),
-                          textcoords="offset points", fontsize=8, color=style.QUIET, zorder=2.5, bbox=style.HALO)   # under points
+                          textcoords="offset points", fontsize=8, color=style.QUIET, bbox=style.HALO,
+                          zorder=2.5)   # under points
     for axis, log in ((axes.xaxis, axes.get_xscale() == "log"), (axes.yaxis, family.y_log)):
         if log:   # plain text: powers set as formulas are slow to draw and small to read
             axis.set_major_formatter(lambda value, _: _tick(value))

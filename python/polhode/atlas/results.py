@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from .._core import build_info
-from ..charts.results import machine, versions
+from .._harness.machine import machine, versions
 from .entrants import KINDS, WITNESS, entrants
 from .family import Family, Point, Verdict, from_json, to_json
 from .jobs import find_family, rows_of
@@ -108,10 +108,12 @@ def document(results: list[FamilyResult], seconds: float, broken: list[str], fil
     kinds = {e.name: e.kind for e in [*entrants(), WITNESS]}
     return {
         "format": FORMAT, "made": time.strftime("%Y-%m-%d %H:%M"), "quick": all(r.quick for r in results),
-        "seconds": seconds, "cpu_seconds": round(sum(sum(r.cpu.values()) for r in results), 1), "polhode": build_info(), "machine": machine(), "versions": versions(),
+        "seconds": seconds, "cpu_seconds": round(sum(sum(r.cpu.values()) for r in results), 1), "polhode": build_info(),
+        "machine": machine(), "versions": versions(),
         "families": {r.family.name: {"title": r.family.title, "about": r.family.about, "number": r.family.number,
                                      "sweeps": r.family.sweeps, "truth": r.family.truth, "holds": r.family.holds,
-                                     "degrades": r.family.degrades, "cpu_seconds": r.cpu, "kept": r.kept} for r in results},
+                                     "degrades": r.family.degrades, "cpu_seconds": r.cpu, "kept": r.kept}
+                     for r in results},
         "matrix": {name: {"group": KINDS[kinds[name]], **{f: _verdict(v) for f, v in row.items()}}
                    for name, row in matrix(results).items()},
         "broken_claims": broken, "files": files,

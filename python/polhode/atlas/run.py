@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from .._core import IntegrationFailure, InvalidInput
-from ..charts.truth import Truth, compute_errors
-from ..motion import Motion
-from ..scene import Scene
-from ..solver import solve
+from .._harness.truth import Truth, compute_errors
+from .._solve.motion import Motion
+from .._scene.scene import Scene
+from .._solve.solve import solve
 from .entrants import Entrant
 
 

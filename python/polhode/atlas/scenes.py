@@ -7,7 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from ..scene import Scene
+from .._scene.scene import Scene
 from ..torques import Constant, Damping, Gravity
 from .case import S1_MOMENTS, Case
 
@@ -47,8 +47,8 @@ def gimbal(kind: str, least: float) -> Case:
 def long(turns: float) -> Case:
     """S1 after many turns, at five times on the way.
 
-    Not after whole turns, when a wrong model may be back where it was, but at ends of steps of a 40th of a turn: between
-    them it would be the continuous extension that is seen.
+    Not after whole turns, when a wrong model may be back where it was, but at ends of steps of a 40th of a turn:
+    between them it would be the continuous extension that is seen.
     """
     times = (turns * np.array([0.2, 0.4, 0.6, 0.8, 1.0]) + 15 / 40) * 2 * math.pi / math.sqrt(14.0)
     return Case(turns, Scene(inertia=S1_MOMENTS, omega=(1.0, 2.0, 3.0), times=times), grows=True)

@@ -7,8 +7,8 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
-from .. import workers
-from ..workers import Worker
+from .._harness import workers
+from .._harness.workers import Worker
 from .family import Point, from_json, to_json
 from .jobs import Job, find_entrant, find_family
 
@@ -18,8 +18,8 @@ SILENCE = 60.0    # seconds of wall time without a sign of life
 Done = Callable[[Job, list[Point]], object]
 
 
-def answerer() -> Callable[[Job], Iterator[dict[str, Any]]]:
-    """What a worker does: the points of one row, each with the CPU time it took."""
+def make_handler() -> Callable[[Job], Iterator[dict[str, Any]]]:
+    """Return what a worker does with a job: it yields the points of one row, each with the CPU time it took."""
     def answer(job: Job) -> Iterator[dict[str, Any]]:
         mark = time.process_time()
         for point in find_family(job.family).measure(find_entrant(job.entrant), job.quick, job.limit):
@@ -30,18 +30,19 @@ def answerer() -> Callable[[Job], Iterator[dict[str, Any]]]:
     return answer
 
 
-class _Hand(Worker):
+class _JobWorker(Worker):
     """A worker and the job it has."""
 
     job: Job | None = None
     points: list[Point]
 
-    def give(self, job: Job) -> None:
+    def start(self, job: Job) -> None:
+        """Give it a job."""
         self.job, self.points, self.limit = job, [], job.limit
         self.tell(job)
 
-    def broke_off(self, why: str) -> None:
-        """What it was at counts as failed, for this reason."""
+    def fail(self, why: str) -> None:
+        """Count what it was at as failed, for this reason."""
         if why:
             self.points.append(Point(float("nan"), status="failed", why=why, cpu=self.spent))
 
@@ -52,7 +53,7 @@ class _Hand(Worker):
             if kind == "answer":
                 self.points.append(from_json(content))
             else:
-                self.broke_off(content)
+                self.fail(content)
         return None if heard is None else bool(heard) and heard[-1][0] == "end"
 
 
@@ -73,37 +74,37 @@ def work(jobs: Sequence[Job], done: Done, *, processes: int = 2,
         a run without an answer.
     """
     waiting = list(reversed(jobs))
-    hands: list[_Hand] = []
+    crew: list[_JobWorker] = []
 
-    def hand_over(hand: _Hand) -> None:
-        job, hand.job = hand.job, None
+    def hand_in(worker: _JobWorker) -> None:
+        job, worker.job = worker.job, None
         if job is not None:
-            done(job, hand.points)
+            done(job, worker.points)
 
-    def lay_off(hand: _Hand, why: str = "") -> None:
-        """Take a process out, with what it was at."""
-        hands.remove(hand)
-        ended = hand.end(kill=bool(why))
-        if hand.job:
-            hand.broke_off(why or ended)
-        hand_over(hand)
+    def dismiss(worker: _JobWorker, why: str = "") -> None:
+        """Take a process out, with the job it had."""
+        crew.remove(worker)
+        ended = worker.end(kill=bool(why))
+        if worker.job:
+            worker.fail(why or ended)
+        hand_in(worker)
 
     try:
-        while waiting or any(hand.job for hand in hands):
-            hands += [_Hand(*command) for _ in range(min(len(waiting), processes - len(hands)))]
-            for hand in hands:
-                if waiting and not hand.job:
-                    hand.give(waiting.pop())
-            for hand in select.select(hands, [], [], 0.5)[0]:
-                complete = hand.take()
+        while waiting or any(worker.job for worker in crew):
+            crew += [_JobWorker(*command) for _ in range(min(len(waiting), processes - len(crew)))]
+            for worker in crew:
+                if waiting and not worker.job:
+                    worker.start(waiting.pop())
+            for worker in select.select(crew, [], [], 0.5)[0]:
+                complete = worker.take()
                 if complete is None:
-                    lay_off(hand)
+                    dismiss(worker)
                 elif complete:
-                    hand_over(hand)
-            for hand in [hand for hand in hands if hand.job]:
-                quiet = time.monotonic() - hand.alive
-                if quiet > silence or hand.spent > PATIENCE * hand.limit:
-                    lay_off(hand, f"hung: no answer for {max(quiet, hand.spent):.0f} s")
+                    hand_in(worker)
+            for worker in [worker for worker in crew if worker.job]:
+                quiet = time.monotonic() - worker.alive
+                if quiet > silence or worker.spent > PATIENCE * worker.limit:
+                    dismiss(worker, f"hung: no answer for {max(quiet, worker.spent):.0f} s")
     finally:
-        for hand in hands:
-            hand.end()
+        for worker in crew:
+            worker.end()

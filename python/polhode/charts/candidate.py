@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..motion import Floats
-from ..scene import Scene
+from .._scene.scene import Scene
+from .._solve.motion import Floats
 
 
 class Answer(NamedTuple):

@@ -11,12 +11,10 @@ from typing import Any
 
 import numpy as np
 
-import polhode
-
-from .. import _core
-from ..motion import Motion
-from ..scene import Scene
-from ..solver import methods, solve
+from .. import _core, torques
+from .._scene.scene import Scene
+from .._solve.motion import Motion
+from .._solve.solve import methods, solve
 from . import peers as peer_list
 from .candidate import Answer, Candidate, Failure, Run, Settings, fixed, steps, tolerances
 
@@ -62,12 +60,10 @@ def _method(record: dict[str, Any]) -> Candidate:
                      "rtol" if adaptive else "step")
 
 
-def _plan() -> list[Candidate]:
-    """What `solve` takes by itself for an accuracy, its certificate included; once there is a planner."""
-    if not hasattr(polhode, "plan"):
-        return []
-    return [Candidate("plan", "plan", "polhode.solve(accuracy=), with its certificate", tolerances(3, 12, 3),
-                      lambda scene: _solving(scene, "accuracy"), lambda scene: "", "accuracy")]
+def _plan() -> Candidate:
+    """What `solve` takes by itself for an accuracy, its certificate included."""
+    return Candidate("plan", "plan", "polhode.solve(accuracy=), with its certificate", tolerances(3, 12, 3),
+                     lambda scene: _solving(scene, "accuracy"), lambda scene: "", "accuracy")
 
 
 def _closed_form(name: str, source: str, make: Callable[[Scene], Any], refuses: Callable[[Scene], str]) -> Candidate:
@@ -87,7 +83,7 @@ def _free(scene: Scene) -> str:
 
 def _top(scene: Scene) -> str:
     """Why the scene is not Lagrange's top about body z."""
-    if len(scene.torques) != 1 or not isinstance(scene.torques[0], polhode.torques.Gravity):
+    if len(scene.torques) != 1 or not isinstance(scene.torques[0], torques.Gravity):
         return "not a body under gravity alone"
     matrix = scene.inertia.matrix
     if (matrix != np.diag(np.diag(matrix))).any() or matrix[0, 0] != matrix[1, 1] or scene.torques[0].arm[:2].any():
@@ -97,13 +93,13 @@ def _top(scene: Scene) -> str:
 
 def _make_top(scene: Scene) -> Any:
     gravity = scene.torques[0]
-    return polhode.HeavyTop(scene.inertia, gravity.weight * gravity.arm[2], scene.omega, scene.attitude)
+    return _core.HeavyTop(scene.inertia, gravity.weight * gravity.arm[2], scene.omega, scene.attitude)
 
 
 def _exact() -> list[Candidate]:
     return [
         _closed_form("FreeMotion", "Jacobi 1850, in Cayley-Klein form",
-                     lambda s: polhode.FreeMotion(s.inertia, s.omega, s.attitude), _free),
+                     lambda s: _core.FreeMotion(s.inertia, s.omega, s.attitude), _free),
         _closed_form("HeavyTop", "Klein and Sommerfeld 1897", _make_top, _top),
     ]
 
@@ -111,4 +107,4 @@ def _exact() -> list[Candidate]:
 def candidates(with_peers: bool = True) -> list[Candidate]:
     """Return everyone who takes part, polhode's own first."""
     own = [_method(record) for record in methods()]
-    return [*_exact(), *own, *_plan(), *(peer_list.candidates() if with_peers else [])]
+    return [*_exact(), *own, _plan(), *(peer_list.candidates() if with_peers else [])]

@@ -11,13 +11,13 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from .._core import InvalidInput
-from ..scene import Scene
-from ..schema import find_scene, read_toml
+from .._scene.files import find_scene, read_toml
+from .._scene.scene import Scene
 from . import pictures
 from .candidates import candidates
 from .measure import SceneResult, measure
 from .results import document
-from .stage import make_stage
+from .runners import make_runner
 
 DRAWING = 1.5    # seconds a scene's picture takes, about
 GENEROUS = 1.5   # times an equal share of the time left is what a scene may use
@@ -97,22 +97,22 @@ def chart(
     _check_folder(output)
 
     taking_part = candidates(peers)
-    stage, together = make_stage(taking_part, [scene for scene, _ in loaded])
+    runner, together = make_runner(taking_part, [scene for scene, _ in loaded])
     results: list[SceneResult] = []
     try:
-        stage.enter(loaded[0][0])   # a process apart takes a moment to be there
+        runner.enter(loaded[0][0])   # a process apart takes a moment to be there
         for index, (scene, title) in enumerate(loaded):
             left = budget - (time.perf_counter() - start) - DRAWING * (len(loaded) + 2)
             # Most scenes need less than an equal share, and what they leave goes to those after them.
             share = max(left, 0.1 * budget) * min(1.0, GENEROUS / (len(loaded) - index))
             label = scene.name or "scene"
             report = functools.partial(_report, progress, index, label)
-            results.append(measure(scene, title, taking_part, share, report, stage))
+            results.append(measure(scene, title, taking_part, share, report, runner))
             if together:
                 results[-1].notes.append(together)
             show(results[-1])
     finally:
-        stage.close()
+        runner.close()
 
     files: list[pathlib.Path] = []
     for result in results:

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from .. import torques
-from ..scene import Scene
+from .._scene.scene import Scene
 from .candidate import refuses_times
 
 Numbers = Sequence[Any]
@@ -131,9 +131,9 @@ class Symbol:
     def _write(self, text: str) -> Symbol:
         return Symbol(self._lines.setdefault(text, f"v{len(self._lines)}"), self._lines)
 
-    def _with(self, other: Any, sign: str, turned: bool = False) -> Symbol:
+    def _with(self, other: Any, sign: str, swapped: bool = False) -> Symbol:
         text = other.name if isinstance(other, Symbol) else f"({other!r})"
-        first, second = (text, self.name) if turned else (self.name, text)
+        first, second = (text, self.name) if swapped else (self.name, text)
         return self._write(f"{first} {sign} {second}")
 
     def __add__(self, other: Any) -> Symbol:

@@ -6,33 +6,8 @@ import math
 import re
 import statistics
 
+from .._plot.text import to_count, to_error, to_time
 from .measure import Point, SceneResult
-
-
-def to_time(seconds: float) -> str:
-    """Three digits with a unit that fits: 0.000246 -> '246 µs'."""
-    for unit, size in (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)):
-        if seconds >= 0.9995 * size:
-            return f"{seconds / size:.3g} {unit}"
-    return f"{seconds * 1e9:.3g} ns"
-
-
-def to_error(error: float) -> str:
-    """One digit: 2e-5, and 0.2 rather than 2e-1."""
-    if not math.isfinite(error) or error == 0:
-        return f"{error:g}"
-    if error >= 0.1:
-        return f"{error:.1g}" if error < 1 else f"{error:.2g}"
-    mantissa, _, exponent = f"{error:.0e}".partition("e")
-    return f"{mantissa}e{int(exponent)}"
-
-
-def to_count(number: float) -> str:
-    """1234567 -> '1.2 million'; 65432 -> '65 thousand'."""
-    for word, size in (("million", 1e6), ("thousand", 1e3)):
-        if number >= 9.95 * size or (size == 1e6 and number >= size):
-            return f"{number / size:.2g} {word}"
-    return f"{number:.0f}"
 
 
 def front(points: list[Point]) -> list[Point]:
@@ -45,7 +20,8 @@ def front(points: list[Point]) -> list[Point]:
 
 
 def time_to_reach(points: list[Point], error: float) -> float:
-    """Seconds to an error, along the front (log-log between its points); its quickest point where that errs less; NaN where
+    """Seconds to an error, along the front (log-log between its points); its quickest point where that errs less; NaN
+    where
     none is so good."""
     best = front(points)
     if not best or error < best[-1].error:
@@ -63,7 +39,8 @@ def own(result: SceneResult) -> list[Point]:
 
 
 def dominated(result: SceneResult) -> set[str]:
-    """Return the steppers, polhode's and others', of which another one beats every point, in error and by a quarter in time.
+    """Return the steppers, polhode's and others', of which another one beats every point, in error and by a quarter in
+    time.
 
     A point with an error above 0.3 answers nothing and is always beaten.
     """
@@ -105,7 +82,8 @@ def held_by_stability(result: SceneResult, name: str) -> bool:
 
 
 def time_ratios(result: SceneResult, names: list[str]) -> list[float]:
-    """Times of a program's best candidates over those of polhode's fastest stepper at equal error, at each error of theirs
+    """Times of a program's best candidates over those of polhode's fastest stepper at equal error, at each error of
+    theirs
     below 0.1 that one reaches; none on a scene where no tolerance helps."""
     points = own(result)
     if any(stalls(result, name) for name in adaptive(result)):

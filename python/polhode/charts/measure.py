@@ -11,10 +11,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .. import _core
-from ..scene import Scene
+from .._harness.truth import Truth, compute_errors, find_truth
+from .._scene.scene import Scene
 from .candidate import Answer, Candidate, Failure
-from .stage import Apart, Here
-from .truth import Truth, compute_errors, find_truth
+from .runners import InProcess, Subprocess
 
 ROUNDS = 5
 SHORTEST = 2e-3   # seconds of calls behind one reading of the clock
@@ -82,10 +82,10 @@ def compute_drift(scene: Scene, answer: Answer) -> dict[str, float]:
     return dict(_core.drift(scene, scene.times, answer.omega, attitude))
 
 
-def _first(point: Point, stage: Here | Apart, scene: Scene, truth: Truth, limit: float) -> float:
+def _first(point: Point, runner: InProcess | Subprocess, scene: Scene, truth: Truth, limit: float) -> float:
     """Run once; a crash, a NaN and a run past its limit are answers too. Returns the seconds of warm-up."""
     try:
-        answer, point.seconds, warm_up = stage.run(point.candidate, point.value, limit)
+        answer, point.seconds, warm_up = runner.run(point.candidate, point.value, limit)
         if not (np.isfinite(answer.omega).all() and np.isfinite(answer.attitude).all()):
             raise Failure("returned NaN or infinity")
     except Failure as failure:
@@ -110,14 +110,15 @@ def _prediction(done: list[Point], value: float) -> float:
 
 
 def _sweep(
-    candidate: Candidate, stage: Here | Apart, scene: Scene, truth: Truth, share: float, startups: dict[str, float]
+    candidate: Candidate, runner: InProcess | Subprocess, scene: Scene, truth: Truth, share: float,
+    startups: dict[str, float]
 ) -> Iterable[Point]:
     """Run a candidate from its loosest setting to its tightest within a share of time; what would not end is left out,
     and says so. The first setting always has its try."""
     done: list[Point] = []
     late, tried = "", False
     try:
-        startups[candidate.name] = stage.start(candidate.name)
+        startups[candidate.name] = runner.start(candidate.name)
     except Failure as failure:
         late = f"does not start: {failure}"
     deadline = time.perf_counter() + share
@@ -132,7 +133,7 @@ def _sweep(
             point.left_out = True
         else:
             tried = True
-            warm_up = _first(point, stage, scene, truth, max(left, 0.05))
+            warm_up = _first(point, runner, scene, truth, max(left, 0.05))
             if point.answered:
                 if not done:
                     startups[candidate.name] += warm_up
@@ -142,7 +143,7 @@ def _sweep(
         yield point
 
 
-def _repeat(points: list[Point], stage: Here | Apart, deadline: float) -> None:
+def _repeat(points: list[Point], runner: InProcess | Subprocess, deadline: float) -> None:
     """Time all points again, in turn, so that a slow minute of the machine hits all of them alike."""
     readings: dict[int, list[float]] = {}
     plans = []
@@ -155,7 +156,7 @@ def _repeat(points: list[Point], stage: Here | Apart, deadline: float) -> None:
             if time.perf_counter() + point.seconds * calls > deadline:
                 continue
             try:
-                readings.setdefault(index, []).append(stage.clock(point.candidate, point.value, calls))
+                readings.setdefault(index, []).append(runner.clock(point.candidate, point.value, calls))
             except Failure:   # it answered before: that answer and its time stand
                 continue
     for index, point in enumerate(points):
@@ -166,7 +167,8 @@ def _repeat(points: list[Point], stage: Here | Apart, deadline: float) -> None:
 
 
 def measure(
-    scene: Scene, title: str, candidates: list[Candidate], budget: float, report: Report, stage: Here | Apart | None = None
+    scene: Scene, title: str, candidates: list[Candidate], budget: float, report: Report,
+    runner: InProcess | Subprocess | None = None
 ) -> SceneResult:
     """Measure a scene within about `budget` seconds.
 
@@ -181,15 +183,15 @@ def measure(
         is for repeats.
     report : callable
         Is told, in a few words, what is being done.
-    stage : Here or Apart, optional
+    runner : InProcess or Subprocess, optional
         Where the candidates run; this process without it.
     """
     start = time.perf_counter()
     report("reference")
     truth = find_truth(scene)
     notes = [] if truth.kind == "stored" else [f"reference: {truth.source}, {truth.uncertainty:.1e}"]
-    stage = stage or Here(candidates)
-    stage.enter(scene)
+    runner = runner or InProcess(candidates)
+    runner.enter(scene)
     taking_part = []
     for candidate in candidates:
         reason = candidate.refuses(scene)
@@ -203,12 +205,12 @@ def measure(
     for index, candidate in enumerate(taking_part):
         report(candidate.name)
         share = (start + SWEEPS * budget - time.perf_counter()) * weights[index] / sum(weights[index:])
-        found = list(_sweep(candidate, stage, scene, truth, max(share, CROWDED * budget), startups))
+        found = list(_sweep(candidate, runner, scene, truth, max(share, CROWDED * budget), startups))
         if found[0].why.startswith("InvalidInput"):   # not for this scene, which only the run itself can tell
             notes.append(f"{candidate.name}: {found[0].why.partition(': ')[2]}")
         else:
             points += found
     report("repeats")
     deadline = max(start + budget, time.perf_counter() + LEAST * budget)
-    _repeat([p for p in points if p.answered], stage, deadline)
+    _repeat([p for p in points if p.answered], runner, deadline)
     return SceneResult(scene, title, truth, points, notes, time.perf_counter() - start, startups)

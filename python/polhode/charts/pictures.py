@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from ..motion import Floats
-from . import style
+from .._plot import style
+from .._plot.text import to_error, to_time
+from .._solve.motion import Floats
 from .findings import (
-    adaptive, dominated, headline, held_by_stability, program_ratios, stalls, to_error, to_ratio, to_time, under_headline,
-    without_answer,
+    adaptive, dominated, headline, held_by_stability, program_ratios, stalls, to_ratio, under_headline, without_answer,
 )  # fmt: skip
 from .measure import SceneResult
 
@@ -129,7 +129,8 @@ def _spread(axes: Any, ends: Ends) -> None:
         shift = next((dy for dy in shifts if not (np.abs(near - py - dy) < (7 if quiet else 9)).any()), 0)
         changes: dict[str, Any] = {"fontsize": 7, "fontweight": "normal", "bbox": None} if quiet else {}
         if abs(shift) > 12:   # far from its end, so led back to it
-            changes["arrowprops"] = {"arrowstyle": "-", "color": ink, "linewidth": 0.6, "alpha": 0.7, "shrinkA": 0, "shrinkB": 3}
+            changes["arrowprops"] = {"arrowstyle": "-", "color": ink, "linewidth": 0.6, "alpha": 0.7, "shrinkA": 0,
+                                     "shrinkB": 3}
         style.label(axes, x, y, name, ink, xytext=(8, shift * 72 / axes.figure.dpi), **changes)
         own = np.column_stack([np.linspace(left, right, 12), np.full(12, py + shift)])
         taken = np.vstack([taken, own + (0, 5), own, own - (0, 5)])
@@ -181,15 +182,18 @@ def overview(results: list[SceneResult], folder: pathlib.Path) -> list[pathlib.P
             _floor(axes, result, text=False)
             _curves(axes, result)
             if silent := _silent(result):
-                axes.text(0.04, 0.05, silent, transform=axes.transAxes, fontsize=7.5, color=style.QUIET, linespacing=1.4)
+                axes.text(0.04, 0.05, silent, transform=axes.transAxes, fontsize=7.5, color=style.QUIET,
+                          linespacing=1.4)
             axes.set_title(f"{result.scene.name} {result.title}", fontsize=9)
         closed = [name for name, family in names.items() if family == "exact"]
         labels = {name: name for name in names if name not in closed[1:]}   # closed forms share one line here
         labels |= {name: f"closed form ({', '.join(closed)})" for name in closed[:1]}
         handles = [plt.Line2D([], [], label=text, **style.line(name, names[name])) for name, text in labels.items()]
-        handles.append(plt.Line2D([], [], color=style.PALE, linewidth=0.9, marker="o", markersize=3, label="beaten everywhere"))
+        handles.append(plt.Line2D([], [], color=style.PALE, linewidth=0.9, marker="o", markersize=3,
+                                  label="beaten everywhere"))
         handles.append(plt.Line2D([], [], color=style.FLOOR, linestyle=(0, (1, 2)), label="rounding of the input"))
-        figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.3 / width, 1 - (0.72 + 0.25 * title.count("\n")) / height),
+        figure.legend(handles=handles, loc="upper left",
+                      bbox_to_anchor=(0.3 / width, 1 - (0.72 + 0.25 * title.count("\n")) / height),
                       fontsize=8.5, ncols=across, frameon=False, borderaxespad=0, handlelength=2.0, columnspacing=1.4)
         figure.supxlabel("largest error over all samples (more accurate to the right)", fontsize=9.5, color=style.QUIET,
                          y=0.1 / height)
@@ -289,11 +293,11 @@ def _stiff(axes: Any, result: SceneResult, results: list[SceneResult]) -> None:
     if rest:
         axes.text(0.98, 0.05, f"the other scenes, {name}", transform=axes.transAxes, ha="right", fontsize=9,
                   color=style.QUIET)
-    for one in held:
-        points = result.of(one)
-        axes.plot([p.value for p in points], [p.stats["steps"] for p in points], **style.line(one, "method"))
+    for name in held:
+        points = result.of(name)
+        axes.plot([p.value for p in points], [p.stats["steps"] for p in points], **style.line(name, "method"))
         end = points[-1]
-        ends.append((end.value, float(end.stats["steps"]), f"{result.scene.name} {one}", style.colour(one)))
+        ends.append((end.value, float(end.stats["steps"]), f"{result.scene.name} {name}", style.colour(name)))
     points = result.of(name)
     steps = [p.stats["steps"] for p in points]
     axes.set_ylabel("steps")

@@ -3,49 +3,25 @@
 from __future__ import annotations
 
 import math
-import os
-import platform
 import re
-from importlib import metadata
 from typing import Any
 
 import numpy as np
 
 from .._core import build_info
-from ..scene import Scene
+from .._harness.machine import machine, versions
+from .._harness.truth import to_json
+from .._scene.scene import Scene
 from . import peers as peer_list
 from .findings import dominated, headline, without_answer
 from .measure import Point, SceneResult
-from .truth import to_json
 
 FORMAT = "polhode chart 2"
 MEASURE = ("error: over all samples, the larger of |omega - truth| / max |truth| and the angle of the rotation between "
            "the attitudes [rad]; seconds: CPU time of the thread for all samples, median of the repeats, taken in turn "
-           "with all others, fastest and slowest among them; startups: wall seconds before and above the first answer, such "
+           "with all others, fastest and slowest among them; startups: wall seconds before and above the first answer, "
+           "such "
            "as for a compiler; drift: largest move of each invariant from its start, relative")
-
-
-def machine() -> dict[str, Any]:
-    """Return what the times depend on."""
-    processor = platform.processor()
-    try:
-        with open("/proc/cpuinfo", encoding="utf-8") as lines:
-            processor = next(line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))
-    except (OSError, StopIteration):
-        pass
-    return {"processor": processor or platform.machine(), "cores": os.cpu_count(), "system": platform.platform(),
-            "python": platform.python_version()}
-
-
-def versions() -> dict[str, str]:
-    """Return the versions of what took part, of those that are there."""
-    found = {}
-    for name in ("numpy", "matplotlib"):
-        try:
-            found[name] = metadata.version(name)
-        except metadata.PackageNotFoundError:
-            pass
-    return found | peer_list.here()
 
 
 def _number(value: float) -> float | None:
@@ -58,7 +34,8 @@ def _point(point: Point) -> dict[str, Any]:
         "value": point.value,
         "status": "left out" if point.left_out else "failed" if point.why else "answered", "why": point.why,
         "error": _number(point.error), "error_omega": _number(point.error_omega),
-        "error_attitude": _number(point.error_attitude), "seconds": _number(point.seconds), "fastest": _number(point.fastest),
+        "error_attitude": _number(point.error_attitude), "seconds": _number(point.seconds),
+        "fastest": _number(point.fastest),
         "slowest": _number(point.slowest), "repeats": point.repeats,
         "counts": dict(point.stats), "drift": {name: _number(value) for name, value in point.drift.items()},
     }
@@ -74,7 +51,7 @@ def document(results: list[SceneResult], seconds: float, files: list[str], with_
     """Return the content of results.json; numbers that are not finite are null."""
     return {
         "format": FORMAT, "measure": MEASURE, "seconds": seconds, "polhode": build_info(), "machine": machine(),
-        "versions": versions(), "missing": peer_list.missing() if with_peers else {}, "files": files,
+        "versions": versions() | peer_list.here(), "missing": peer_list.missing() if with_peers else {}, "files": files,
         "scenes": [
             {"name": r.scene.name, "title": r.title, "samples": int(r.scene.times.size),
              "span": float(np.ptp(np.append(r.scene.times, r.scene.t0))), "scene": _scene(r.scene),

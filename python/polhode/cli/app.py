@@ -12,12 +12,13 @@ from typing import Annotated, Any
 
 import typer
 
-from .. import __version__, calibration
-from .._core import IntegrationFailure, InvalidInput
-from ..planning import plan as make_plan
-from ..scene import Scene
-from ..solver import methods as method_records
-from ..solver import solve
+from .._core import IntegrationFailure, InvalidInput, __version__
+from .._scene.scene import Scene
+from .._solve import calibrate as calibration
+from .._solve.costs import cache_file
+from .._solve.plan import plan as make_plan
+from .._solve.solve import methods as method_records
+from .._solve.solve import solve
 from . import files, show
 
 app = typer.Typer(name="polhode", add_completion=False, no_args_is_help=True, rich_markup_mode=None,
@@ -84,7 +85,8 @@ def run(
     output: Annotated[
         pathlib.Path | None, typer.Option("-o", "--output", help="Write all samples: .csv, .npz or .json.")] = None,
     picture: Annotated[
-        pathlib.Path | None, typer.Option("--plot", help="Draw polhode, angles and invariants: .png, .svg or .pdf.")] = None,
+        pathlib.Path | None, typer.Option("--plot",
+                                          help="Draw polhode, angles and invariants: .png, .svg or .pdf.")] = None,
     as_json: Json = False,
 ) -> int:
     """Turn the body of a scene.
@@ -126,9 +128,9 @@ def plan(
     """
     made = [make_plan(Scene.load(scene), accuracy, method=method, certify=certify) for scene in scenes]
     if as_json:
-        _print_json([one.as_dict() for one in made])
+        _print_json([chosen.as_dict() for chosen in made])
     else:
-        print("\n\n\n".join(str(one) for one in made))
+        print("\n\n\n".join(map(str, made)))
     return 0
 
 
@@ -141,9 +143,9 @@ def calibrate(as_json: Json = False) -> int:
     with show.Bar("measuring") as bar:
         found = calibration.calibrate(lambda done, total: bar.fraction(done, total))
     if as_json:
-        _print_json({"file": str(calibration.cache_file()), "factors": found})
+        _print_json({"file": str(cache_file()), "factors": found})
     else:
-        show.calibration(found, str(calibration.cache_file()))
+        show.calibration(found, str(cache_file()))
     return 0
 
 
@@ -161,7 +163,8 @@ def methods(as_json: Json = False) -> int:
 @_command
 def inertia(
     file: Annotated[str, typer.Argument(
-        help="A robot (URDF, MJCF, SDF), a mesh (STL, OBJ, PLY, glTF), a TOML file with a [body] table as in scenes, or "
+        help="A robot (URDF, MJCF, SDF), a mesh (STL, OBJ, PLY, glTF), a TOML file with a [body] table as in scenes, "
+             "or "
              "a scene's name.")],
     density: Annotated[float | None, typer.Option(help="Of a mesh [kg/m^3].")] = None,
     mass: Annotated[float | None, typer.Option(help="Of a mesh [kg].")] = None,
@@ -209,14 +212,16 @@ def chart(
     output: Annotated[
         pathlib.Path, typer.Option("-o", "--output", help="The folder for all files.")] = pathlib.Path("charts"),
     budget: Annotated[
-        str, typer.Option(help="About how long it may take, such as 60s or 5min; what does not fit is left out and listed.")
+        str, typer.Option(help="About how long it may take, such as 60s or 5min; what does not fit is left out and "
+                               "listed.")
     ] = "130s",
     peers: Annotated[bool, typer.Option(help="Run other programs beside, where they are installed.")] = True,
     as_json: Json = False,
 ) -> int:
     """Chart speed against accuracy.
 
-    All methods, the plan's choice, closed forms and other programs on the scenes given, against their truth, in one run.
+    All methods, the plan's choice, closed forms and other programs on the scenes given, against their truth, in one
+    run.
     """
     _need_matplotlib("charts")
     from ..charts import chart as make_chart
@@ -235,12 +240,14 @@ def chart(
 @_command
 def report(
     output: Annotated[
-        pathlib.Path, typer.Option("-o", "--output", help="The folder for the page and its files.")] = pathlib.Path("report"),
+        pathlib.Path, typer.Option("-o", "--output",
+                                   help="The folder for the page and its files.")] = pathlib.Path("report"),
     full: Annotated[bool, typer.Option(help="Take all the time it needs, rather than a few minutes.")] = False,
     budget: Annotated[str | None, typer.Option(help="For the charts, such as 60s or 5min.")] = None,
     peers: Annotated[bool, typer.Option(help="Run other programs beside, where they are installed.")] = True,
     atlas: Annotated[bool, typer.Option(help="Measure where methods fail, too.")] = True,
-    scenes: Annotated[list[str] | None, typer.Argument(help="Scene files or names; polhode's own when none is given.")] = None,
+    scenes: Annotated[list[str] | None, typer.Argument(help="Scene files or names; polhode's own when none is "
+                                                            "given.")] = None,
 ) -> int:
     """Write a web page of charts, pictures and tables.
 

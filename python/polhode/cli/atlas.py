@@ -70,7 +70,8 @@ def end(content: dict[str, Any], folder: pathlib.Path) -> None:
     """Say where the files are, and which of polhode's own claims did not hold."""
     out = show.console()
     count = len(content["families"])
-    out.print(Text(f"\n{count} famil{'ies' if count > 1 else 'y'} in {content['seconds']:.0f} s ({content['cpu_seconds']:.0f} s of CPU) on "
+    out.print(Text(f"\n{count} famil{'ies' if count > 1 else 'y'} in {content['seconds']:.0f} s "
+                   f"({content['cpu_seconds']:.0f} s of CPU) on "
                    f"{content['machine']['processor']}; in {folder}:"))
     out.print(Text("  ".join(name for name in content["files"] if not name.endswith(".svg"))))
     for sentence in content["broken_claims"]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from .._core import InertiaTensor, InvalidInput
-from ..bodies import body_inertia, body_properties, is_solid
-from ..schema import load_body
+from .._scene.bodies import body_inertia, body_properties, is_solid
+from .._scene.files import load_body
 
 
 def examine(source: str) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from .._core import InvalidInput
-from ..motion import Motion
+from .._solve.motion import Motion
 
 COLUMNS = {"t": ("t",), "omega": ("omega_x", "omega_y", "omega_z"),
            "attitude": ("attitude_x", "attitude_y", "attitude_z", "attitude_w")}
@@ -33,7 +33,8 @@ def _arrays(motion: Motion) -> dict[str, Any]:
 def to_json(motion: Motion) -> dict[str, Any]:
     """Return everything a motion says; what is not a finite number is null."""
     return {
-        "scene": motion.scene.name, "plan": {key: getattr(motion.plan, key) for key in ("model", "method", "state", "rtol")}, "asked": motion.asked,
+        "scene": motion.scene.name,
+        "plan": {key: getattr(motion.plan, key) for key in ("model", "method", "state", "rtol")}, "asked": motion.asked,
         "success": motion.success, "status": motion.status, "message": motion.message,
         "error": motion.error if math.isfinite(motion.error) else None, "error_kind": motion.error_kind,
         "drift": motion.drift, "stats": motion.stats,

@@ -33,23 +33,23 @@ def examine(file: str, density: float | None, mass: float | None, unit: str, fli
     length = _core.unit_in_metres(_number(unit))
     vertices, faces = mesh.read(file)
     finding["faces"] = len(faces)
-    turned = "flip" if flip else None
+    repair = "flip" if flip else None
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
             report = mesh.report(vertices, faces)
             finding |= {"surfaces": report["components"], "cavities": report["cavities"]}
             finding["size"] = [float(x) * length for x in report["high"] - report["low"]]
-            finding["volume"] = MassProperties.from_mesh(vertices, faces, density=1, unit=length, repair=turned).mass
+            finding["volume"] = MassProperties.from_mesh(vertices, faces, density=1, unit=length, repair=repair).mass
         except InvalidInput as error:
             return finding | {"valid": False, "verdict": str(error).replace('repair="flip"', "--flip")}
-    finding["notes"] += [str(one.message).replace('unit="', "--unit ").replace('"', "") for one in caught]
+    finding["notes"] += [str(warning.message).replace('unit="', "--unit ").replace('"', "") for warning in caught]
     if report["degenerate"]:
         finding["notes"].append(f"{report['degenerate']} faces have two corners at one place: they count for nothing")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")   # said above
         body = MassProperties.from_mesh(vertices, faces, density=density, mass=mass, unit=length, check=False,
-                                        repair=turned)
+                                        repair=repair)
     principal = body.inertia.principal()
     return finding | {
         "mass": body.mass, "com": body.com.tolist(),

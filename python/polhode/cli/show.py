@@ -16,7 +16,7 @@ from rich.text import Text
 
 if TYPE_CHECKING:
     from ..charts.measure import Point, SceneResult
-    from ..motion import Motion
+    from .._solve.motion import Motion
 
 UNCUT = 100_000
 
@@ -138,9 +138,11 @@ def methods(records: list[dict[str, Any]]) -> None:
     console().print(table)
 
 
-BODY = ("shape", "mesh", "parts", "faces", "surfaces", "cavities", "size", "volume", "mass", "com", "moments", "symmetry",
+BODY = ("shape", "mesh", "parts", "faces", "surfaces", "cavities", "size", "volume", "mass", "com", "moments",
+        "symmetry",
         "arbitrary", "axes", "verdict")
-BODY_UNITS = {"size": " [m]", "volume": " [m^3]", "mass": " [kg]", "com": " [m]", "moments": " [kg m^2]", "axes": " (columns)"}
+BODY_UNITS = {"size": " [m]", "volume": " [m^3]", "mass": " [kg]", "com": " [m]", "moments": " [kg m^2]",
+              "axes": " (columns)"}
 
 
 def body(finding: dict[str, Any]) -> None:
@@ -202,7 +204,8 @@ def _drifts(point: Point) -> tuple[str, str]:
 
 def scene(result: SceneResult) -> None:
     """The table of one scene of a chart."""
-    from ..charts.findings import dominated, headline, to_time
+    from .._plot.text import to_time
+    from ..charts.findings import dominated, headline
 
     out = console()
     truth = result.truth

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from .evidence import Bodies, Geometry, one, point_term
+from .evidence import Bodies, Geometry, point_term, single
 
 Array = npt.NDArray[np.float64]
 
@@ -59,15 +59,15 @@ def undo(given: Bodies, geometry: Geometry, only_units: bool = False) -> list[Ca
 
 def _signs(mass: float | None, com: Array | None, matrix: Array) -> Iterator[Cause]:
     for names, cost in ((("ixy", "ixz", "iyz"), 0.0), (("ixy",), 2.0), (("ixz",), 2.0), (("iyz",), 2.0)):
-        turned = matrix.copy()
+        flipped = matrix.copy()
         for name in names:
             i, j = ENTRIES[name]
-            turned[i, j] = turned[j, i] = -matrix[i, j]
+            flipped[i, j] = flipped[j, i] = -matrix[i, j]
         if len(names) == 3:
             text = "the products of inertia have the opposite sign (written as +integral of x y dm): turn all three"
         else:
             text = f"the sign of {names[0]}: turn it"
-        yield Cause("sign", text, cost, one(mass, com, turned))
+        yield Cause("sign", text, cost, single(mass, com, flipped))
 
 
 def _orders(mass: float | None, com: Array | None, matrix: Array) -> Iterator[Cause]:
@@ -78,7 +78,7 @@ def _orders(mass: float | None, com: Array | None, matrix: Array) -> Iterator[Ca
             sorted_out[i, j] = sorted_out[j, i] = matrix[ENTRIES[place]]
         text = f"the order of the six numbers: written as {written}, read as {read}"
         usual = {read, written} == USUAL
-        yield Cause("order", text, 0.5 if usual else 2.5, one(mass, com, sorted_out))
+        yield Cause("order", text, 0.5 if usual else 2.5, single(mass, com, sorted_out))
 
 
 def _points(mass: float | None, com: Array | None, matrix: Array, geometry: Geometry) -> Iterator[Cause]:
@@ -88,17 +88,17 @@ def _points(mass: float | None, com: Array | None, matrix: Array, geometry: Geom
     where = "(" + ", ".join(f"{x:.4g}" for x in com) + ")"
     if com.any():
         yield Cause("point", "the tensor is about the frame's origin, not about the centre of mass: take the "
-                    f"parallel-axis term m (d.d 1 - d d^T) off, d = {where} m", 0.0, one(mass, com, matrix - term))
+                    f"parallel-axis term m (d.d 1 - d d^T) off, d = {where} m", 0.0, single(mass, com, matrix - term))
         yield Cause("point", "the parallel-axis term was taken off a tensor that was about the centre of mass already: "
-                    f"add m (d.d 1 - d d^T) back, d = {where} m", 3.5, one(mass, com, matrix + term))
+                    f"add m (d.d 1 - d d^T) back, d = {where} m", 3.5, single(mass, com, matrix + term))
     else:
         for r in geometry.references:
             where = "(" + ", ".join(f"{x:.4g}" for x in r.com) + ")"
             yield Cause("point", f"the centre of mass was left at the origin: the geometry has it at {where} m", 1.0,
-                        one(mass, r.com, matrix))
+                        single(mass, r.com, matrix))
             yield Cause("point", "tensor about the frame's origin and no centre of mass: the geometry has it at "
                         f"{where} m; take the parallel-axis term off", 1.0,
-                        one(mass, r.com, matrix - mass * point_term(r.com)))
+                        single(mass, r.com, matrix - mass * point_term(r.com)))
 
 
 # (mass, tensor, com): what each was multiplied by, what to say, and how rare it is
@@ -139,14 +139,15 @@ def _units(mass: float | None, com: Array | None, matrix: Array) -> Iterator[Cau
     for k_mass, k_tensor, k_com, text, cost in UNITS:
         if k_com != 1 and (com is None or not com.any()):
             continue
-        yield Cause("units", text, cost, one(mass / k_mass, None if com is None else com / k_com, matrix / k_tensor))
+        yield Cause("units", text, cost,
+                    single(mass / k_mass, None if com is None else com / k_com, matrix / k_tensor))
 
 
 def _axes(mass: float | None, com: Array | None, matrix: Array) -> Iterator[Cause]:
     for order in itertools.permutations(range(3)):
         for signs in ((1, 1, 1), (-1, 1, 1), (1, -1, 1), (1, 1, -1)):
             turn = np.eye(3)[list(order)] * np.array(signs)[:, None]
-            turned = turn @ matrix @ turn.T
+            rotated = turn @ matrix @ turn.T
             if order == (0, 1, 2):
                 axis = "xyz"[signs.index(-1)] if -1 in signs else ""
                 if not axis:
@@ -157,19 +158,20 @@ def _axes(mass: float | None, com: Array | None, matrix: Array) -> Iterator[Caus
                 text = "axes taken for one another: x, y, z should be " + ", ".join(
                     ("-" if s < 0 else "") + "xyz"[i] for i, s in zip(order, signs))
                 cost = 1.5 + (min(signs) < 0)
-            yield Cause("axes", text + ", in the tensor", cost, one(mass, com, turned))
+            yield Cause("axes", text + ", in the tensor", cost, single(mass, com, rotated))
             if com is not None and com.any():
-                yield Cause("axes", text + ", in tensor and centre of mass", cost + 0.5, one(mass, turn @ com, turned))
+                yield Cause("axes", text + ", in tensor and centre of mass", cost + 0.5,
+                            single(mass, turn @ com, rotated))
                 if order == (0, 1, 2):   # a mirror turns one component of com, or the two others with the frame
                     yield Cause("axes", text + ", in tensor and centre of mass", cost + 0.5,
-                                one(mass, -turn @ com, turned))
+                                single(mass, -turn @ com, rotated))
     values, q = np.linalg.eigh(matrix)
     back = q.T @ np.diag(values) @ q
     for order in itertools.permutations(range(3)):
         for signs in ((1, 1, 1), (-1, 1, 1), (1, -1, 1), (1, 1, -1)):
             turn = np.eye(3)[list(order)] * np.array(signs)[:, None]
             yield Cause("axes", "the principal axes were applied transposed (R^T D R for R D R^T)", 2.0,
-                        one(mass, com, turn @ back @ turn.T))
+                        single(mass, com, turn @ back @ turn.T))
 
 
 def _decimals(mass: float | None, com: Array | None, matrix: Array, geometry: Geometry) -> Iterator[Cause]:
@@ -181,16 +183,16 @@ def _decimals(mass: float | None, com: Array | None, matrix: Array, geometry: Ge
             slipped = matrix.copy()
             slipped[i, j] = slipped[j, i] = matrix[i, j] * factor
             yield Cause("decimal", f"a decimal point in {name}: {slipped[i, j]:.6g} instead of {matrix[i, j]:.6g}",
-                        1.0 + cost, one(mass, com, slipped))
+                        1.0 + cost, single(mass, com, slipped))
     if mass is None or not geometry.references:
         return
     for factor, cost in slips[:4]:
         yield Cause("decimal", f"a decimal point in the mass, {mass * factor:.6g} instead of {mass:.6g} kg, or in the "
-                    "whole tensor the other way", 1.0 + cost, one(mass * factor, com, matrix))
+                    "whole tensor the other way", 1.0 + cost, single(mass * factor, com, matrix))
         for i in range(3 if com is not None else 0):
             assert com is not None
             if com[i]:
                 moved = com.copy()
                 moved[i] *= factor
                 yield Cause("decimal", f"a decimal point in the centre of mass, {'xyz'[i]}: {moved[i]:.6g} instead of "
-                            f"{com[i]:.6g} m", 1.0 + cost, one(mass, moved, matrix))
+                            f"{com[i]:.6g} m", 1.0 + cost, single(mass, moved, matrix))

@@ -115,7 +115,7 @@ def judge(mass: float | None, com: Array | None, matrix: Array, geometry: ev.Geo
         finding, matrix = _symmetric(mass, com, matrix, geometry)
         findings.append(finding)
     margin, bits = _judged(matrix)
-    given = ev.one(mass, com, matrix)
+    given = ev.single(mass, com, matrix)
     alone = ev.weigh(given, geometry)
     broken = breaches(given, alone, bits, margin, geometry)
     misfit = ev.apart(given, geometry) if geometry.references else None
@@ -196,7 +196,7 @@ def _symmetric(mass: float | None, com: Array | None, matrix: Array, geometry: e
         return Finding("symmetric", 100 * apart.max(), text, "rounding", "rounded numbers: the mean of both is taken",
                        (matrix + matrix.T) / 2, mass, com), (matrix + matrix.T) / 2
     choices = [upper, lower]
-    weighed = ev.weigh(ev.stack([ev.one(mass, com, m) for m in choices]), geometry)
+    weighed = ev.weigh(ev.stack([ev.single(mass, com, m) for m in choices]), geometry)
     best = choices[int(np.argmin(weighed.score))]
     cause, advice = "unknown", "a slip in one of them; the entry that fits better is taken"
     ratio = abs(a / b) if a and b else 0.0

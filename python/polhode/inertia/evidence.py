@@ -32,7 +32,7 @@ def _array(x: npt.ArrayLike) -> Array:
     return np.asarray(x, dtype=float)
 
 
-def one(mass: float | None, com: Array | None, matrix: Array) -> Bodies:
+def single(mass: float | None, com: Array | None, matrix: Array) -> Bodies:
     """Stack a single body."""
     return Bodies(np.array([np.nan if mass is None else mass]),
                   np.full((1, 3), np.nan) if com is None else np.array([com], dtype=float),

@@ -37,7 +37,9 @@ def part(content: dict[str, Any], folder: pathlib.Path, options: str = "") -> di
     for name, family in content["families"].items():
         path = folder / f"{name}.svg"
         if path.is_file():
-            pictures.append(page.picture(path, family["title"], f"{family['title']}.", f"polhode atlas {name}{options}"))
-    said = "; ".join(f"{name}: {family['number']}" for name, family in content["families"].items() if "number" in family)
+            pictures.append(page.picture(path, family["title"], f"{family['title']}.",
+                                         f"polhode atlas {name}{options}"))
+    said = "; ".join(f"{name}: {family['number']}"
+                     for name, family in content["families"].items() if "number" in family)
     return {"matrix": matrix(content), "said": said, "pictures": pictures, "command": f"polhode atlas{options}",
             "broken": content.get("broken_claims", [])}

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from ..charts import style
-from ..charts.findings import to_error, to_time
+from .._plot import style
+from .._plot.text import to_error, to_time
 
-GROUPS = {"exact": "closed forms", "plan": "the plan", "method": "methods", "cheap": "engines' steps", "peer": "other programs"}
+GROUPS = {"exact": "closed forms", "plan": "the plan", "method": "methods", "cheap": "engines' steps",
+          "peer": "other programs"}
 LOST = 4.0   # an attitude is never further off than pi
 SYMBOLS = {"o": "circle", "D": "diamond", "*": "star", "s": "square", "^": "triangle-up", "v": "triangle-down",
            "P": "cross", "X": "x", "h": "hexagon", "d": "diamond-tall", ".": "circle"}
@@ -72,7 +73,8 @@ def layout(scene: dict[str, Any], drawn: list[dict[str, Any]]) -> dict[str, Any]
     words = {"x": "largest error, more accurate to the right", "y": "time for all samples"}
     return {
         "xaxis": axis | {"range": [math.log10(LOST * 2), low], "title": {"text": words["x"], "font": quiet},
-                         **_ticks([LOST, min(x), floor or 1.0], lambda v: "1" if v == 1 else f"1e{round(math.log10(v))}", 3)},
+                         **_ticks([LOST, min(x), floor or 1.0],
+                                  lambda v: "1" if v == 1 else f"1e{round(math.log10(v))}", 3)},
         "yaxis": axis | {"range": [math.log10(min(y)) - 0.4, math.log10(max(y)) + 0.4],
                          "title": {"text": words["y"], "font": quiet}, **_ticks([min(y) / 2, 2 * max(y)], to_time)},
         "shapes": shapes, "annotations": notes, "showlegend": False, "hovermode": "closest", "height": 460,

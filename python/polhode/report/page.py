@@ -10,7 +10,7 @@ from importlib import resources
 from typing import Any, NamedTuple
 
 from .._core import InvalidInput
-from ..charts.findings import to_time
+from .._plot.text import to_time
 from . import curves, tables
 
 TYPES = {".svg": "image/svg+xml", ".png": "image/png"}
@@ -90,7 +90,8 @@ def render(
         overview.append(picture(folder / "limits.svg", "where no tolerance helps", "Where no tolerance helps.",
                                 f"polhode chart {all_names}"))
     scenes = [{**scene, "command": f"polhode chart {scene['name']}",
-               "picture": picture(folder / f"{scene['name'] or 'scene'}.svg", scene["finding"])} for scene in content["scenes"]]
+               "picture": picture(folder / f"{scene['name'] or 'scene'}.svg", scene["finding"])}
+              for scene in content["scenes"]]
     sections = [("speed", "Speed against accuracy"), ("scenes", "Scene by scene")]
     sections += [("atlas", "Where methods fail")] * bool(atlas) + [("motion", "The motions")] * bool(motions)
     sections += [("machine", "Machine and versions")]
@@ -101,7 +102,8 @@ def render(
     return environment.from_string(_text("page.html.j2")).render(
         title="polhode: speed, accuracy, and where methods fail" if atlas else "polhode: speed and accuracy", lead=lead,
         css=Markup(_text("page.css")), script=Markup(_text("page.js")), sections=sections, overview=overview,
-        winners=_kept_together(tables.winners(content)), scenes=scenes, scene_table=tables.scenes(content), best=tables.best(content),
+        winners=_kept_together(tables.winners(content)), scenes=scenes, scene_table=tables.scenes(content),
+        best=tables.best(content),
         failures=tables.failures(content), atlas=atlas, motions=motions, machine=tables.machine(content),
         startups=tables.startups(content), measure=content["measure"], took=to_time(seconds), command=command,
         figures=Markup(_in_script([curves.figure(scene) for scene in content["scenes"]])))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import os
 import pathlib
 import time
@@ -10,10 +9,11 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from .._core import InvalidInput
-from ..charts import chart
+from .._scene.scene import Scene
+from .._solve.solve import solve
+from ..atlas.atlas import atlas
+from ..charts.chart import chart
 from ..charts.measure import SceneResult
-from ..scene import Scene
-from ..solver import solve
 from . import atlas_part, page
 
 SCENES = ("S1", "S2", "S3", "S4", "S5", "S5c", "S6", "S7", "S7b", "S9", "N2", "Z1")
@@ -44,12 +44,8 @@ def motion_pictures(names: Iterable[Any], folder: pathlib.Path) -> list[page.Pic
     return found
 
 
-def _atlas(folder: pathlib.Path, quick: bool, say: Callable[[str], object]) -> dict[str, Any] | None:
+def _atlas(folder: pathlib.Path, quick: bool, say: Callable[[str], object]) -> dict[str, Any]:
     """Measure the atlas; families that are finished there are kept."""
-    try:
-        atlas = importlib.import_module("polhode.atlas").atlas
-    except ImportError:   # not built in
-        return None
     _, content = atlas(folder=folder, quick=quick, progress=lambda done, total, text: say(f"{done}/{total} {text}"))
     return atlas_part.part(content, folder, " --quick" if quick else "")
 
@@ -102,7 +98,8 @@ def report(
     progress(len(results), "pictures of motion")
     drawn = [source for source, result in zip(sources, results) if result.scene.name in MOTIONS]
     motions = motion_pictures(drawn or sources[:1], home / "charts")
-    atlas = _atlas(home / "atlas", not full, lambda text: progress(len(results), f"atlas: {text}")) if with_atlas else None
+    atlas = _atlas(home / "atlas", not full, lambda text: progress(len(results),
+                                                                   f"atlas: {text}")) if with_atlas else None
     command = "polhode report" + " --full" * full
     text = page.render(content, home / "charts", motions=motions, atlas=atlas, command=command,
                        seconds=time.perf_counter() - start)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from ..charts.findings import to_error, to_time
+from .._plot.text import to_error, to_time
 
 LEVELS = (1e-3, 1e-6, 1e-9, 1e-12)
 OWN = ("method", "cheap", "plan", "exact")
@@ -14,7 +14,8 @@ Row = list[str]
 
 def fastest(scene: dict[str, Any], level: float, families: tuple[str, ...]) -> dict[str, Any] | None:
     """Return the point of these families that reaches an error first."""
-    reaching = [p for p in scene["points"] if p["status"] == "answered" and p["family"] in families and p["error"] <= level]
+    reaching = [p for p in scene["points"] if p["status"] == "answered" and p["family"] in families
+                and p["error"] <= level]
     return min(reaching, key=lambda p: float(p["seconds"]), default=None)
 
 
@@ -58,7 +59,8 @@ def failures(content: dict[str, Any]) -> tuple[Row, list[Row]]:
             if point["status"] != "answered":
                 key = (scene["name"], point["candidate"], f"{point['status']}: {point['why']}")
                 found.setdefault(key, []).append(point["setting"])
-    return ["scene", "who", "settings", "what"], [[s, c, _span(settings), why] for (s, c, why), settings in found.items()]
+    return ["scene", "who", "settings", "what"], [[s, c, _span(settings), why]
+                                                  for (s, c, why), settings in found.items()]
 
 
 def _span(settings: list[str]) -> str:
@@ -98,7 +100,8 @@ def startups(content: dict[str, Any]) -> tuple[Row, list[Row]]:
     for scene in content["scenes"]:
         for name, seconds in scene["startups"].items():
             longest[name] = max(longest.get(name, 0.0), seconds)
-    rows = [[name, to_time(seconds)] for name, seconds in sorted(longest.items(), key=lambda item: -item[1]) if seconds > 0.01]
+    rows = [[name, to_time(seconds)] for name, seconds in sorted(longest.items(),
+                                                                 key=lambda item: -item[1]) if seconds > 0.01]
     return ["before the first answer", "longest"], rows
 
 

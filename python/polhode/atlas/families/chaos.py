@@ -8,11 +8,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...charts.truth import Truth
+from ..._harness.truth import Truth, attitude_errors
 from .. import scenes
 from ..case import stored
 from ..entrants import Entrant
-from ..errors import attitude_errors
 from ..family import LOST, Family, Point, Verdict, answered, nobody, to_short, too_long
 from ..run import run
 
@@ -39,8 +38,9 @@ def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
         with point.trying():
             motion = run(entrant, scene, entrant.setting(step=value, rtol=value, accuracy=value), limit, True)
             n = motion.t.size
+            assert motion.attitude is not None
             known = Truth(truth.omega[:n], truth.attitude[:n], "stored", "", 0.0, None)
-            off = np.flatnonzero(attitude_errors(motion, known) > LOST)
+            off = np.flatnonzero(attitude_errors(motion.attitude, known) > LOST)
             point.values = {"horizon": float(motion.t[off[0]] if off.size else motion.t[-1]),
                             "steps": motion.stats["steps"]}
             if math.isfinite(motion.error):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 
-from ...scene import Scene
+from ..._scene.scene import Scene
 from .. import scenes
 from ..case import Case, truth_of
 from ..entrants import Entrant

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...scene import Scene
+from ..._scene.scene import Scene
 from ..case import S1_MOMENTS
 from ..entrants import Entrant
 from ..family import Family, Point, Verdict, answered, nobody, to_short

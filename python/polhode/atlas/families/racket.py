@@ -7,12 +7,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...charts.truth import Truth
-from ...motion import Motion
+from ..._harness.truth import Truth, attitude_errors
+from ..._solve.motion import Motion
 from .. import scenes
 from ..case import Case, stored, turn_of
 from ..entrants import PER_TURN, Entrant
-from ..errors import attitude_errors
 from ..family import LOST, Family, Point, Verdict, answered, measure_cases, nobody, to_short
 from ..run import Failed, Refused, run
 
@@ -46,7 +45,8 @@ def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
         case = scenes.racket(closeness)
 
         def lost(motion: Motion, truth: Truth, case: Case = case) -> dict[str, float]:
-            off = np.flatnonzero(attitude_errors(motion, truth) > LOST)
+            assert motion.attitude is not None
+            off = np.flatnonzero(attitude_errors(motion.attitude, truth) > LOST)
             return {"lost": float(motion.t[off[0]])} if off.size else {}
 
         (point,) = measure_cases("racket", [case], entrant, limit, more=lost)

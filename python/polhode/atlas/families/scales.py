@@ -7,9 +7,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...charts.truth import Truth, compute_errors
-from ...motion import Motion
-from ...scene import Scene
+from ..._harness.truth import Truth, compute_errors
+from ..._solve.motion import Motion
+from ..._scene.scene import Scene
 from ...torques import Gravity
 from ..case import turn_of
 from ..entrants import PER_TURN, Entrant

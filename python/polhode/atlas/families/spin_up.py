@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...charts.truth import Truth
-from ...motion import Motion
+from ..._harness.truth import Truth
+from ..._solve.motion import Motion
 from .. import scenes
 from ..case import Case, truth_of
 from ..entrants import PER_TURN, Entrant

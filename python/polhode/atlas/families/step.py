@@ -9,13 +9,11 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-import polhode
-
-from ...charts.truth import Truth
-from ...scene import Scene
+from ..._core import FreeMotion
+from ..._harness.truth import Truth, attitude_errors
+from ..._scene.scene import Scene
 from ..case import S1_MOMENTS
 from ..entrants import Entrant
-from ..errors import attitude_errors
 from ..family import LOST, Family, Point, Verdict, answered, fixed_only, nobody, to_short
 from ..run import Failed, run
 
@@ -48,7 +46,7 @@ def passes(entrant: Entrant, scene: Scene, truth: Truth, step: float, limit: flo
         if why.late:
             raise
         return set()
-    assert motion.omega is not None
+    assert motion.omega is not None and motion.attitude is not None
     inertia = np.diag(scene.inertia.matrix)
     energy = (motion.omega**2 @ inertia) / (scene.omega**2 @ inertia)
     size = np.sqrt((motion.omega**2 @ inertia**2) / (scene.omega**2 @ inertia**2))
@@ -58,7 +56,7 @@ def passes(entrant: Entrant, scene: Scene, truth: Truth, step: float, limit: flo
         held.add("bounded")
     if np.abs(ratios - 1).max() <= 0.1:
         held.add("kept")
-    if attitude_errors(motion, truth)[:TURNS_RIGHT].max() <= LOST:
+    if attitude_errors(motion.attitude, truth)[:TURNS_RIGHT].max() <= LOST:
         held.add("right")
     return held
 
@@ -70,7 +68,7 @@ def limits(entrant: Entrant, moments: tuple[float, float, float], quick: bool, l
         omega = np.array(start) / np.linalg.norm(start)
         times = 2 * math.pi * np.arange(1, TURNS + 1)   # whole turns, which are ends of steps
         scene = Scene(inertia=moments, omega=omega, times=times)
-        truth = Truth(*polhode.FreeMotion(moments, omega).at(times), "closed form", "", 0.0, None)
+        truth = Truth(*FreeMotion(moments, omega).at(times), "closed form", "", 0.0, None)
         best = _longest(steps_a_turn(quick), lambda count: passes(entrant, scene, truth, 2 * math.pi / count, limit))
         found = {name: min(found[name], best[name]) for name in PASSES}
     return found
@@ -79,8 +77,8 @@ def limits(entrant: Entrant, moments: tuple[float, float, float], quick: bool, l
 def _longest(counts: list[int], held: Callable[[int], set[str]]) -> dict[str, float]:
     """The longest step before the first that fails, for each of the three; `counts` falls.
 
-    From moderate steps on to longer ones until all fail. What fails at once is looked for among shorter steps, each half
-    of those that are left: nothing fails with steps shorter than some that pass.
+    From moderate steps on to longer ones until all fail. What fails at once is looked for among shorter steps, each
+    half of those that are left: nothing fails with steps shorter than some that pass.
     """
     held = functools.cache(held)
     first = next(i for i, count in enumerate(counts) if count <= MODERATE)

@@ -6,7 +6,7 @@ import time
 
 import numpy as np
 
-from ...scene import Scene
+from ..._scene.scene import Scene
 from ..candidate import Answer, Candidate, Failure, Run, Settings
 from ..equations import derivatives, refuses
 from .found import version
@@ -43,7 +43,8 @@ def _start(scene: Scene) -> Run:
             result = solver.propagate_grid(times)   # type: ignore[attr-defined]
         else:
             end = time.perf_counter() + limit
-            result = solver.propagate_grid(times, callback=lambda s: time.perf_counter() < end)   # type: ignore[attr-defined]
+            result = solver.propagate_grid(times,
+                                           callback=lambda s: time.perf_counter() < end)   # type: ignore[attr-defined]
         if result[0] == hy.taylor_outcome.cb_stop:
             raise Failure(f"not done within {limit:.2g} s")
         if result[0] != hy.taylor_outcome.time_limit:

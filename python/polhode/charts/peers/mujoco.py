@@ -6,7 +6,7 @@ import time
 
 import numpy as np
 
-from ...scene import Scene
+from ..._scene.scene import Scene
 from ..candidate import Answer, Candidate, Failure, Run, Settings, steps, uniform
 from .found import version
 
@@ -63,8 +63,8 @@ def candidates() -> list[Candidate]:
     def settings(scene: Scene) -> Settings:
         return steps(scene, 7, 4)
 
-    def one(integrator: str) -> Candidate:
+    def make(integrator: str) -> Candidate:
         return Candidate(f"MuJoCo {integrator}", "peer", f"mujoco.mj_step(nstep), integrator {integrator}", settings,
                          lambda scene: _start(scene, integrator), _refuses, "step")
 
-    return [one("RK4"), one("Euler")]
+    return [make("RK4"), make("Euler")]

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ...scene import Scene
+from ..._scene.scene import Scene
 from ..candidate import Answer, Candidate, Failure, Run, tolerances
 from ..equations import STATE, refuses, source
 from .found import version
@@ -48,8 +48,8 @@ def _start(scene: Scene, method: str) -> Run:
 
 def candidates() -> list[Candidate]:
     """Both of its solvers; lsoda refuses tolerances below 1e-13."""
-    def one(method: str) -> Candidate:
+    def make(method: str) -> Candidate:
         return Candidate(f"numbalsoda {method}", "peer", f"numbalsoda.{method}", tolerances(3, 13, 2),
                          lambda scene: _start(scene, method), refuses)
 
-    return [one("lsoda"), one("dop853")]
+    return [make("lsoda"), make("dop853")]

@@ -13,8 +13,8 @@ import tempfile
 
 import numpy as np
 
-from ...motion import Floats
-from ...scene import Scene
+from ..._scene.scene import Scene
+from ..._solve.motion import Floats
 from ..candidate import Answer, Candidate, Failure, Run, tolerances
 from ..equations import STATE, refuses, source
 
@@ -85,10 +85,12 @@ def _start(scene: Scene, method: str) -> Run:
         out = np.empty((times.size, 7))
         # Its tolerances are one number for all components: the smaller scale, as one does who knows them.
         calls = driver.solve(function, METHODS[method], pointer(start), pointer(times), ctypes.c_long(times.size),
-                             ctypes.c_double(rtol * min(size, 1.0)), ctypes.c_double(rtol), ctypes.c_double(limit or 0.0),
+                             ctypes.c_double(rtol * min(size, 1.0)), ctypes.c_double(rtol),
+                             ctypes.c_double(limit or 0.0),
                              pointer(out))
         if calls < 0:
-            raise Failure(f"not done within {limit:.2g} s" if calls == -1 else "Odeint gave up: no step is small enough")
+            raise Failure(f"not done within {limit:.2g} "
+                          "s" if calls == -1 else "Odeint gave up: no step is small enough")
         return Answer(out[-n:, :3], out[-n:, 3:], {"derivatives": int(calls)})
 
     return run
@@ -96,9 +98,10 @@ def _start(scene: Scene, method: str) -> Run:
 
 def candidates() -> list[Candidate]:
     """Dormand and Prince's pair with its dense output, and Fehlberg's 7(8), stepping onto the samples."""
-    def one(method: str) -> Candidate:
-        return Candidate(f"Odeint {method}", "peer", f"boost::numeric::odeint::runge_kutta_{method}, g++ {' '.join(FLAGS[:2])}",
+    def make(method: str) -> Candidate:
+        return Candidate(f"Odeint {method}", "peer",
+                         f"boost::numeric::odeint::runge_kutta_{method}, g++ {' '.join(FLAGS[:2])}",
                          tolerances(3, 14), lambda scene: _start(scene, method),
                          refuses)
 
-    return [one(method) for method in METHODS]
+    return [make(method) for method in METHODS]

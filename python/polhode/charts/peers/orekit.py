@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ...scene import Scene
+from ..._scene.scene import Scene
 from ..candidate import Answer, Candidate, Failure, Run, fixed
 from .found import version
 
@@ -33,7 +33,8 @@ def _class() -> Any:
     folder = tempfile.mkdtemp(prefix="polhode-")
     try:
         source = pathlib.Path(__file__).parent / "TorqueFreeRun.java"
-        done = subprocess.run(["javac", "-cp", jars, "-d", folder, str(source)], capture_output=True, text=True, check=False)
+        done = subprocess.run(["javac", "-cp", jars, "-d", folder, str(source)], capture_output=True, text=True,
+                              check=False)
         if done.returncode:
             raise Failure(f"does not compile: {(done.stderr.splitlines() or ['?'])[0]}")
         jpype.startJVM("-Xshare:auto", classpath=[jars, folder])
@@ -67,5 +68,6 @@ def _start(scene: Scene) -> Run:
 
 def candidates() -> list[Candidate]:
     """Its TorqueFree, construction and all times in one call, the virtual machine warm."""
-    return [Candidate("Orekit TorqueFree", "peer", "org.orekit.attitudes.TorqueFree", fixed("closed form"), _start, _refuses,
+    return [Candidate("Orekit TorqueFree", "peer", "org.orekit.attitudes.TorqueFree", fixed("closed form"), _start,
+                      _refuses,
                       "")]

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...scene import Scene
+from ..._scene.scene import Scene
 from ..candidate import Answer, Candidate, Failure, Run, tolerances
 from ..equations import in_floats, refuses
 from .found import version
@@ -23,7 +23,7 @@ def found() -> str:
 
 
 def sizes(scene: Scene) -> Any:
-    """What a tolerance is relative to: the size of the rates, and 1 for the quaternion, as one does who knows the scales."""
+    """Return what a tolerance is relative to: the size of the rates, and 1 for the quaternion."""
     return np.array([float(np.linalg.norm(scene.omega)) or 1.0] * 3 + [1.0] * 4)
 
 
@@ -53,7 +53,8 @@ def _start(scene: Scene, method: str) -> Run:
     def run(rtol: float, limit: float | None) -> Answer:
         with warnings.catch_warnings():   # of tolerances below 100 units of rounding, which are raised
             warnings.simplefilter("ignore")
-            result = solve_ivp(watched(f, limit), span, start, method=method, t_eval=scene.times, rtol=rtol, atol=rtol * size)
+            result = solve_ivp(watched(f, limit), span, start, method=method, t_eval=scene.times, rtol=rtol,
+                               atol=rtol * size)
         if not result.success:
             raise Failure(str(result.message))
         return Answer(result.y[:3].T.copy(), result.y[3:].T.copy(), {"derivatives": int(result.nfev)})
@@ -62,10 +63,11 @@ def _start(scene: Scene, method: str) -> Run:
 
 
 def candidates() -> list[Candidate]:
-    """RK45 and DOP853, whose continuous extensions are of order 4 and 7, LSODA, its fastest, and Radau for what damps."""
-    def one(method: str) -> Candidate:
+    """RK45 and DOP853 with dense output of orders 4 and 7, LSODA, its fastest, and Radau for what damps."""
+    def make(method: str) -> Candidate:
         # A run takes up to seconds, so every third decade is what there is time for.
-        return Candidate(f"SciPy {method}", "peer", f"scipy.integrate.solve_ivp(method={method!r})", tolerances(3, 12, 3),
+        return Candidate(f"SciPy {method}", "peer", f"scipy.integrate.solve_ivp(method={method!r})",
+                         tolerances(3, 12, 3),
                          lambda scene: _start(scene, method), lambda scene: refuses(scene, method == "Radau"))
 
-    return [one(method) for method in ("RK45", "DOP853", "LSODA", "Radau")]
+    return [make(method) for method in ("RK45", "DOP853", "LSODA", "Radau")]

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ...scene import Scene
+from ..._scene.scene import Scene
 from ..candidate import Answer, Candidate, Failure, Run, tolerances
 from ..equations import in_floats, refuses
 from .found import version
@@ -33,7 +33,8 @@ def _start(scene: Scene, method: str) -> Run:
         def right_hand_side(t: float, y: Any, yp: Any) -> None:
             yp[:] = function(t, y)
 
-        result = CVODE(right_hand_side, method=method, rtol=rtol, atol=rtol * size, max_num_steps=10_000_000).solve(times, start)
+        result = CVODE(right_hand_side, method=method, rtol=rtol, atol=rtol * size,
+                       max_num_steps=10_000_000).solve(times, start)
         if not result.success:
             raise Failure(str(result.message))
         y = result.y[-scene.times.size:]
@@ -44,8 +45,8 @@ def _start(scene: Scene, method: str) -> Run:
 
 def candidates() -> list[Candidate]:
     """Adams for what is not stiff, BDF for what is."""
-    def one(method: str) -> Candidate:
+    def make(method: str) -> Candidate:
         return Candidate(f"SUNDIALS {method}", "peer", f"sksundae.cvode.CVODE(method={method!r})", tolerances(3, 12, 3),
                          lambda scene: _start(scene, method), lambda scene: refuses(scene, method == "BDF"))
 
-    return [one("Adams"), one("BDF")]
+    return [make("Adams"), make("BDF")]

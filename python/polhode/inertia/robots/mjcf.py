@@ -9,10 +9,11 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ..._attitude.rotation import Rotation
 from ..._core import MassProperties
-from ...attitude import Rotation
-from . import link as parts
-from .link import Link, Parts, Pose, Robot
+from . import geometry
+from .geometry import Assembly, Pose
+from .link import Link, Robot
 from .xml import Node, to_numbers
 
 Array = npt.NDArray[np.float64]
@@ -143,7 +144,7 @@ def _onto(z: Array) -> Array:
 def _body(node: Node, style: str, model: Model, index: int) -> Link:
     compiler = model.compiler
     link = Link(node.get("name") or f"body {index + 1}")
-    solids: list[tuple[parts.Part, float]] = []
+    solids: list[tuple[geometry.Part, float]] = []
     for child in node.children():
         if child.tag == "geom":
             solids += _geom(child, style, model, link)
@@ -185,7 +186,7 @@ def _inertial(link: Link, node: Node, compiler: Compiler) -> None:
         link.notes.append(f"boundinertia: MuJoCo raises moments to {compiler.least_inertia:g} kg m^2")
 
 
-def _from_geoms(link: Link, solids: list[tuple[parts.Part, float]]) -> None:
+def _from_geoms(link: Link, solids: list[tuple[geometry.Part, float]]) -> None:
     """Mass and tensor as MuJoCo computes them when it is left to."""
     if not (link.visual.whole and link.collision.whole) or any(part.solid is None for part, _ in solids):
         link.unjudged = "from its geoms, which were not all read"
@@ -202,10 +203,10 @@ def _from_geoms(link: Link, solids: list[tuple[parts.Part, float]]) -> None:
     link.mass, link.matrix = total.mass, np.asarray(total.inertia.matrix)
     link.pose = Pose(np.eye(3), np.asarray(total.com))
     link.notes.append("from its geoms")
-    link.visual, link.collision = Parts(), Parts()   # compared with what it was made from, it says nothing
+    link.visual, link.collision = Assembly(), Assembly()   # compared with what it was made from, it says nothing
 
 
-def _geom(node: Node, style: str, model: Model, link: Link) -> list[tuple[parts.Part, float]]:
+def _geom(node: Node, style: str, model: Model, link: Link) -> list[tuple[geometry.Part, float]]:
     """Add a geom; returns it with its mass as MuJoCo computes it, or nothing when it has none or was not read."""
     told = {**model.defaults.get(node.get("class") or style, {}).get("geom", {}), **node.element.attrib}
     kind = told.get("type", "sphere")
@@ -221,12 +222,12 @@ def _geom(node: Node, style: str, model: Model, link: Link) -> list[tuple[parts.
         size = np.concatenate([size[:1] if kind in ("capsule", "cylinder") else np.repeat(size[:1], 2),
                                [float(np.linalg.norm(along)) / 2]])
         pose = Pose(_onto(_unit(along, node)), (ends[:3] + ends[3:]) / 2)
-    makers: dict[str, tuple[int, Callable[[], parts.Part]]] = {
-        "sphere": (1, lambda: parts.ball(size[0], pose)),
-        "capsule": (2, lambda: parts.capsule(size[0], 2 * size[1], pose)),
-        "cylinder": (2, lambda: parts.cylinder(size[0], 2 * size[1], pose)),
-        "ellipsoid": (3, lambda: parts.ellipsoid(size[:3], pose)),
-        "box": (3, lambda: parts.block(size[:3], pose)),
+    makers: dict[str, tuple[int, Callable[[], geometry.Part]]] = {
+        "sphere": (1, lambda: geometry.ball(size[0], pose)),
+        "capsule": (2, lambda: geometry.capsule(size[0], 2 * size[1], pose)),
+        "cylinder": (2, lambda: geometry.cylinder(size[0], 2 * size[1], pose)),
+        "ellipsoid": (3, lambda: geometry.ellipsoid(size[:3], pose)),
+        "box": (3, lambda: geometry.block(size[:3], pose)),
     }
     before = len(into.parts)
     if "mesh" in told:
@@ -235,7 +236,7 @@ def _geom(node: Node, style: str, model: Model, link: Link) -> list[tuple[parts.
         count, make = makers[kind]
         if len(size) < count:
             raise node.wrong(f"size: a {kind} has {count}, got {len(size)}")
-        parts.add(link, into, f"geom {kind}", make)
+        link.add(into, f"geom {kind}", make)
     else:
         into.whole = False
         link.notes.append(f"geom of type {kind!r} is not read: not compared with it")
@@ -248,7 +249,7 @@ def _geom(node: Node, style: str, model: Model, link: Link) -> list[tuple[parts.
     return [(part, density * (part.solid.mass if part.solid is not None else 0.0))]
 
 
-def _mesh(node: Node, told: dict[str, str], kind: str, model: Model, link: Link, into: Parts, pose: Pose) -> None:
+def _mesh(node: Node, told: dict[str, str], kind: str, model: Model, link: Link, into: Assembly, pose: Pose) -> None:
     asset = model.meshes.get(told["mesh"])
     if kind != "mesh" or asset is None or asset.get("file") is None or asset.get("refpos") or asset.get("refquat"):
         into.whole = False
@@ -259,4 +260,4 @@ def _mesh(node: Node, told: dict[str, str], kind: str, model: Model, link: Link,
     settings = {**model.defaults.get(asset.get("class") or "main", {}).get("mesh", {}), **asset.element.attrib}
     scale = to_numbers(settings.get("scale", "1 1 1"), 3, f"{asset.where}: scale")
     path = pathlib.PurePosixPath(model.compiler.meshes) / asset.word("file")
-    parts.add_mesh(link, into, str(path), scale, pose, model.file)
+    link.add_mesh(into, str(path), scale, pose, model.file)

@@ -6,9 +6,10 @@ import pathlib
 
 import numpy as np
 
-from ...attitude import Rotation
-from . import link as parts
-from .link import Link, Parts, Pose, Robot
+from ..._attitude.rotation import Rotation
+from . import geometry
+from .geometry import Assembly, Pose
+from .link import Link, Robot
 from .xml import Node
 
 
@@ -74,7 +75,7 @@ def _pose(node: Node) -> tuple[Pose, bool]:
     return Pose(turn.as_matrix(), values[:3]), here
 
 
-def _geometry(link: Link, into: Parts, node: Node, file: pathlib.Path) -> None:
+def _geometry(link: Link, into: Assembly, node: Node, file: pathlib.Path) -> None:
     pose, here = _pose(node)
     if not here:
         into.whole = False
@@ -83,19 +84,19 @@ def _geometry(link: Link, into: Parts, node: Node, file: pathlib.Path) -> None:
     for shape in node.need("geometry").children():
         if shape.tag in ("box", "ellipsoid"):
             lengths = shape.need("size").content(3) / 2 if shape.tag == "box" else shape.need("radii").content(3)
-            solid = parts.block if shape.tag == "box" else parts.ellipsoid
-            parts.add(link, into, shape.tag, lambda: solid(lengths, pose))
+            solid = geometry.block if shape.tag == "box" else geometry.ellipsoid
+            link.add(into, shape.tag, lambda: solid(lengths, pose))
         elif shape.tag in ("cylinder", "capsule"):
-            make = parts.cylinder if shape.tag == "cylinder" else parts.capsule
+            make = geometry.cylinder if shape.tag == "cylinder" else geometry.capsule
             radius, length = (float(shape.need(name).content(1)[0]) for name in ("radius", "length"))
-            parts.add(link, into, shape.tag, lambda: make(radius, length, pose))
+            link.add(into, shape.tag, lambda: make(radius, length, pose))
         elif shape.tag == "sphere":
             radius = float(shape.need("radius").content(1)[0])
-            parts.add(link, into, "sphere", lambda: parts.ball(radius, pose))
+            link.add(into, "sphere", lambda: geometry.ball(radius, pose))
         elif shape.tag == "mesh":
             scale = shape.child("scale")
             factors = np.ones(3) if scale is None else scale.content(3)
-            parts.add_mesh(link, into, shape.need("uri").text, factors, pose, file)
+            link.add_mesh(into, shape.need("uri").text, factors, pose, file)
         elif shape.tag != "empty":
             into.whole = False
             link.notes.append(f"<{shape.tag}> is not read: not compared with it")

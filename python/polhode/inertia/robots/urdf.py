@@ -6,9 +6,10 @@ import pathlib
 
 import numpy as np
 
-from ...attitude import Rotation
-from . import link as parts
-from .link import Link, Parts, Pose, Robot
+from ..._attitude.rotation import Rotation
+from . import geometry
+from .geometry import Assembly, Pose
+from .link import Link, Robot
 from .xml import Node
 
 
@@ -47,21 +48,21 @@ def _pose(node: Node) -> Pose:
     return Pose(turn.as_matrix(), origin.numbers("xyz", 3, "0 0 0"))
 
 
-def _geometry(link: Link, into: Parts, node: Node, file: pathlib.Path) -> None:
-    pose, geometry = _pose(node), node.need("geometry")
-    for shape in geometry.children():
+def _geometry(link: Link, into: Assembly, node: Node, file: pathlib.Path) -> None:
+    pose = _pose(node)
+    for shape in node.need("geometry").children():
         if shape.tag == "box":
             half = shape.numbers("size", 3) / 2
-            parts.add(link, into, "box", lambda: parts.block(half, pose))
+            link.add(into, "box", lambda: geometry.block(half, pose))
         elif shape.tag in ("cylinder", "capsule"):
-            make = parts.cylinder if shape.tag == "cylinder" else parts.capsule
+            make = geometry.cylinder if shape.tag == "cylinder" else geometry.capsule
             radius, length = shape.number("radius"), shape.number("length")
-            parts.add(link, into, shape.tag, lambda: make(radius, length, pose))
+            link.add(into, shape.tag, lambda: make(radius, length, pose))
         elif shape.tag == "sphere":
             radius = shape.number("radius")
-            parts.add(link, into, "sphere", lambda: parts.ball(radius, pose))
+            link.add(into, "sphere", lambda: geometry.ball(radius, pose))
         elif shape.tag == "mesh":
-            parts.add_mesh(link, into, shape.word("filename"), shape.numbers("scale", 3, "1 1 1"), pose, file)
+            link.add_mesh(into, shape.word("filename"), shape.numbers("scale", 3, "1 1 1"), pose, file)
         else:
             into.whole = False
             link.notes.append(f"<{shape.tag}> is not read: not compared with it")

@@ -1,8 +1,9 @@
-"""How this polhode was built, and where C++ projects find it."""
+"""How this polhode was built, where C++ projects find it, and the processor it runs on."""
 
 from __future__ import annotations
 
 import os.path
+import platform
 
 from . import _core
 from ._core import build_info as build_info
@@ -18,3 +19,13 @@ def cmake_prefix() -> str:
     """
     # Not from __file__: in an editable install only the compiled module stands beside include and lib.
     return os.path.dirname(os.path.abspath(_core.__file__))
+
+
+def processor() -> str:
+    """Return the model of this machine's processor."""
+    try:
+        with open("/proc/cpuinfo", encoding="utf-8") as lines:
+            model = next((line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")), "")
+    except OSError:   # not Linux
+        model = ""
+    return model or platform.processor() or platform.machine()

@@ -40,7 +40,8 @@ def line(name: str, family: str, pale: bool = False) -> dict[str, Any]:
     peer = family == "peer"
     marker = _PEERS.get(name.split()[0], ("", "s"))[1] if peer else _MARKERS.get(family, "o")
     edge = {"markeredgecolor": INK if family == "plan" else PAPER, "markeredgewidth": 0.7}
-    return {"color": PALE if pale else colour(name), "marker": marker, "markersize": _SIZES.get(family, 3.2 if pale else 4.4),
+    return {"color": PALE if pale else colour(name), "marker": marker,
+            "markersize": _SIZES.get(family, 3.2 if pale else 4.4),
             "linewidth": 0 if family == "plan" else 0.9 if pale else 1.3 if peer else 2.0,
             "linestyle": (0, (4, 2)) if peer else "-", "solid_capstyle": "round",
             "zorder": 5 if family == "plan" else 2.5 if pale else 3 if peer else 4} | edge

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..motion import Floats
+from .._solve.motion import Floats
 
 
 class View(NamedTuple):

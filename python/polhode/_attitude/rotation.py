@@ -1,4 +1,4 @@
-"""Attitudes: rotations of three-space, vectorised, under SciPy's names; and the rates of their Euler angles."""
+"""Attitudes: rotations of three-space, vectorised, under SciPy's names."""
 
 from __future__ import annotations
 
@@ -8,11 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._core import InvalidInput
-from ._core import attitude as _kernels
-from .kinematics import body_rates, euler_rates
-
-__all__ = ["Rotation", "body_rates", "euler_rates"]
+from .._core import InvalidInput
+from .._core import attitude as _kernels
+from . import arrays
 
 FloatArray = NDArray[np.float64]
 
@@ -129,9 +127,42 @@ class Rotation:
         return _wrap(_kernels.from_euler(seq, angles, degrees))
 
     @staticmethod
+    def from_mrp(mrp: ArrayLike) -> Rotation:
+        """From modified Rodrigues parameters e tan(angle / 4), shape (..., 3), of any length.
+
+        p and its shadow -p / |p|^2 are the same rotation. InvalidInput for NaN, inf, or another shape.
+        """
+        return Rotation(arrays.from_mrp(mrp))
+
+    @staticmethod
+    def align_vectors(a: ArrayLike, b: ArrayLike, weights: ArrayLike | None = None) -> tuple[Rotation, float]:
+        """The rotation that takes vectors b to vectors a with the least sum of weight |a - R b|^2.
+
+        Parameters
+        ----------
+        a, b : array_like, shape (3,) or (n, 3)
+            Of one pair, the directions are matched by the shortest rotation.
+        weights : array_like, shape (n,), optional
+            0 or more, 1 unless given. One may be inf: the directions of that pair are matched exactly.
+
+        Returns
+        -------
+        rotation : Rotation
+        rssd : float
+            The square root of that sum, over the finite weights.
+
+        Warns
+        -----
+        UserWarning
+            When the vectors leave the rotation open, as parallel ones do.
+        """
+        quat, rssd = arrays.align(a, b, weights)
+        return _wrap(quat), rssd
+
+    @staticmethod
     def identity(num: int | None = None, *, shape: int | tuple[int, ...] | None = None) -> Rotation:
         """The rotation that does nothing: one, `num` of them, or an array of the shape."""
-        quat = np.zeros((*_shape_of(num, shape), 4))
+        quat = np.zeros((*arrays.to_shape(num, shape), 4))
         quat[..., 3] = 1.0
         return _wrap(quat)
 
@@ -147,7 +178,7 @@ class Rotation:
         rng : numpy.random.Generator or a seed for one, optional
             The same generator gives the same rotations as SciPy's.
         """
-        quat = np.random.default_rng(rng).normal(size=(*_shape_of(num, shape), 4))
+        quat = np.random.default_rng(rng).normal(size=(*arrays.to_shape(num, shape), 4))
         return Rotation(quat / np.linalg.norm(quat, axis=-1, keepdims=True))
 
     @staticmethod
@@ -188,6 +219,13 @@ class Rotation:
         At pi exactly (w = 0), where v and -v are the same rotation, the first non-zero component is positive.
         """
         return _kernels.as_rotvec(self._quat, degrees)
+
+    def as_mrp(self) -> FloatArray:
+        """Modified Rodrigues parameters e tan(angle / 4), shape (..., 3), of length 1 at most.
+
+        At a half turn, where p and -p are the same rotation, the first non-zero component is positive.
+        """
+        return arrays.as_mrp(self._quat)
 
     def as_euler(self, seq: str, degrees: bool = False) -> FloatArray:
         """Euler angles, shape (..., 3) [rad], in the order of the letters.
@@ -272,6 +310,16 @@ class Rotation:
             return self
         return self.inv() if n == -1.0 else Rotation.from_rotvec(n * self.as_rotvec())
 
+    def mean(self, weights: ArrayLike | None = None) -> Rotation:
+        """The rotation whose matrix is nearest to the mean of all matrices (chordal distance).
+
+        Parameters
+        ----------
+        weights : array_like, optional
+            0 or more, not all of them 0; they broadcast to the shape of the rotations.
+        """
+        return Rotation(arrays.mean(self._quat, weights))
+
     def approx_equal(self, other: Any, atol: float | None = None, degrees: bool = False) -> NDArray[np.bool_] | bool:
         """Whether the angle between the two rotations is below `atol`, 1e-8 rad unless given."""
         limit = 1e-8 if atol is None else float(np.deg2rad(atol)) if degrees else atol
@@ -345,13 +393,3 @@ def _quat_of(value: Any, *, scalar_first: bool = False) -> FloatArray:
     if hasattr(value, "as_quat"):
         return _kernels.normalize(value.as_quat(), False)
     return _kernels.normalize(value, scalar_first)
-
-
-def _shape_of(num: int | None, shape: int | tuple[int, ...] | None) -> tuple[int, ...]:
-    if num is not None and shape is not None:
-        raise InvalidInput("num: must be left out where shape is given, got both")
-    sizes = num if num is not None else shape if shape is not None else ()
-    sizes = sizes if isinstance(sizes, tuple) else (sizes,)
-    if not all(isinstance(size, (int, np.integer)) and size >= 0 for size in sizes):
-        raise InvalidInput(f"{'shape' if num is None else 'num'}: must be whole numbers >= 0, got {sizes}")
-    return sizes

@@ -1,4 +1,4 @@
-"""Where candidates run: in this process, or in one of their own that may crash or hang without ending the chart."""
+"""What runs candidates: this process, or one of their own that may crash or hang without ending the chart."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..scene import Scene
-from ..workers import Worker, command
+from .._harness.workers import Worker, command
+from .._scene.scene import Scene
 from .candidate import Answer, Candidate, Failure, Run
 from .candidates import candidates
 
@@ -28,7 +28,7 @@ class Reply(NamedTuple):
     warm_up: float
 
 
-class Here:
+class InProcess:
     """Runs candidates in this process."""
 
     def __init__(self, taking_part: list[Candidate]) -> None:
@@ -89,7 +89,7 @@ class Here:
         """Nothing is held here."""
 
 
-class Apart:
+class Subprocess:
     """Runs candidates in a process of their own, which is ended when it hangs and made anew when it is gone."""
 
     def __init__(self) -> None:
@@ -142,25 +142,25 @@ class Apart:
         return process.end(kill) if process else ""
 
 
-def answerer() -> Callable[[tuple[Any, ...]], Iterator[Any]]:
-    """What the process apart does: calls a method of `Here` with arguments, as it is told."""
-    stage = Here(candidates())
+def make_handler() -> Callable[[tuple[Any, ...]], Iterator[Any]]:
+    """Return what a `Subprocess` does with a message: it calls a method of `InProcess` with arguments."""
+    runner = InProcess(candidates())
 
     def answer(message: tuple[Any, ...]) -> Iterator[Any]:
         try:
-            yield getattr(stage, message[0])(*message[1:])
+            yield getattr(runner, message[0])(*message[1:])
         except Failure as failure:   # in its own words
             yield failure
 
     return answer
 
 
-def make_stage(taking_part: list[Candidate], scenes: list[Scene]) -> tuple[Here | Apart, str]:
-    """Return a process apart where that can be, else this one, and why."""
+def make_runner(taking_part: list[Candidate], scenes: list[Scene]) -> tuple[InProcess | Subprocess, str]:
+    """Return a process of the candidates' own where that can be, else this one, and why."""
     if os.name != "posix":
-        return Here(taking_part), "all in this process: one apart needs POSIX"
+        return InProcess(taking_part), "all in this process: one apart needs POSIX"
     try:
         pickle.dumps(scenes)
     except Exception as error:   # such as a torque that is a function of a notebook
-        return Here(taking_part), f"all in this process: a scene cannot be sent to another ({error})"
-    return Apart(), ""
+        return InProcess(taking_part), f"all in this process: a scene cannot be sent to another ({error})"
+    return Subprocess(), ""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._core import attitude as _kernels
+from .._core import attitude as _kernels
 
 FloatArray = NDArray[np.float64]
 

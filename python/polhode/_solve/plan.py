@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import functools
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
-from . import _core, calibration
-
-if TYPE_CHECKING:
-    from .scene import Scene
+from .. import _core
+from .._scene.scene import Scene
+from . import costs
 
 
 class Candidate(NamedTuple):
@@ -42,8 +41,8 @@ class Plan:
     ----------
     scene : Scene
     model : str
-        The closed form's name, such as "triaxial" or "heavy_top", or "euler" or "lagrangian" where equations are stepped;
-        "pieces" where torques begin or cease to act within the span.
+        The closed form's name, such as "triaxial" or "heavy_top", or "euler" or "lagrangian" where equations are
+        stepped; "pieces" where torques begin or cease to act within the span.
     method : str
         "exact", or a name of `methods()`; of pieces, the one that has most to do.
     pieces : tuple of Piece
@@ -79,17 +78,17 @@ class Plan:
         self.pieces: tuple[Piece, ...]
         (self.model, self.method, self.state, self.accuracy, self.certify, self.rtol, self.predicted_error,
          self.predicted_seconds, pieces) = parts
-        self.pieces = tuple(Piece(*one) for one in pieces)
+        self.pieces = tuple(Piece(*piece) for piece in pieces)
         self.wishes = wishes
 
     @functools.cached_property
     def _report(self) -> dict[str, Any]:
         if math.isnan(self.accuracy):   # tolerances were given
-            facts = _core.plan(self.scene, None, None, True, "euler", calibration.factors())["facts"]
-            return {"facts": facts, "candidates": [], "left_out": [],
-                    "reasons": [f"{self.method} was asked for, with tolerances or steps of its own: nothing was planned."]}
+            facts = _core.plan(self.scene, None, None, True, "euler", costs.factors())["facts"]
+            reason = f"{self.method} was asked for, with tolerances or steps of its own: nothing was planned."
+            return {"facts": facts, "candidates": [], "left_out": [], "reasons": [reason]}
         return dict(_core.plan(self.scene, self.accuracy, self.wishes.get("method"), self.certify,
-                               self.wishes.get("formulation", "euler"), calibration.factors()))
+                               self.wishes.get("formulation", "euler"), costs.factors()))
 
     @property
     def facts(self) -> dict[str, Any]:
@@ -99,7 +98,7 @@ class Plan:
     @property
     def candidates(self) -> tuple[Candidate, ...]:
         """Everything that was considered, exact models first."""
-        return tuple(Candidate(*one) for one in self._report["candidates"])
+        return tuple(Candidate(*candidate) for candidate in self._report["candidates"])
 
     @property
     def reasons(self) -> tuple[str, ...]:
@@ -120,9 +119,9 @@ class Plan:
             "scene": self.scene.name, "accuracy": number(self.accuracy), "model": self.model, "method": self.method,
             "state": self.state, "certify": self.certify, "rtol": self.rtol,
             "predicted_error": number(self.predicted_error), "predicted_seconds": number(self.predicted_seconds),
-            "pieces": [one._asdict() for one in self.pieces],
-            "facts": self.facts, "candidates": [one._asdict() for one in self.candidates],
-            "reasons": list(self.reasons), "left_out": list(self.left_out), "costs": calibration.describe(),
+            "pieces": [piece._asdict() for piece in self.pieces],
+            "facts": self.facts, "candidates": [candidate._asdict() for candidate in self.candidates],
+            "reasons": list(self.reasons), "left_out": list(self.left_out), "costs": costs.describe(),
         }
 
     def __str__(self) -> str:
@@ -130,7 +129,8 @@ class Plan:
 
     def __repr__(self) -> str:
         asked = "" if math.isnan(self.accuracy) else f", accuracy={self.accuracy:g}"
-        return f"Plan({self.scene.name or 'unnamed'}: model={self.model!r}, method={self.method!r}, state={self.state!r}{asked})"
+        return (f"Plan({self.scene.name or 'unnamed'}: model={self.model!r}, method={self.method!r}, "
+                f"state={self.state!r}{asked})")
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Plan):
@@ -157,7 +157,8 @@ def _percent(part: float) -> str:
     return "0" if part == 0 else f"{100 * part:.2g} %" if part >= 1e-3 else f"{part:.0e}"
 
 
-_KEPT = {"energy": "energy", "angular_momentum": "angular momentum", "vertical_momentum": "L_z", "jacobi": "energy less n L_z"}
+_KEPT = {"energy": "energy", "angular_momentum": "angular momentum", "vertical_momentum": "L_z",
+         "jacobi": "energy less n L_z"}
 
 
 def _describe_body(plan: Plan) -> str:
@@ -194,24 +195,28 @@ def _describe_torques(plan: Plan) -> str:
         seen = [name for name in ("time", "attitude", "rates") if facts[f"sees_{name}"]]
         names += f"; {'they look' if len(plan.scene.torques) > 1 else 'it looks'} at {' and '.join(seen) or 'nothing'}"
     kept = [_KEPT[name] for name in facts["keeps"]]
-    return f"{names}; {' and '.join(kept) + (' stay' if len(kept) > 1 else ' stays') if kept else 'nothing is conserved'}"
+    if not kept:
+        return f"{names}; nothing is conserved"
+    return f"{names}; {' and '.join(kept)} {'stay' if len(kept) > 1 else 'stays'}"
 
 
 def _table(plan: Plan) -> list[str]:
     """Every candidate; neighbours that are out for the same reason share a line."""
     chosen = plan.model if plan.method == "exact" else plan.method
     rows: list[tuple[str, str, str, str]] = []
-    for one in plan.candidates:
-        if not one.why_not:
-            note = "closed form" if one.exact else f"rtol {one.rtol:.0e}"
-            rows.append((one.name, f"{one.predicted_error:.0e}", _duration(one.predicted_seconds), note))
-        elif rows and rows[-1][3] == one.why_not:
-            rows[-1] = (f"{rows[-1][0]}, {one.name}", *rows[-1][1:])
+    for candidate in plan.candidates:
+        if not candidate.why_not:
+            note = "closed form" if candidate.exact else f"rtol {candidate.rtol:.0e}"
+            seconds = _duration(candidate.predicted_seconds)
+            rows.append((candidate.name, f"{candidate.predicted_error:.0e}", seconds, note))
+        elif rows and rows[-1][3] == candidate.why_not:
+            rows[-1] = (f"{rows[-1][0]}, {candidate.name}", *rows[-1][1:])
         else:
-            rows.append((one.name, "-", "-", one.why_not))
-    widths = [max(len(row[i]) for row in [("candidate", "error", "time", ""), *rows]) for i in range(3)]
-    return [f"{'>' if row[0] == chosen else ' '} {row[0]:<{widths[0]}}  {row[1]:>{widths[1]}}  {row[2]:>{widths[2]}}   {row[3]}".rstrip()
-            for row in [("candidate", "error", "time", ""), *rows]]
+            rows.append((candidate.name, "-", "-", candidate.why_not))
+    rows.insert(0, ("candidate", "error", "time", ""))
+    a, b, c = (max(len(row[i]) for row in rows) for i in range(3))
+    return [f"{'>' if name == chosen else ' '} {name:<{a}}  {error:>{b}}  {seconds:>{c}}   {note}".rstrip()
+            for name, error, seconds, note in rows]
 
 
 def _pieces(plan: Plan, most: int = 12) -> list[str]:
@@ -225,10 +230,18 @@ def _pieces(plan: Plan, most: int = 12) -> list[str]:
     skipped = len(plan.pieces) - most
     shown = plan.pieces if skipped <= 0 else (*plan.pieces[:most // 2], *plan.pieces[-most // 2:])
     rows = [heads, *map(row, shown)]
-    widths = [max(len(one[i]) for one in rows) for i in range(len(heads))]
-    lines = ["  " + "  ".join(f"{part:<{width}}" if i > 3 else f"{part:>{width}}" for i, (part, width) in
-                              enumerate(zip(one, widths))).rstrip() for one in rows]
+    widths = [max(len(cells[i]) for cells in rows) for i in range(len(heads))]
+    lines = ["  " + "  ".join(f"{cell:<{width}}" if i > 3 else f"{cell:>{width}}" for i, (cell, width) in
+                              enumerate(zip(cells, widths))).rstrip() for cells in rows]
     return lines if skipped <= 0 else [*lines[:1 + most // 2], f"  ... {skipped} more ...", *lines[1 + most // 2:]]
+
+
+def _describe_choice(plan: Plan) -> str:
+    if plan.pieces:
+        return "pieces, each by what fits it"
+    if plan.method == "exact":
+        return plan.model
+    return f"{plan.method} on {'Euler' if plan.model == 'euler' else 'Lagrange'}'s equations"
 
 
 def _lines(plan: Plan) -> list[str]:
@@ -236,7 +249,8 @@ def _lines(plan: Plan) -> list[str]:
     count = scene.times.size
     what = " and ".join(scene.want)
     head = scene.name or "scene"
-    lines = [f"{head}: " + ("tolerances given" if math.isnan(plan.accuracy) else f"{what} within {plan.accuracy:g}"), ""]
+    lines = [f"{head}: " + ("tolerances given" if math.isnan(plan.accuracy) else f"{what} within {plan.accuracy:g}"),
+             ""]
     about = "about " if not facts["free"] else ""
     rows = [
         ("body", _describe_body(plan)), ("start", _describe_start(plan)), ("torques", _describe_torques(plan)),
@@ -250,12 +264,11 @@ def _lines(plan: Plan) -> list[str]:
     if plan.candidates:
         lines += ["", *_table(plan)]
     lines.append("")
-    how = "pieces, each by what fits it" if plan.pieces else plan.model if plan.method == "exact" else f"{plan.method} on {'Euler' if plan.model == 'euler' else 'Lagrange'}'s equations"
-    lines.append(f"  choice   {how}, state: {plan.state}")
+    lines.append(f"  choice   {_describe_choice(plan)}, state: {plan.state}")
     for name, texts in (("because", plan.reasons), ("left out", plan.left_out)):
         lines += [f"  {name if i == 0 else '':<9}{text}" for i, text in enumerate(texts)]
     if not math.isnan(plan.accuracy):
-        lines.append(f"  costs    {calibration.describe()}")
+        lines.append(f"  costs    {costs.describe()}")
     return lines
 
 
@@ -285,11 +298,9 @@ def plan(scene: Scene, accuracy: float | None = None, *, method: str | None = No
     InvalidInput
         For an accuracy that is not in (0, 1], and for wishes that contradict each other or the scene.
     """
-    from .scene import Scene
-
     if not isinstance(scene, Scene):
         raise _core.InvalidInput(f"scene: must be a polhode.Scene, got {type(scene).__name__}")
-    report = _core.plan(scene, accuracy, method, bool(certify), str(formulation), calibration.factors())
+    report = _core.plan(scene, accuracy, method, bool(certify), str(formulation), costs.factors())
     made = Plan(scene, report["plan"], {"method": method, "formulation": formulation})
     made.__dict__["_report"] = dict(report)
     return made

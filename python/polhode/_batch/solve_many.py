@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
-from .attitude import Rotation
-from .motion import Floats
-from .scene import Scene
+from .. import _core
+from .._attitude.rotation import Rotation
+from .._scene.scene import Scene
+from .._solve.motion import Floats
+from .broadcast import WIDTHS, check_threads
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +51,8 @@ class Motions:
     lanes: npt.NDArray[np.bool_]
 
     def __repr__(self) -> str:
-        return f"Motions({len(self.status)} bodies, {int(self.success.sum())} with success, {int(self.steps.sum())} steps)"
+        return (f"Motions({len(self.status)} bodies, {int(self.success.sum())} with success, "
+                f"{int(self.steps.sum())} steps)")
 
 
 def _rows(value: Any, width: int, name: str) -> Floats:
@@ -79,10 +81,10 @@ def solve_many(
 ) -> Motions:
     """Solve many scenes, or one scene from many starts.
 
-    With ``rtol`` or ``atol`` and ``method="rk45"``, which is the default then, or ``"taylor"``, eight bodies are stepped side
-    by side in the lanes of registers, each with its own time, step and error: rk45 to the bits that `solve` has, taylor
-    to the same tolerance but not to the same bits. Everything else, and a body with a torque of its user's own
-    (`Custom`), is done as `solve` does it.
+    With ``rtol`` or ``atol`` and ``method="rk45"``, which is the default then, or ``"taylor"``, eight bodies are
+    stepped side by side in the lanes of registers, each with its own time, step and error: rk45 to the bits that
+    `solve` has, taylor to the same tolerance but not to the same bits. Everything else, and a body with a torque of its
+    user's own (`Custom`), is done as `solve` does it.
 
     Parameters
     ----------
@@ -117,7 +119,8 @@ def solve_many(
         arrays = {name: _rows(value, width, name) for name, (value, width) in given.items() if value is not None}
         sizes = {array.shape[0] for array in arrays.values() if array.ndim == 2}
         if len(sizes) != 1:
-            raise _core.InvalidInput(f"solve_many: with one scene must get starts of one number of bodies, got {sorted(sizes) or 'none'}")
+            raise _core.InvalidInput(
+                f"solve_many: with one scene must get starts of one number of bodies, got {sorted(sizes) or 'none'}")
         bodies = sizes.pop()
         full = {name: np.ascontiguousarray(np.broadcast_to(arrays.get(name, own), (bodies, own.size)))
                 for name, own in (("omega", scenes.omega), ("attitude", scenes.attitude))}
@@ -136,14 +139,15 @@ def solve_many(
                 raise _core.InvalidInput(f"scenes[{i}]: must be a polhode.Scene, got {type(scene).__name__}")
             if scene.times.size != listed[0].times.size or scene.want != listed[0].want:
                 raise _core.InvalidInput(f"scenes[{i}]: must have as many times as scenes[0] and the same want")
-    if threads is not None and (not isinstance(threads, (int, np.integer)) or threads < 1):
-        raise _core.InvalidInput(f"threads: must be a whole number above 0, got {threads!r}")
+    workers = check_threads(threads)
     if not isinstance(max_steps, (int, np.integer)):
         raise _core.InvalidInput(f"max_steps: must be a whole number, got {max_steps!r}")
     times = listed[0].times.size if listed else 0
     want = listed[0].want if listed else ("omega", "attitude")
-    out = {name: np.empty((bodies, times, width)) if name in want else None for name, width in (("omega", 3), ("attitude", 4))}
+    out = {name: np.empty((bodies, times, width)) if name in want else None for name, width in WIDTHS.items()}
     status, message, methods, reached, error, steps, success, lanes = _core._solve_many(
-        listed, *starts, bodies, times, out["omega"], out["attitude"], accuracy, method, rtol, atol, step, int(max_steps),
-        int(threads or 0))
-    return Motions(out["omega"], out["attitude"], tuple(status), tuple(message), tuple(methods), reached, error, steps, success, lanes)
+        listed, *starts, bodies, times, out["omega"], out["attitude"], accuracy, method, rtol, atol, step,
+        int(max_steps),
+        workers)
+    return Motions(out["omega"], out["attitude"], tuple(status), tuple(message), tuple(methods), reached, error, steps,
+                   success, lanes)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..charts import style
+from .._plot import style
 from .entrants import Entrant
 
 # (face, text, symbol): blue, yellow, red differ for every kind of colour vision and in print; the symbols say it again.
@@ -38,7 +38,7 @@ def line(entrant: Entrant, place: int) -> dict[str, Any]:
     return {"color": style.QUIET, "marker": "x", "markersize": 5, "linewidth": 1.2, "linestyle": ":", "zorder": 4}
 
 
-def looks(everyone: list[Entrant]) -> dict[str, dict[str, Any]]:
+def line_styles(everyone: list[Entrant]) -> dict[str, dict[str, Any]]:
     """Return everyone's line, the same on every picture."""
     places: dict[str, int] = {}
     found = {}

@@ -9,10 +9,9 @@ import numpy as np
 
 from .. import _core
 from .._core import InvalidInput
-from ..motion import Floats
-from ..scene import Scene, scene_folder
-from ..solver import methods, solve
-
+from .._scene.scene import Scene, scene_folder
+from .._solve.motion import Floats
+from .._solve.solve import methods, solve
 
 ORDERS = (28, 22)       # of the series, and of the one that checks it
 MOST_STEPS = 200_000    # of a series: half a minute
@@ -41,21 +40,25 @@ class Errors(NamedTuple):
         return float(np.maximum(self.omega, self.attitude))
 
 
-def compute_errors(omega: Floats, attitude: Floats, truth: Truth) -> Errors:
-    """Return the errors of an answer, without cancellation.
+def attitude_errors(attitude: Floats, truth: Truth) -> Floats:
+    """Return the angle between the attitudes at every sample, without cancellation, shape (n,) [rad].
 
     The vector part of conj(truth) q equals that of conj(truth) d for the difference d = q - truth (q with the sign that
     brings it near), since conj(truth) truth is real; d is formed without rounding where it is small.
     """
+    q, r = attitude, truth.attitude
+    along = np.sum(q * r, axis=1)
+    d = np.where(along < 0, -1.0, 1.0)[:, None] * q - r
+    vector = r[:, 3:] * d[:, :3] - d[:, 3:] * r[:, :3] - np.cross(r[:, :3], d[:, :3])
+    return np.asarray(2 * np.arctan2(np.linalg.norm(vector, axis=1), np.abs(along)))
+
+
+def compute_errors(omega: Floats, attitude: Floats, truth: Truth) -> Errors:
+    """Return the largest errors of an answer."""
     size = np.linalg.norm(truth.omega, axis=1).max()
     with np.errstate(all="ignore"):   # an answer may hold anything
         rates = np.linalg.norm(omega - truth.omega, axis=1).max() / (size if size > 0 else 1.0)
-        q, r = attitude, truth.attitude
-        along = np.sum(q * r, axis=1)
-        d = np.where(along < 0, -1.0, 1.0)[:, None] * q - r
-        vector = r[:, 3:] * d[:, :3] - d[:, 3:] * r[:, :3] - np.cross(r[:, :3], d[:, :3])
-        angle = 2 * np.arctan2(np.linalg.norm(vector, axis=1), np.abs(along))
-    return Errors(float(rates), float(angle.max()))
+        return Errors(float(rates), float(attitude_errors(attitude, truth).max()))
 
 
 def _stored(scene: Scene) -> Truth | None:
@@ -88,8 +91,10 @@ def _series(scene: Scene) -> Truth | None:
 
 
 def _two_methods(scene: Scene, tightest: float) -> Truth:
-    """The method of the highest order at the tightest tolerance; its uncertainty is how far another method, and itself at
-    ten times that, are from it."""
+    """The method of the highest order at the tightest tolerance.
+
+    Its uncertainty is how far another method, and itself at ten times that, are from it.
+    """
     able = [m for m in methods() if m["adaptive"] and not _core.method_refusal(m["name"], scene)]
     records = sorted(able, key=lambda m: (-m["order"], m["name"]))
     texts: list[str] = []

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
+from .. import _core
 
 if TYPE_CHECKING:
     import pathlib
@@ -71,7 +71,7 @@ class Scene(_core.Scene):
         InvalidInput
             For a file that is not there or not TOML, and for a key that is unknown, missing or wrong, with its name.
         """
-        from .schema import load_scene
+        from .files import load_scene
 
         return load_scene(source)
 
@@ -102,7 +102,8 @@ class Scene(_core.Scene):
                    for k in mine)
 
     def __hash__(self) -> int:
-        return hash((self.name, self.t0, self.want, self.omega.tobytes(), self.attitude.tobytes(), self.times.tobytes()))
+        arrays = self.omega.tobytes(), self.attitude.tobytes(), self.times.tobytes()
+        return hash((self.name, self.t0, self.want, *arrays))
 
     def __repr__(self) -> str:
         moments = ", ".join(f"{m:.6g}" for m in self.inertia.moments)

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
-from .calibration import factors
+from .. import _core
+from .._scene.scene import Scene
+from .costs import factors
 from .motion import Floats, Motion
-from .planning import Plan
-from .scene import Scene
+from .plan import Plan
 
 
 class Event:
@@ -57,7 +57,8 @@ def _take(plan: Plan, accuracy: float | None, method: str | None, rtol: float | 
         raise _core.InvalidInput("plan: must be made for an accuracy; this one is of a run by tolerances")
     asked = plan.wishes.get("formulation", "euler")
     if formulation not in ("euler", asked):
-        raise _core.InvalidInput(f"formulation: must be left out beside plan=, which has {asked!r}, got {formulation!r}")
+        raise _core.InvalidInput(f"formulation: must be left out beside plan=, which has {asked!r}, got "
+                                 f"{formulation!r}")
     own = plan.wishes.get("method") if plan.pieces else plan.method   # pieces: each has its own
     return plan.accuracy, method if method is not None else own, certify and plan.certify, asked
 
@@ -84,19 +85,19 @@ def solve(
     ----------
     scene : Scene
     accuracy : float, optional
-        Of every sample: the larger of the error in omega, relative to the largest omega, and the angle of the attitude's
-        error [rad]. 0 < accuracy <= 1; 1e-9 when no tolerance is given either. `motion.error` bounds the error that was
-        got, and `motion.success` says whether that is within the accuracy. Excludes rtol and atol.
+        Of every sample: the larger of the error in omega, relative to the largest omega, and the angle of the
+        attitude's error [rad]. 0 < accuracy <= 1; 1e-9 when no tolerance is given either. `motion.error` bounds the
+        error that was got, and `motion.success` says whether that is within the accuracy. Excludes rtol and atol.
     plan : Plan, optional
         What `plan()` made: its accuracy, method and certificate are taken. A method given beside it overrides its own.
     method : str, optional
         A name of `methods()`, or "exact" for the closed form alone; without it the plan's choice.
     certify : bool
-        Bound the error of a stepped motion: carried along by the run itself, or by a second, coarser run. False saves that:
-        `motion.error` is then what is expected, and `motion.error_kind` says so.
+        Bound the error of a stepped motion: carried along by the run itself, or by a second, coarser run. False saves
+        that: `motion.error` is then what is expected, and `motion.error_kind` says so.
     rtol, atol : float, optional
-        Tolerances of a step, for those who want to choose: the error is then not estimated. Rates are measured against their own size, the quaternion against 1; atol is added, in
-        rad/s and in quaternion components.
+        Tolerances of a step, for those who want to choose: the error is then not estimated. Rates are measured against
+        their own size, the quaternion against 1; atol is added, in rad/s and in quaternion components.
     step : float, optional
         Of fixed-step methods [s], which ask for it and refuse accuracy, rtol and atol.
     max_steps : int
@@ -104,7 +105,8 @@ def solve(
     dense : bool
         Keep the continuous extension, for ``motion(t)``.
     formulation : {"euler", "lagrangian"}
-        Euler's equations with a quaternion, or Lagrange's in the textbook's z-x-z angles, which fail at theta = 0 or pi.
+        Euler's equations with a quaternion, or Lagrange's in the textbook's z-x-z angles, which fail at theta = 0 or
+        pi.
     events : iterable of Event or callables
         Zeros to be found; a callable may carry `direction` and `terminal` as attributes.
     progress : callable, optional
@@ -129,17 +131,17 @@ def solve(
         raise _core.InvalidInput(f"max_steps: must be a whole number, got {max_steps!r}")
     if plan is not None:
         accuracy, method, certify, formulation = _take(plan, accuracy, method, rtol, atol, step, certify, formulation)
-    wishes = None if method is None and formulation == "euler" else {"method": method, "formulation": formulation}
-    answer = _core.solve(scene, accuracy, method, rtol, atol, step, bool(certify), int(max_steps), bool(dense), str(formulation),
-                         [_event(item) for item in events], progress, factors())
-    return Motion(scene, answer, wishes)
+    options = None if method is None and formulation == "euler" else {"method": method, "formulation": formulation}
+    answer = _core.solve(scene, accuracy, method, rtol, atol, step, bool(certify), int(max_steps), bool(dense),
+                         str(formulation), [_event(item) for item in events], progress, factors())
+    return Motion(scene, answer, options)
 
 
 def methods() -> list[dict[str, Any]]:
     """Return every method, a dict each.
 
-    name; order, and driven_order where a torque acts; dense_order, between the steps; adaptive (by rtol and atol, else by
-    `step=`); implicit; cheap (a game engine's step); keeps, of a free body; needs, of a scene; doc and source.
+    name; order, and driven_order where a torque acts; dense_order, between the steps; adaptive (by rtol and atol, else
+    by `step=`); implicit; cheap (a game engine's step); keeps, of a free body; needs, of a scene; doc and source.
     """
     return list(_core.method_records())
 

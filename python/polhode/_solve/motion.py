@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
-from .planning import Plan
+from .. import _core
+from .._attitude.rotation import Rotation
+from .._scene.scene import Scene
+from .plan import Plan
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-    from .attitude import Rotation
-    from .scene import Scene
 
 Floats = npt.NDArray[np.float64]
 
@@ -76,18 +75,21 @@ class Motion:
     asked: float
     events: tuple[EventHit, ...]
 
-    def __init__(self, scene: Scene, answer: _core.Answer, wishes: dict[str, Any] | None = None) -> None:
+    def __init__(self, scene: Scene, answer: _core.Answer, options: dict[str, Any] | None = None) -> None:
         self.scene = scene
         self._answer: _core.Answer | None = answer
-        self._wishes = wishes or {}
+        self._options = options or {}
 
     def __getattr__(self, name: str) -> Any:
         # Each part crosses from the compiled core when it is first asked for.
         if name not in _PARTS or self.__dict__.get("_answer") is None:
             raise AttributeError(f"'Motion' object has no attribute {name!r}")
         part = getattr(self._answer, name)
-        value = self.__dict__[name] = Plan(self.scene, part, self._wishes) if name == "plan" else _PARTS[name](part)
+        value = self.__dict__[name] = Plan(self.scene, part, self._options) if name == "plan" else _PARTS[name](part)
         return value
+
+    def __dir__(self) -> list[str]:
+        return sorted({*super().__dir__(), *_PARTS})
 
     def _need(self, *names: str) -> None:
         for name in names:
@@ -97,8 +99,6 @@ class Motion:
     @property
     def rotation(self) -> Rotation:
         """The attitudes as a Rotation of n."""
-        from .attitude import Rotation
-
         self._need("attitude")
         return Rotation.from_quat(self.attitude)
 
@@ -139,8 +139,8 @@ class Motion:
     def success(self) -> bool:
         """Whether the end was reached and the accuracy with it.
 
-        Where the error is not estimated (``rtol`` alone, or a fixed step): whether no invariant that should hold moved by
-        more than was asked.
+        Where the error is not estimated (``rtol`` alone, or a fixed step): whether no invariant that should hold moved
+        by more than was asked.
         """
         if self.status not in ("finished", "event"):
             return False
@@ -175,8 +175,8 @@ class Motion:
         Parameters
         ----------
         *parts : {"polhode", "herpolhode", "axis", "angles", "invariants"}
-            What is drawn; without any, what suits the scene. Where the samples are too far apart for a line, curves come
-            from the continuous extension, or from solving the scene again.
+            What is drawn; without any, what suits the scene. Where the samples are too far apart for a line, curves
+            come from the continuous extension, or from solving the scene again.
 
         Returns
         -------
@@ -188,7 +188,7 @@ class Motion:
         InvalidInput
             For another part, for one whose omega or attitude was not wanted, and without matplotlib.
         """
-        from .charts.motion_picture import plot
+        from .._plot.motion import plot
 
         return plot(self, *parts)
 

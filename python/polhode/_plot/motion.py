@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from .._core import InvalidInput, energy
 from .. import torques
-from ..motion import Floats, Motion
+from .._attitude.rotation import Rotation
+from .._core import InvalidInput, energy
+from .._solve.motion import Floats, Motion
+from .._solve.solve import solve
 from . import style
-from .findings import to_error
 from .poinsot import family, herpolhode, in_front, make_view, outline
+from .text import to_error
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -34,8 +36,6 @@ class Curve(NamedTuple):
 
 def _fine(motion: Motion) -> Curve:
     """Return the motion itself where its samples are close enough for a line, else the start of it, solved again."""
-    from ..solver import solve
-
     motion._need("omega")
     assert motion.omega is not None
     order = np.argsort(motion.t, kind="stable")
@@ -133,8 +133,8 @@ def _polhode(figure: Any, cell: Any, motion: Motion, curve: Curve) -> None:
     axes.fill(*outline(semi, view).T, facecolor="#f3f6f9", edgecolor=style.FLOOR, linewidth=1.0, zorder=1)
     plain, separatrix = family(moments, float(energies[0]))
     for points, colour, width in ((plain, style.FLOOR, 0.7), (separatrix, style.QUIET, 1.2)):
-        for one in points:
-            _faded(axes, one @ paper, in_front(one, semi, view), colour, width, 2)
+        for path in points:
+            _faded(axes, path @ paper, in_front(path, semi, view), colour, width, 2)
     for k in range(3):
         end = np.zeros(3)
         end[k] = semi[k]
@@ -150,8 +150,6 @@ def _polhode(figure: Any, cell: Any, motion: Motion, curve: Curve) -> None:
 
 
 def _herpolhode(figure: Any, cell: Any, motion: Motion, curve: Curve) -> None:
-    from ..attitude import Rotation
-
     axes = figure.add_subplot(cell)
     assert curve.attitude is not None
     turn = Rotation.from_quat(curve.attitude)
@@ -178,8 +176,6 @@ def _square(axes: Any, path: Floats) -> None:
 
 def _axis(figure: Any, cell: Any, motion: Motion, curve: Curve) -> None:
     """The path of body z on the unit sphere."""
-    from ..attitude import Rotation
-
     axes, view = figure.add_subplot(cell), make_view(-60.0, 30.0)
     assert curve.attitude is not None
     z = Rotation.from_quat(curve.attitude).apply(np.array([0.0, 0.0, 1.0]))
@@ -194,15 +190,14 @@ def _axis(figure: Any, cell: Any, motion: Motion, curve: Curve) -> None:
         _faded(axes, ring @ paper, in_front(ring, one, view), style.FLOOR, 1.0 if height == 0 else 0.5, 2)
     up = np.array([[0, 0, 1.0], [0, 0, 1.22]]) @ paper
     axes.plot(*up.T, color=style.QUIET, linewidth=1.0, zorder=1.5)
-    axes.annotate("space z", up[1], xytext=(0, 6), textcoords="offset points", color=style.QUIET, fontsize=8, ha="center")
+    axes.annotate("space z", up[1], xytext=(0, 6), textcoords="offset points", color=style.QUIET, fontsize=8,
+                  ha="center")
     _faded(axes, z @ paper, in_front(z, one, view), style.colour("rk45"), 1.4, 4)
     axes.plot(*(z[0] @ paper), marker="o", markersize=6, color=style.INK, zorder=8)
     axes.set_title("path of the body's z axis in space")
 
 
 def _angles(figure: Any, cell: Any, motion: Motion, curve: Curve) -> None:
-    from ..attitude import Rotation
-
     assert curve.attitude is not None
     turn = Rotation.from_quat(curve.attitude)
     angles = np.array(turn.as_euler("ZXZ"))
@@ -245,7 +240,8 @@ def _invariants(figure: Any, cell: Any, motion: Motion, curve: Curve) -> None:
     size = np.linalg.norm(motion.omega @ motion.scene.inertia.matrix, axis=1)
     for name, values, colour in (("kinetic energy", kinetic, "#d55e00"), ("|L|", size, "#0072b2")):
         start = values[order][0]
-        axes.plot(motion.t[order], (values / start if start > 0 else values)[order], color=colour, linewidth=1.5, label=name)
+        axes.plot(motion.t[order], (values / start if start > 0 else values)[order], color=colour, linewidth=1.5,
+                  label=name)
     axes.set_title("nothing is kept: energy and |L| as they go")
     axes.set_ylabel("times the start's")
     axes.legend(frameon=False, fontsize=8.5)

@@ -1,7 +1,7 @@
 """Work in processes that may crash, hang or be too slow: that is told, and what gave the work goes on.
 
-A module with a function `answerer()` can be a worker's: what that returns takes a message and yields its answers. They come
-back as ("answer", content), the last followed by ("end", why they broke off or ""). Messages are pickled.
+A module with a function `make_handler()` can be a worker's: what that returns takes a message and yields its answers.
+They come back as ("answer", content), the last followed by ("end", why they broke off or ""). Messages are pickled.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ PROGRESS = 0.01   # seconds of CPU that make one
 
 
 def command(module: str) -> tuple[str, ...]:
-    """What starts a worker that answers by a module's `answerer`."""
+    """What starts a worker that answers by a module's `make_handler`."""
     return sys.executable, "-m", __name__, module
 
 
@@ -128,4 +128,4 @@ def serve(answer: Callable[[Any], Iterable[Any]]) -> None:
 
 
 if __name__ == "__main__":
-    serve(importlib.import_module(sys.argv[1]).answerer())
+    serve(importlib.import_module(sys.argv[1]).make_handler())

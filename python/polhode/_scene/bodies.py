@@ -6,8 +6,10 @@ import pathlib
 from functools import cache
 from typing import Any
 
-from . import _core
-from .schema import InvalidInput, attitude_of, euler_model, kinds, model, one_of
+from .. import _core, shapes
+from .._attitude.rotation import Rotation
+from .._core import InvalidInput
+from .validation import euler_model, kinds, model, one_of
 
 BODIES = ("moments", "matrix", "shape", "mesh", "parts")
 PARTS = ("shape", "mesh", "masses")
@@ -35,7 +37,8 @@ def _check(table: Any, choices: tuple[str, ...], more: set[str]) -> None:
         wrong -= set(table.model_extra)   # its own parameters, it will see
     if wrong:
         beside = {"moments": "moments or a matrix", "matrix": "moments or a matrix"}.get(kind, f"a {kind}")
-        raise ValueError(f"unknown key {min(wrong)!r} beside {beside.replace('a parts', 'parts').replace('a masses', 'masses')}")
+        beside = beside.replace("a parts", "parts").replace("a masses", "masses")
+        raise ValueError(f"unknown key {min(wrong)!r} beside {beside}")
     if kind == "mesh":
         one_of(table, "mass", "density")
 
@@ -78,6 +81,15 @@ def _solid() -> dict[str, Any]:
     kind = kinds()
     return {"shape": (str | None, None), "mesh": (str | None, None), "mass": (kind.number | None, None),
             "density": (kind.number | None, None), "unit": (str | kind.number, "m"), "repair": (str | None, None)}
+
+
+def attitude_of(start: Any) -> Any:
+    """Return the attitude that a table gives as quaternion or angles, or else none at all."""
+    if start.euler is None:
+        return (0.0, 0.0, 0.0, 1.0) if start.attitude is None else start.attitude
+    degrees = start.euler.angles is None
+    angles = start.euler.angles_deg if degrees else start.euler.angles
+    return Rotation.from_euler(start.euler.sequence, angles, degrees=degrees).as_quat()
 
 
 def place_meshes(table: Any, folder: pathlib.Path) -> None:
@@ -131,8 +143,6 @@ def _made(entry: Any, where: str) -> _core.MassProperties:
 
 
 def _shape(entry: Any, where: str) -> _core.MassProperties:
-    from . import shapes
-
     names = [record[0] for record in _core.shape_records()]
     if entry.shape not in names:
         raise InvalidInput(f"{where}.shape: must be one of {', '.join(names)}; got {entry.shape!r}")

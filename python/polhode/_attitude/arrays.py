@@ -1,0 +1,154 @@
+"""What `Rotation` computes with NumPy, on arguments checked here: means, alignments, modified Rodrigues parameters."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .._core import InvalidInput
+from .._core import attitude as _kernels
+
+FloatArray = NDArray[np.float64]
+
+
+def to_numbers(value: Any, name: str) -> FloatArray:
+    """Return a float64 array; NaN and inf pass."""
+    try:
+        array = np.asarray(value)
+    except ValueError:   # a ragged list
+        array = np.empty(0, dtype=object)
+    if array.dtype.kind not in "fiub":
+        raise InvalidInput(f"{name}: must be an array of real numbers, got dtype {array.dtype}")
+    return np.ascontiguousarray(array, dtype=np.float64).reshape(array.shape)
+
+
+def to_vectors(value: Any, name: str) -> FloatArray:
+    """Return a finite array of shape (..., 3)."""
+    array = to_numbers(value, name)
+    if array.ndim == 0 or array.shape[-1] != 3:
+        raise InvalidInput(f"{name}: must be an array of shape (..., 3), got shape {array.shape}")
+    wrong = np.flatnonzero(~np.isfinite(array))
+    if wrong.size:
+        raise InvalidInput(f"{name}: must be finite, got {array.flat[wrong[0]]} at flat index {wrong[0]}")
+    return array
+
+
+def to_weights(value: Any, shape: tuple[int, ...]) -> FloatArray:
+    """Return weights of this shape, relative to the largest finite one; inf passes."""
+    weights = np.ones(shape) if value is None else to_numbers(value, "weights")
+    try:
+        weights = np.broadcast_to(weights, shape)
+    except ValueError:
+        raise InvalidInput(f"weights: must be of shape {shape}, got shape {weights.shape}") from None
+    if not (weights >= 0).all():
+        raise InvalidInput(f"weights: must be 0 or more, got {weights[~(weights >= 0)][0]}")
+    if not weights.any():
+        raise InvalidInput("weights: must hold one above 0, got none")
+    return weights
+
+
+def to_shape(num: int | None, shape: int | tuple[int, ...] | None) -> tuple[int, ...]:
+    """Return the shape of an array of rotations, given as a number or as itself."""
+    if num is not None and shape is not None:
+        raise InvalidInput("num: must be left out where shape is given, got both")
+    sizes = num if num is not None else shape if shape is not None else ()
+    sizes = sizes if isinstance(sizes, tuple) else (sizes,)
+    if not all(isinstance(size, (int, np.integer)) and size >= 0 for size in sizes):
+        raise InvalidInput(f"{'shape' if num is None else 'num'}: must be whole numbers >= 0, got {sizes}")
+    return sizes
+
+
+def mean(quat: FloatArray, weights: ArrayLike | None) -> FloatArray:
+    """Return the unit quaternion q with the largest weighted sum of (q . q_i)^2; its sign does not matter.
+
+    Markley, Cheng, Crassidis and Oshman 2007, J. Guidance, Control and Dynamics 30(4), 1193, equation 13.
+    """
+    if quat.size == 0:
+        raise InvalidInput("rotations: must be one or more for a mean, got none")
+    scale = to_weights(weights, quat.shape[:-1]).reshape(-1, 1)
+    if np.isinf(scale).any():
+        raise InvalidInput("weights: must be finite for a mean, got inf")
+    rows = quat.reshape(-1, 4)
+    found: FloatArray = np.linalg.eigh((scale / scale.max() * rows).T @ rows)[1][:, -1]
+    return found
+
+
+def shortest(u: FloatArray, v: FloatArray) -> FloatArray:
+    """Return the quaternion of the smallest rotation that takes the unit vector u to v; of half turns, any."""
+    apart, together = v - u, v + u
+    # u x v without cancellation, whether v is next to u or to -u.
+    axis = np.cross(u, apart if u @ v > 0 else together)
+    length = np.linalg.norm(axis)
+    if length == 0:
+        axis = np.cross(u, np.eye(3)[np.argmin(np.abs(u))])
+        length = np.linalg.norm(axis)
+    return np.array([*(axis / length * (np.linalg.norm(apart) / 2)), np.linalg.norm(together) / 2])
+
+
+def align(a: ArrayLike, b: ArrayLike, weights: ArrayLike | None) -> tuple[FloatArray, float]:
+    """Return the quaternion that takes vectors b to vectors a best, and what remains; see `Rotation.align_vectors`."""
+    target, source = (np.atleast_2d(to_vectors(value, name)) for name, value in (("a", a), ("b", b)))
+    if target.ndim > 2 or target.shape != source.shape or len(target) == 0:
+        raise InvalidInput("a, b: must be one vector each, or equally many of shape (n, 3), got shapes "
+                           f"{np.shape(a)} and {np.shape(b)}")
+    weight = to_weights(weights, (len(target),))
+    exact = np.isinf(weight) if len(target) > 1 else np.array([True])
+    if exact.sum() > 1:
+        raise InvalidInput(f"weights: must hold one inf at most, got {exact.sum()}")
+    finite = np.where(np.isinf(weight), 0.0, weight)
+    quat = _align_exactly(target, source, finite, exact) if exact.any() else _align_all(target, source, finite)
+    left = target - _kernels.apply(quat, source, False)
+    size = float(np.abs(left).max()) or 1.0
+    return quat, size * float(np.sqrt(finite @ ((left / size) ** 2).sum(axis=1)))
+
+
+def _scaled(rows: FloatArray) -> FloatArray:
+    """Rows relative to the largest entry of all: only directions count, and nothing overflows."""
+    return rows / (np.abs(rows).max() or 1.0)
+
+
+def _align_all(a: FloatArray, b: FloatArray, weights: FloatArray) -> FloatArray:
+    """Kabsch 1978, Acta Crystallographica A34, 827: the rotation next to the weighted sum of a b^T."""
+    u, s, vh = np.linalg.svd((weights[:, None] / weights.max() * _scaled(a)).T @ _scaled(b))
+    sign = 1.0 if np.linalg.det(u) * np.linalg.det(vh) > 0 else -1.0
+    if s[1] + sign * s[2] <= 8 * np.finfo(float).eps * s[0]:
+        text = "a, b: these vectors leave the rotation open; one of the best is returned"
+        warnings.warn(text, UserWarning, stacklevel=4)
+    return _kernels.from_matrix(u * [1.0, 1.0, sign] @ vh)
+
+
+def _align_exactly(a: FloatArray, b: FloatArray, weights: FloatArray, exact: Any) -> FloatArray:
+    """One pair to the direction of each other, the remaining turn about it as the others ask for."""
+    first = int(np.flatnonzero(exact)[0])
+    if not (a[first].any() and b[first].any()):
+        raise InvalidInput(f"a, b: must not be zero where the alignment is exact, got it at {first}")
+    u, v = (_scaled(row) / np.linalg.norm(_scaled(row)) for row in (b[first], a[first]))
+    quat = _kernels.normalize(shortest(u, v), False)
+    if not weights.any() or len(a) == 1:
+        return quat
+    weights, p, q = weights / weights.max(), _scaled(a), _kernels.apply(quat, _scaled(b), False)
+    sine = weights @ (np.cross(q, p) @ v)
+    cosine = weights @ ((p * q).sum(axis=1) - (p @ v) * (q @ v))
+    return _kernels.multiply(_kernels.from_rotvec(np.arctan2(sine, cosine) * v, False), quat)
+
+
+def as_mrp(quat: FloatArray) -> FloatArray:
+    """Return e tan(angle / 4), of length 1 at most."""
+    q = _kernels.canonical(quat)
+    found: FloatArray = q[..., :3] / (1.0 + q[..., 3:])
+    return found
+
+
+def from_mrp(mrp: ArrayLike) -> FloatArray:
+    """Return the quaternions of e tan(angle / 4); long ones by their shadows -p / |p|^2, so that nothing overflows."""
+    p = to_vectors(mrp, "mrp")
+    size = np.maximum(np.abs(p).max(axis=-1, keepdims=True), 1.0)
+    n = p / size
+    square = (n**2).sum(axis=-1, keepdims=True)
+    p = np.where(square * size > 1 / size, -n / (np.where(square > 0, square, 1.0) * size), p)
+    square = (p**2).sum(axis=-1, keepdims=True)
+    found: FloatArray = np.concatenate([2 * p, 1 - square], axis=-1) / (1 + square)
+    return found

@@ -1,0 +1,1 @@
+"""Many bodies, or many times, in one call."""

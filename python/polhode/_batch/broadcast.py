@@ -1,0 +1,184 @@
+"""Arrays of bodies and of times: checked, broadcast, and brought back to the caller's shape."""
+
+from __future__ import annotations
+
+import math
+import os
+import warnings
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .._core import InvalidInput
+
+Array = npt.NDArray[np.float64]
+WIDTHS = {"omega": 3, "attitude": 4}
+
+
+def to_numbers(value: Any, name: str, width: int | None) -> Array:
+    """A float64 array whose last axis has the width asked for; NaN and inf may pass."""
+    if hasattr(value, "as_quat"):
+        value = value.as_quat()
+    try:
+        array = np.asarray(value)
+    except ValueError:
+        array = np.empty(0, dtype=object)
+    if array.dtype.kind not in "fiub":
+        raise InvalidInput(f"{name}: must be an array of real numbers, got dtype {array.dtype}")
+    if width is not None and (array.ndim == 0 or array.shape[-1] != width):
+        raise InvalidInput(f"{name}: must be an array of shape (..., {width}), got shape {array.shape}")
+    return array.astype(np.float64, copy=False)
+
+
+def check_want(want: str | Sequence[str]) -> tuple[str, ...]:
+    """Return the names of what is wanted, in the caller's order."""
+    names = (want,) if isinstance(want, str) else tuple(want)
+    if not names or any(name not in WIDTHS for name in names) or len(set(names)) != len(names):
+        raise InvalidInput(f"want: must be one or both of 'omega' and 'attitude', got {want!r}")
+    return names
+
+
+def _require_memory(shape: tuple[int, ...], names: tuple[str, ...]) -> None:
+    states = math.prod(shape)
+    needed = states * sum(8 * WIDTHS[name] for name in names)
+    if needed < 2**28:
+        return
+    try:
+        there = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    except (ValueError, OSError, AttributeError):
+        return
+    if needed > there:
+        raise MemoryError(f"{states} states need {needed} bytes; this machine has {there}")
+
+
+def _axes(shape: tuple[int, ...], loops: Sequence[tuple[int, ...]]) -> tuple[list[int], list[int]]:
+    """Which axes of the result belong to bodies (some parameter varies along them) and which to times alone."""
+    padded = [(1,) * (len(shape) - len(loop)) + loop for loop in loops]
+    bodies = [k for k in range(len(shape)) if any(loop[k] != 1 for loop in padded)]
+    return bodies, [k for k in range(len(shape)) if k not in bodies]
+
+
+def check_out(out: Any, names: tuple[str, ...], shape: tuple[int, ...]) -> dict[str, Any]:
+    """Return the caller's arrays by name; none when `out` is not given."""
+    if out is None:
+        return {}
+    given = (out,) if isinstance(out, np.ndarray) else tuple(out)
+    if len(given) != len(names):
+        raise InvalidInput(f"out: must be one array for each of {names}, got {len(given)}")
+    targets = {}
+    for name, array in zip(names, given, strict=True):
+        wanted = (*shape, WIDTHS[name])
+        if not (isinstance(array, np.ndarray) and array.dtype == np.float64 and array.shape == wanted
+                and array.flags.writeable):
+            found = f"{array.dtype} of shape {array.shape}" if isinstance(array, np.ndarray) else type(array).__name__
+            raise InvalidInput(f"out: must be a writeable float64 array of shape {wanted} for {name}, got {found}")
+        targets[name] = array
+    return targets
+
+
+def _warn(poisoned: int, level: int) -> None:
+    warnings.warn(f"{poisoned} rows are NaN because their input is not finite", RuntimeWarning, stacklevel=level)
+
+
+def _evaluate_one(
+    parameters: Sequence[Array],
+    t: Array,
+    targets: dict[str, Any],
+    names: tuple[str, ...],
+    want: str | Sequence[str],
+    kernel: Callable[..., int],
+) -> Any:
+    """One body at all the times: nothing to broadcast, and a short call for short arrays."""
+    _require_memory(t.shape, names)
+    results: dict[str, Any] = {}
+    for name in names:
+        target = targets.get(name)
+        fits = target is not None and target.flags.c_contiguous
+        results[name] = target if fits else np.empty((*t.shape, WIDTHS[name]))
+    flat = [array[None] for array in parameters]
+    poisoned = kernel(*flat, t.reshape(-1), results.get("omega"), results.get("attitude"))
+    if poisoned:
+        _warn(poisoned, 5)
+    for name, target in targets.items():
+        if results[name] is not target:
+            target[...] = results[name]
+            results[name] = target
+    return results[want] if isinstance(want, str) else tuple(results[name] for name in names)
+
+
+def evaluate(
+    parameters: Sequence[tuple[Array, int]],
+    t: Array,
+    out: Any,
+    want: str | Sequence[str],
+    kernel: Callable[..., int],
+) -> Any:
+    """Broadcasts, calls kernel(*flat parameters, t, omega, attitude) and brings the results to the caller's shape.
+
+    `parameters` are (array, how many of its last axes belong to one body).
+    """
+    names = check_want(want)
+    loops = [array.shape[: array.ndim - core] for array, core in parameters]
+    if all(loop == () for loop in loops) and t.size:
+        return _evaluate_one([array for array, _ in parameters], t, check_out(out, names, t.shape), names, want, kernel)
+    try:
+        shape = np.broadcast_shapes(*loops, t.shape)
+    except ValueError:
+        shapes = ", ".join(map(str, [*loops, t.shape]))
+        raise InvalidInput(f"t: must broadcast with the bodies, got shapes {shapes}") from None
+    targets = check_out(out, names, shape)
+    _require_memory(shape, names)
+    bodies, times = _axes(shape, loops)
+    order = bodies + times
+    body_shape, time_shape = [shape[k] for k in bodies], [shape[k] for k in times]
+
+    flat = []
+    for array, core in parameters:
+        tail = array.shape[array.ndim - core :]
+        spread = np.broadcast_to(array, (*shape, *tail))
+        spread = spread.transpose(*order, *range(len(shape), len(shape) + core))
+        first = (slice(None),) * len(bodies) + (0,) * len(times)   # the parameters are the same at all times
+        spread = spread[first] if all(time_shape) else spread.reshape(0, *tail)
+        flat.append(np.ascontiguousarray(spread).reshape(-1, *tail))
+    n_bodies, n_times = math.prod(body_shape), math.prod(time_shape)
+    own_times = any(size != 1 for k, size in enumerate((1,) * (len(shape) - t.ndim) + t.shape) if k in bodies)
+    spread_t = np.broadcast_to(t, shape).transpose(order)
+    flat_t: Array
+    if own_times or n_times == 0 or n_bodies == 0:
+        flat_t = np.ascontiguousarray(spread_t).reshape(n_bodies, n_times)
+    else:
+        flat_t = np.ascontiguousarray(spread_t[(0,) * len(bodies)]).reshape(n_times)
+
+    results: dict[str, Any] = {}
+    in_place = order == sorted(order)
+    for name in names:
+        target = targets.get(name)
+        if target is not None and in_place and target.flags.c_contiguous:
+            results[name] = target
+        else:
+            results[name] = np.empty((*body_shape, *time_shape, WIDTHS[name]))
+    poisoned = kernel(*flat, flat_t, results.get("omega"), results.get("attitude")) if n_bodies and n_times else 0
+    if poisoned:
+        _warn(poisoned, 4)
+
+    inverse = [*np.argsort(order), len(shape)]
+    for name in names:
+        target = targets.get(name)
+        if target is None:
+            results[name] = results[name].transpose(inverse)
+        elif results[name] is not target:
+            target[...] = results[name].transpose(inverse)
+            results[name] = target
+    answer = tuple(results[name] for name in names)
+    return answer[0] if isinstance(want, str) else answer
+
+
+def check_threads(threads: int | None) -> int:
+    """Return how many threads may work; 0 stands for as many as the machine has."""
+    if threads is None:
+        return 0
+    if isinstance(threads, bool) or not isinstance(threads, (int, np.integer)) or threads < 1:
+        raise InvalidInput(f"threads: must be a positive whole number, got {threads!r}")
+    return int(threads)

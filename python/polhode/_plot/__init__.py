@@ -1,0 +1,1 @@
+"""Pictures: how they look, numbers in words, and motions drawn."""

@@ -1,0 +1,1 @@
+"""Scenes, the files that hold them, and recipes for many bodies."""

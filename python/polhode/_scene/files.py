@@ -1,0 +1,140 @@
+"""Scene files: read, checked against one schema that is made from the compiled lists, and made into scenes."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+import tomllib
+from functools import cache
+from typing import Annotated, Any, Literal, Union
+
+import numpy as np
+
+from .. import torques
+from .._core import InvalidInput
+from .bodies import attitude_of, body_inertia, body_model, place_meshes
+from .scene import Scene, scene_folder
+from .validation import euler_model, kinds, model, one_of, validate
+
+
+def _check_start(start: Any) -> None:
+    one_of(start, "omega", "omega_deg")
+    if start.attitude is not None and start.euler is not None:
+        raise ValueError("give attitude or euler, not both")
+
+
+def _check_times(times: Any) -> None:
+    given = {name for name in ("span", "samples", "values") if getattr(times, name) is not None}
+    if given not in ({"span", "samples"}, {"values"}):
+        raise ValueError(f"give span and samples, or values; got {', '.join(sorted(given)) or 'none of them'}")
+
+
+@cache
+def scene_model() -> Any:
+    """Return the pydantic model of a scene file; its JSON Schema is `scene_model().model_json_schema()`."""
+    from pydantic import Field
+
+    kind = kinds()
+    start = model("Start", _check_start, omega=(kind.vector | None, None), omega_deg=(kind.vector | None, None),
+                   attitude=(kind.quaternion | None, None), euler=(euler_model() | None, None), t0=(kind.number, 0.0))
+    times = model("Times", _check_times, span=(kind.number | None, None), values=(kind.numbers | None, None),
+                   samples=(Annotated[int, Field(ge=1)] | None, None))
+    any_torque: Any = Union[tuple(_torque_models())]
+    torque: Any = Annotated[any_torque, Field(discriminator="kind")]
+    return model("SceneFile", name=(str, ""), title=(str, ""), about=(str, ""),
+                  want=(list[Literal["omega", "attitude"]], ["omega", "attitude"]),
+                  body=(body_model(), ...), start=(start, ...), torques=(list[torque], []), times=(times, ...))
+
+
+def _torque_models() -> list[Any]:
+    """Return the models of all torques that can stand in a file, told apart by their kind."""
+    kind = kinds()
+    models = []
+    for record in torques.records():
+        if record["key"] == "custom":
+            continue   # a function cannot stand in a file
+        fields: dict[str, Any] = {"kind": (Literal[record["key"]], ...), "during": (kind.windows | None, None)}
+        for parameter in record["parameters"]:
+            default = ... if parameter["default"] is None else parameter["default"]
+            if parameter["kind"] == "matrix":
+                fields[parameter["name"]], fields["diagonal"] = (kind.matrix | None, None), (kind.vector | None, None)
+            elif parameter["kind"] == "choice":
+                fields[parameter["name"]] = (Literal[tuple(parameter["choices"])], default)
+            else:
+                fields[parameter["name"]] = ({"real": kind.number, "vector": kind.vector}[parameter["kind"]], default)
+        models.append(model(record["name"], **fields))
+    return models
+
+
+def find_scene(source: str | os.PathLike[str]) -> pathlib.Path:
+    """Return the path of a scene file: a path as it is, or the name of one installed with polhode."""
+    path = pathlib.Path(source)
+    if path.is_file():
+        return path
+    installed = scene_folder() / f"{path.name}.toml"
+    if path.parent == pathlib.Path() and not path.suffix and installed.is_file():
+        return installed
+    names = ", ".join(sorted(p.stem for p in scene_folder().glob("*.toml")))
+    raise InvalidInput(f"scene: must be a file, or one of {names}; got {str(source)!r}")
+
+
+def read_toml(path: pathlib.Path) -> dict[str, Any]:
+    """Return the content of a TOML file, or say in one line what is wrong with it."""
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InvalidInput(f"{path}: not TOML: {error}") from None
+    except OSError as error:
+        raise InvalidInput(f"{path}: cannot be read: {error.strerror}") from None
+
+
+def _torque(entry: Any) -> Any:
+    record = next(r for r in torques.records() if r["key"] == entry.kind)
+    values = entry.model_dump(exclude={"kind", "diagonal", "during"})
+    if hasattr(entry, "diagonal"):
+        if (entry.diagonal is None) == (entry.matrix is None):
+            raise InvalidInput(f"torques: {entry.kind}: give matrix or diagonal, one of them")
+        values["matrix"] = entry.matrix if entry.diagonal is None else entry.diagonal
+    torque = getattr(torques, record["name"])(**values)
+    return torque if entry.during is None else torques.During(torque, entry.during)
+
+
+def make_scene(data: dict[str, Any], where: str = "scene") -> Scene:
+    """Build a scene from the content of a scene file."""
+    entry = validate(scene_model(), data, where)
+    start, times = entry.start, entry.times
+    grid = times.values
+    if grid is None:
+        grid = np.linspace(start.t0, start.t0 + times.span, times.samples)
+    try:
+        return Scene(
+            inertia=body_inertia(entry.body),
+            omega=np.radians(start.omega_deg) if start.omega is None else start.omega,
+            attitude=attitude_of(start),
+            torques=[_torque(torque) for torque in entry.torques],
+            times=grid,
+            want=entry.want,
+            t0=start.t0,
+            name=entry.name,
+        )
+    except InvalidInput as error:
+        raise InvalidInput(f"{where}: {error}") from None
+
+
+def load_scene(source: str | os.PathLike[str]) -> Scene:
+    """Read a scene file; see `Scene.load`."""
+    path = find_scene(source)
+    data = read_toml(path)
+    data.setdefault("name", path.stem)
+    place_meshes(data.get("body"), path.parent)
+    return make_scene(data, path.name)
+
+
+def load_body(source: str | os.PathLike[str]) -> Any:
+    """Return the checked [body] table of a scene file, or of a file that holds nothing else."""
+    path = find_scene(source)
+    data = read_toml(path)
+    if not isinstance(data.get("body"), dict):
+        raise InvalidInput(f"{path.name}: body: missing, or not a table")
+    place_meshes(data["body"], path.parent)
+    return validate(body_model(), data["body"], f"{path.name}: body")

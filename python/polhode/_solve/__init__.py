@@ -1,0 +1,1 @@
+"""Plans, the motions they lead to, and what methods cost."""

@@ -1,0 +1,90 @@
+"""Measure how fast this machine is, beside the one that the forecasts were made on."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from typing import Any
+
+from .. import _core, torques
+from .._scene.scene import Scene
+from .costs import keep
+from .plan import Plan
+from .solve import solve
+
+MOST_SECONDS = 15.0   # of all measurements together
+
+
+def _seconds(run: Callable[[], Any], most: float) -> float:
+    """The least CPU time of a few runs."""
+    best, spent, runs = math.inf, 0.0, 0
+    while runs < 3 or (spent < most and runs < 30):
+        start = time.thread_time()
+        run()
+        took = time.thread_time() - start
+        best, spent, runs = min(best, took), spent + took, runs + 1
+        if spent > 10 * most:
+            break
+    return best
+
+
+def _scenes() -> list[Any]:
+    """One scene an exact model, and three that are stepped."""
+    def even(span: float, count: int) -> list[float]:
+        return [span * i / (count - 1) for i in range(count)]
+
+    block, times = (0.2, 0.4, 0.52), even(40.0, 401)
+    tilted = (math.sin(0.25), 0.0, 0.0, math.cos(0.25))
+    return [
+        Scene(inertia=block, omega=(0, 0, 0), times=times), Scene(inertia=(1, 1, 1), omega=(1, 2, 3), times=times),
+        Scene(inertia=block, omega=(0, 4, 0), times=times), Scene(inertia=(1, 1, 2), omega=(1, 2, 3), times=times),
+        Scene(inertia=(3, 4, 6), omega=(2, 1, 1), times=times), Scene(inertia=block, omega=(1, 2, 3), times=times),
+        Scene(inertia=(1, 1, 0.5), omega=(0, 0, 6), attitude=tilted, torques=[torques.Gravity(2, (0, 0, 1))],
+              times=times),
+        Scene(inertia=(1, 2, 2.5), omega=(0.3, 0.2, 3), attitude=tilted, torques=[torques.Gravity(2, (0.3, 0.2, 0.5))],
+              times=times),
+        Scene(inertia=block, omega=(1, 2, 3), torques=[torques.Damping((1e-3, 2e-3, 3e-3))], times=times),
+        Scene(inertia=block, omega=(0.1, 0.2, 0.3), torques=[torques.Constant((0.01, -0.02, 0.03))], times=times),
+    ]
+
+
+def measure(progress: Callable[[int, int], object] | None = None) -> dict[str, float]:
+    """Measure every exact model and every method that plans choose from.
+
+    Returns
+    -------
+    dict
+        By name, the measured seconds over the forecast ones.
+    """
+    shipped = _core.CostFactors({})
+    jobs: list[tuple[str, Any, float]] = []
+    for scene in _scenes():
+        for accuracy in (1e-5, 1e-9):
+            report = _core.plan(scene, accuracy, None, False, "euler", shipped)
+            stepped = report["plan"][1] != "exact"
+            able = [name for name, exact, why_not, *_ in report["candidates"] if not exact and not why_not]
+            names = able if stepped else ["exact"]
+            jobs += [(name, scene, accuracy) for name in names]
+    ratios: dict[str, list[float]] = {}
+    for done, (name, scene, accuracy) in enumerate(jobs):
+        forecast = Plan(scene, _core.plan(scene, accuracy, name, False, "euler", shipped)["plan"], {})
+        took = _seconds(lambda: solve(scene, accuracy, method=name, certify=False), MOST_SECONDS / len(jobs) / 4)
+        key = forecast.model if name == "exact" else name
+        ratios.setdefault(key, []).append(took / forecast.predicted_seconds)
+        if progress is not None:
+            progress(done + 1, len(jobs))
+    return {key: math.exp(sum(map(math.log, values)) / len(values)) for key, values in ratios.items()}
+
+
+def calibrate(progress: Callable[[int, int], object] | None = None) -> dict[str, float]:
+    """Measure this machine and keep the result for the plans to come, in the file that `cache_file` names.
+
+    Returns
+    -------
+    dict
+        For each exact model and method, its time by the shipped forecast's.
+    """
+    found = measure(progress)
+    keep(found)
+    return found

@@ -1,0 +1,84 @@
+"""What methods cost on this machine: as shipped, or as `calibrate` measured it and kept it in the user's cache."""
+
+from __future__ import annotations
+
+import functools
+import json
+import math
+import os
+import pathlib
+import sys
+import time
+
+from .. import _core
+from .._build import processor
+
+
+def cache_file() -> pathlib.Path:
+    """Return where the measured costs are kept: $POLHODE_CACHE, or the user's cache folder."""
+    folder = os.environ.get("POLHODE_CACHE")
+    if folder:
+        return pathlib.Path(folder) / "costs.json"
+    home = pathlib.Path.home()
+    if sys.platform == "darwin":
+        base = home / "Library" / "Caches"
+    elif sys.platform == "win32":
+        base = pathlib.Path(os.environ.get("LOCALAPPDATA", home / "AppData" / "Local"))
+    else:
+        base = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or home / ".cache")
+    return base / "polhode" / "costs.json"
+
+
+def _machine() -> str:
+    return f"{processor()}, {os.environ.get('POLHODE_SIMD', 'best')} lanes"
+
+
+def _read() -> tuple[dict[str, float], str]:
+    """Return the factors and a sentence on where they are from; never fails."""
+    shipped = "as shipped, not measured on this machine"
+    file = cache_file()
+    try:
+        text = file.read_text()
+    except FileNotFoundError:
+        return {}, f"{shipped} (polhode calibrate does that)"
+    except (OSError, UnicodeDecodeError) as error:
+        return {}, f"{shipped}: {file} cannot be read ({type(error).__name__})"
+    try:
+        content = json.loads(text)
+        factors = {str(name): float(value) for name, value in content["factors"].items()}
+        version, machine = content["polhode"], content["machine"]
+        if not all(math.isfinite(value) and value > 0 for value in factors.values()):
+            raise ValueError("a factor is not positive")
+    except (ValueError, KeyError, TypeError, AttributeError):
+        return {}, f"{shipped}: {file} is damaged and was ignored; run polhode calibrate"
+    if version != _core.__version__ or machine != _machine():
+        other = f"polhode {version}" if version != _core.__version__ else f"another machine ({machine})"
+        return {}, f"{shipped}: {file} is of {other} and was ignored; run polhode calibrate"
+    return factors, f"measured on this machine, {content.get('date', 'once')}"
+
+
+@functools.cache
+def _load() -> tuple[_core.CostFactors, str]:
+    factors, text = _read()
+    return _core.CostFactors(factors), text
+
+
+def factors() -> _core.CostFactors:
+    """Return the factors in use, as the core takes them."""
+    return _load()[0]
+
+
+def describe() -> str:
+    """Return where the costs in use are from, in a sentence."""
+    return _load()[1]
+
+
+def keep(found: dict[str, float]) -> None:
+    """Write measured factors to `cache_file()`, whole or not at all, for this process too."""
+    file = cache_file()
+    content = {"polhode": _core.__version__, "machine": _machine(), "date": time.strftime("%Y-%m-%d"), "factors": found}
+    file.parent.mkdir(parents=True, exist_ok=True)
+    temporary = file.with_suffix(f".{os.getpid()}")
+    temporary.write_text(json.dumps(content, indent=1))
+    temporary.replace(file)
+    _load.cache_clear()
