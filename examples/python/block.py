@@ -1,4 +1,4 @@
-"""The homework's block, M = 12 and 2a x 2b x 2c: moments at the centre, at a face and about diagonals (docs/seed.md)."""
+"""The homework's block, M = 12 and 2a x 2b x 2c: moments at the centre, at a face, about diagonals (docs/seed.md)."""
 
 import numpy as np
 

@@ -11,7 +11,6 @@ import pytest
 
 import polhode as ph
 from polhode._harness.truth import Truth, compute_errors, find_truth
-from polhode._plot.text import to_count, to_error, to_time
 from polhode.charts import chart
 from polhode.charts import runners
 from polhode.charts.candidate import Answer, Candidate, Failure, tolerances
@@ -296,15 +295,6 @@ def test_a_program_is_judged_by_whichever_of_its_candidates_is_fastest_at_each_e
     ratios = time_ratios(made_up(own + loose + tight), ["Odeint low", "Odeint high"])
     np.testing.assert_allclose(ratios, [0.5] * 3 + [2] * 7, rtol=1e-12)
     assert "Odeint takes 0.5 to 2 times as long" in headline(made_up(own + loose + tight))
-
-
-@pytest.mark.parametrize(("found", "text"), [
-    (to_time(2.46e-4), "246 µs"), (to_time(0.9999e-3), "1 ms"), (to_time(12.34), "12.3 s"), (to_time(5e-9), "5 ns"),
-    (to_error(2.3e-5), "2e-5"), (to_error(0.23), "0.2"), (to_error(3.1), "3.1"), (to_error(0), "0"),
-    (to_count(1_545_000), "1.5 million"), (to_count(65_432), "65 thousand"), (to_count(812), "812"),
-])  # fmt: skip
-def test_numbers_in_words(found, text):
-    assert found == text
 
 
 # the whole

@@ -197,7 +197,6 @@ def test_a_real_process_piped_is_not_cut(tmp_path):
 @pytest.mark.parametrize(("hidden", "arguments", "words"), [
     ("typer", ["methods"], "needs typer: pip install 'polhode[cli]'"),
     ("rich", ["methods"], "needs rich: pip install 'polhode[cli]'"),
-    ("pydantic", ["run", "S1"], "pip install 'polhode[cli]'"),
     ("matplotlib", ["chart", "S1"], "pip install 'polhode[plot]'"),
 ])  # fmt: skip
 def test_without_an_extra_one_line_says_which(hidden, arguments, words, tmp_path):

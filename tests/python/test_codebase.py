@@ -1,5 +1,6 @@
 """The house keeps itself: arrows between the words, sizes, and the things that are easy to get wrong."""
 
+import ast
 import importlib.metadata
 import pathlib
 import re
@@ -85,6 +86,94 @@ def test_import_takes_numpy_alone():
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert "numpy" in done.stdout.split()
     assert not set(late) & set(done.stdout.split())
+
+
+PACKAGE = ROOT / "python/polhode"
+# The only circles are lazy lines: `Scene.load` reads files, and `Motion.plot` draws.
+LAZY = {("polhode._scene.scene", "polhode._scene.files"), ("polhode._solve.motion", "polhode._plot.motion")}
+
+
+def modules():
+    """Every Python file of the package by its dotted name."""
+    for path in sorted(PACKAGE.rglob("*.py")):
+        parts = path.relative_to(PACKAGE.parent).with_suffix("").parts
+        yield ".".join(parts[:-1] if parts[-1] == "__init__" else parts), path
+
+
+def is_for_types(node):
+    return isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test)
+
+
+def running(tree):
+    """The nodes that may run, inside functions too; not those for type checkers."""
+    yield tree
+    for child in ast.iter_child_nodes(tree):
+        if not is_for_types(child):
+            yield from running(child)
+
+
+def imports(name, path, known):
+    """The modules of the package that a file imports, wherever in it."""
+    package = name if path.name == "__init__.py" else name.rpartition(".")[0]
+    for node in running(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names if alias.name in known)
+        elif isinstance(node, ast.ImportFrom):
+            home = package.rsplit(".", node.level - 1)[0] if node.level else ""
+            base = ".".join(filter(None, (home, node.module)))
+            for alias in node.names:
+                found = f"{base}.{alias.name}" if f"{base}.{alias.name}" in known else base
+                if found in known and alias.name != "_core":   # the compiled module imports nothing of these
+                    yield found
+
+
+def import_graph():
+    files = dict(modules())
+    return {name: {used for used in imports(name, path, files) if used != name} for name, path in files.items()}
+
+
+def find_circle(graph):
+    """One circle of a graph, as a list of names, or none."""
+    done, way = set(), []
+
+    def visit(name):
+        if name in way:
+            return [*way[way.index(name):], name]
+        if name in done:
+            return []
+        way.append(name)
+        for used in sorted(graph[name]):
+            if circle := visit(used):
+                return circle
+        done.add(way.pop())
+        return []
+
+    for name in graph:
+        if circle := visit(name):
+            return circle
+    return []
+
+
+def test_python_imports_in_no_circle_but_the_two_lazy_lines():
+    graph = import_graph()
+    assert len(graph) > 100 and "polhode._solve.plan" in graph["polhode._solve.motion"]
+    for name, lazy in LAZY:
+        assert lazy in graph[name] and find_circle({**graph, name: graph[name]}), f"{lazy} is no longer lazy in {name}"
+        graph[name] = graph[name] - {lazy}
+    assert find_circle(graph) == []
+
+
+def test_measurements_and_solvers_do_not_import_charts():
+    wrong = [f"{name} imports {used}" for name, uses in import_graph().items() for used in uses
+             if used.startswith("polhode.charts") and re.match(r"polhode\.(_|atlas)", name)]
+    assert not wrong
+
+
+def test_lines_of_python_have_120_columns():
+    long = [f"{path.relative_to(ROOT)}:{number}" for folder in ("python", "tests", "benchmarks", "examples")
+            for path in sorted((ROOT / folder).rglob("*.py"))
+            for number, line in enumerate(path.read_text().splitlines(), 1) if len(line) > 120]
+    assert not long
 
 
 def test_one_version():

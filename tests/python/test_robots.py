@@ -219,7 +219,8 @@ def test_mjcf_full_inertia_has_its_own_order(write):
 
 
 SDF = """<sdf version="1.9"><world name="w"><model name="m"><link name="a">
-<inertial><pose{attributes}>{pose}</pose><mass>12</mass><inertia><ixx>{0}</ixx><iyy>{1}</iyy><izz>{2}</izz></inertia></inertial>
+<inertial><pose{attributes}>{pose}</pose><mass>12</mass>
+<inertia><ixx>{0}</ixx><iyy>{1}</iyy><izz>{2}</izz></inertia></inertial>
 <collision name="c"><pose>0.1 0 0 0 0 0</pose><geometry><box><size>0.2 0.4 0.6</size></box></geometry></collision>
 </link>
 <model name="n"><link name="b"/><link name="c"><inertial auto="true"/></link></model></model></world></sdf>"""

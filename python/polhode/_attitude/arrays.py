@@ -22,7 +22,7 @@ def to_numbers(value: Any, name: str) -> FloatArray:
         array = np.empty(0, dtype=object)
     if array.dtype.kind not in "fiub":
         raise InvalidInput(f"{name}: must be an array of real numbers, got dtype {array.dtype}")
-    return np.ascontiguousarray(array, dtype=np.float64).reshape(array.shape)
+    return array.astype(np.float64, copy=False)
 
 
 def to_vectors(value: Any, name: str) -> FloatArray:

@@ -11,25 +11,19 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from .._attitude.arrays import to_numbers
 from .._core import InvalidInput
 
 Array = npt.NDArray[np.float64]
 WIDTHS = {"omega": 3, "attitude": 4}
 
 
-def to_numbers(value: Any, name: str, width: int | None) -> Array:
-    """A float64 array whose last axis has the width asked for; NaN and inf may pass."""
-    if hasattr(value, "as_quat"):
-        value = value.as_quat()
-    try:
-        array = np.asarray(value)
-    except ValueError:
-        array = np.empty(0, dtype=object)
-    if array.dtype.kind not in "fiub":
-        raise InvalidInput(f"{name}: must be an array of real numbers, got dtype {array.dtype}")
+def to_rows(value: Any, name: str, width: int | None) -> Array:
+    """Return a float64 array whose last axis has the width asked for; NaN and inf may pass."""
+    array = to_numbers(value.as_quat() if hasattr(value, "as_quat") else value, name)
     if width is not None and (array.ndim == 0 or array.shape[-1] != width):
         raise InvalidInput(f"{name}: must be an array of shape (..., {width}), got shape {array.shape}")
-    return array.astype(np.float64, copy=False)
+    return array
 
 
 def check_want(want: str | Sequence[str]) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from .. import _core
 from .._attitude.rotation import Rotation
 from .._core import InertiaTensor
-from .broadcast import Array, check_out, check_threads, check_want, evaluate, to_numbers
+from .broadcast import Array, check_out, check_threads, check_want, evaluate, to_rows
 
 
 def _product(p: Array, q: Array) -> Array:
@@ -76,8 +76,8 @@ def free_motion(
     The formulas of :class:`FreeMotion`; see docs/exact.md.
     """
     workers = check_threads(threads)
-    speeds, attitudes = to_numbers(omega, "omega", 3), to_numbers(attitude, "attitude", 4)
-    times = to_numbers(t, "t", None)
+    speeds, attitudes = to_rows(omega, "omega", 3), to_rows(attitude, "attitude", 4)
+    times = to_rows(t, "t", None)
     if isinstance(inertia, InertiaTensor):
         matrix = inertia.matrix
         if np.count_nonzero(matrix - np.diag(np.diag(matrix))):
@@ -88,7 +88,7 @@ def free_motion(
             return _rotated(inertia.axes, q_BP, speeds, attitudes, out, want, in_principal_axes)
         moments = np.diag(matrix).copy()
     else:
-        moments = to_numbers(inertia, "inertia", 3)
+        moments = to_rows(inertia, "inertia", 3)
 
     def kernel(*arguments: Any) -> int:
         return _core._free_motion(*(*arguments, workers))
@@ -149,9 +149,9 @@ def heavy_top(
     The formulas of :class:`HeavyTop`; see docs/heavy_top.md.
     """
     workers = check_threads(threads)
-    speeds, attitudes = to_numbers(omega, "omega", 3), to_numbers(attitude, "attitude", 4)
-    times = to_numbers(t, "t", None)
-    arms = to_numbers(weight_arm, "weight_arm", None)
+    speeds, attitudes = to_rows(omega, "omega", 3), to_rows(attitude, "attitude", 4)
+    times = to_rows(t, "t", None)
+    arms = to_rows(weight_arm, "weight_arm", None)
 
     def kernel(*arguments: Any) -> int:
         return _core._heavy_top(*(*arguments, workers))
@@ -160,7 +160,7 @@ def heavy_top(
         return evaluate([(moments, 1), (arms, 0), (w, 1), (q, 1)], times, target, names, kernel)
 
     if not isinstance(inertia, InertiaTensor):
-        return evaluate_tops(to_numbers(inertia, "inertia", 3), speeds, attitudes, out, want)
+        return evaluate_tops(to_rows(inertia, "inertia", 3), speeds, attitudes, out, want)
     matrix = inertia.matrix
     if not np.count_nonzero(matrix - np.diag(np.diag(matrix))):
         return evaluate_tops(np.diag(matrix).copy(), speeds, attitudes, out, want)

@@ -51,7 +51,7 @@ class Motion:
     status : {"finished", "event", "max_steps", "stopped", "failed"}
     message : str
     stats : dict
-        steps, rejected, derivatives, events, seconds: what it cost; seconds are wall time inside the compiled core.
+        steps, rejected, derivatives, events, runs, seconds: what it cost; seconds are wall time in the compiled core.
     events : tuple of EventHit
         Every zero that was found, in the order of the integration.
     plan : Plan

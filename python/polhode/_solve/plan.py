@@ -63,6 +63,8 @@ class Plan:
         Everything that was considered.
     reasons, left_out : tuple of str
         Why this model and this method; what is not modelled and why that is safe.
+    wishes : dict
+        The method and the formulation that were asked for.
     """
 
     def __init__(self, scene: Scene, parts: tuple[Any, ...], wishes: dict[str, Any]) -> None:

@@ -11,7 +11,7 @@ import sys
 from collections.abc import Sequence
 
 
-EXTRA = ("typer", "rich", "pydantic")
+EXTRA = ("typer", "rich")
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

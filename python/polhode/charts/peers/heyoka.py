@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from typing import Any
 
 import numpy as np
 
@@ -37,14 +38,13 @@ def _start(scene: Scene) -> Run:
     def run(tolerance: float, limit: float | None) -> Answer:
         if tolerance not in compiled:
             compiled[tolerance] = hy.taylor_adaptive(system, start, time=scene.t0, tol=tolerance)
-        solver: object = compiled[tolerance]
-        solver.time, solver.state[:] = scene.t0, start   # type: ignore[attr-defined]
+        solver: Any = compiled[tolerance]
+        solver.time, solver.state[:] = scene.t0, start
         if limit is None:
-            result = solver.propagate_grid(times)   # type: ignore[attr-defined]
+            result = solver.propagate_grid(times)
         else:
             end = time.perf_counter() + limit
-            result = solver.propagate_grid(times,
-                                           callback=lambda s: time.perf_counter() < end)   # type: ignore[attr-defined]
+            result = solver.propagate_grid(times, callback=lambda s: time.perf_counter() < end)
         if result[0] == hy.taylor_outcome.cb_stop:
             raise Failure(f"not done within {limit:.2g} s")
         if result[0] != hy.taylor_outcome.time_limit:

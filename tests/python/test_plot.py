@@ -8,6 +8,7 @@ import polhode as ph
 pytest.importorskip("matplotlib")
 from polhode._plot.motion import PARTS, _fine, _moves  # noqa: E402
 from polhode._plot.poinsot import family, herpolhode, in_front, make_view, outline  # noqa: E402
+from polhode._plot.text import to_count, to_error, to_time  # noqa: E402
 
 BLOCK = np.array([0.20, 0.40, 0.52])
 
@@ -121,3 +122,12 @@ def test_run_draws(tmp_path):
     assert result.exit_code == 0 and f"wrote {file}" in result.stdout and "z-x-z angles" in file.read_text()
     wrong = CliRunner().invoke(app, ["run", "S5", "--plot", str(tmp_path / "S5.bmp")])
     assert wrong.exit_code == 2 and "plot: must end in .png, .svg or .pdf" in wrong.stderr
+
+
+@pytest.mark.parametrize(("found", "text"), [
+    (to_time(2.46e-4), "246 µs"), (to_time(0.9999e-3), "1 ms"), (to_time(12.34), "12.3 s"), (to_time(5e-9), "5 ns"),
+    (to_error(2.3e-5), "2e-5"), (to_error(0.23), "0.2"), (to_error(3.1), "3.1"), (to_error(0), "0"),
+    (to_count(1_545_000), "1.5 million"), (to_count(65_432), "65 thousand"), (to_count(812), "812"),
+])  # fmt: skip
+def test_numbers_in_words(found, text):
+    assert found == text
