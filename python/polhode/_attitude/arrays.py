@@ -64,7 +64,7 @@ def to_shape(num: int | None, shape: int | tuple[int, ...] | None) -> tuple[int,
 def mean(quat: FloatArray, weights: ArrayLike | None) -> FloatArray:
     """Return the unit quaternion q with the largest weighted sum of (q . q_i)^2; its sign does not matter.
 
-    Markley, Cheng, Crassidis and Oshman 2007, J. Guidance, Control and Dynamics 30(4), 1193, equation 13.
+    Markley, Cheng, Crassidis and Oshman 2007, J. Guidance, Control, and Dynamics 30, 1193.
     """
     if quat.size == 0:
         raise InvalidInput("rotations: must be one or more for a mean, got none")
