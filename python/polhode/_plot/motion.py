@@ -179,20 +179,20 @@ def _axis(figure: Any, cell: Any, motion: Motion, curve: Curve) -> None:
     axes, view = figure.add_subplot(cell), make_view(-60.0, 30.0)
     assert curve.attitude is not None
     z = Rotation.from_quat(curve.attitude).apply(np.array([0.0, 0.0, 1.0]))
-    paper, one = np.stack([view.right, view.up], axis=1), np.ones(3)
+    paper, sphere = np.stack([view.right, view.up], axis=1), np.ones(3)
     axes.set_aspect("equal")
     axes.set_axis_off()
-    axes.fill(*outline(one, view).T, facecolor="#f3f6f9", edgecolor=style.FLOOR, linewidth=1.0, zorder=1)
+    axes.fill(*outline(sphere, view).T, facecolor="#f3f6f9", edgecolor=style.FLOOR, linewidth=1.0, zorder=1)
     angle = np.linspace(0, 2 * math.pi, 181)
     for height in (-60, -30, 0, 30, 60):
         r, h = math.cos(math.radians(height)), math.sin(math.radians(height))
         ring = np.stack([r * np.cos(angle), r * np.sin(angle), np.full(181, h)], axis=1)
-        _faded(axes, ring @ paper, in_front(ring, one, view), style.FLOOR, 1.0 if height == 0 else 0.5, 2)
+        _faded(axes, ring @ paper, in_front(ring, sphere, view), style.FLOOR, 1.0 if height == 0 else 0.5, 2)
     up = np.array([[0, 0, 1.0], [0, 0, 1.22]]) @ paper
     axes.plot(*up.T, color=style.QUIET, linewidth=1.0, zorder=1.5)
     axes.annotate("space z", up[1], xytext=(0, 6), textcoords="offset points", color=style.QUIET, fontsize=8,
                   ha="center")
-    _faded(axes, z @ paper, in_front(z, one, view), style.colour("rk45"), 1.4, 4)
+    _faded(axes, z @ paper, in_front(z, sphere, view), style.colour("rk45"), 1.4, 4)
     axes.plot(*(z[0] @ paper), marker="o", markersize=6, color=style.INK, zorder=8)
     axes.set_title("path of the body's z axis in space")
 
