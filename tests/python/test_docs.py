@@ -1,6 +1,9 @@
 """Links in the documents lead somewhere, and the examples of the homework run."""
 
 import re
+import subprocess
+import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -47,6 +50,17 @@ def test_the_readmes_python_example_prints_what_it_says(capsys):
     exec(compile(block, "README.md", "exec"), {})
     expected = re.findall(r"^print\(.*\) +# (.*)$", block, flags=re.M)
     assert capsys.readouterr().out.splitlines() == expected and len(expected) == 2
+
+
+def test_the_readmes_python_example_needs_no_extra(tmp_path):
+    (block,) = blocks("README.md", "python")
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    extras = {re.match(r"[\w-]+", name)[0] for names in project["optional-dependencies"].values() for name in names}
+    hidden = sorted(name.replace("-", "_") for name in extras)
+    assert "typer" in hidden and "scipy" in hidden and "pydantic" not in hidden
+    program = f"import sys\nsys.modules.update(dict.fromkeys({hidden!r}))\n{block}"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=tmp_path, check=False)
+    assert done.returncode == 0 and done.stdout.count("\n") == 2, done.stderr
 
 
 def test_the_readme_is_short():

@@ -75,10 +75,10 @@ class Motion:
     asked: float
     events: tuple[EventHit, ...]
 
-    def __init__(self, scene: Scene, answer: _core.Answer, options: dict[str, Any] | None = None) -> None:
+    def __init__(self, scene: Scene, answer: _core.Answer, wishes: dict[str, Any] | None = None) -> None:
         self.scene = scene
         self._answer: _core.Answer | None = answer
-        self._options = options or {}
+        self._options = wishes or {}
 
     def __getattr__(self, name: str) -> Any:
         # Each part crosses from the compiled core when it is first asked for.
