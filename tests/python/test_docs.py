@@ -45,6 +45,14 @@ def blocks(page, language):
     return re.findall(rf"```{language}\n(.*?)```", (ROOT / page).read_text(), flags=re.S)
 
 
+@pytest.mark.parametrize("page", ["plan", "batch", "solve", "ode", "exact", "heavy_top", "math", "torque"])
+def test_the_python_examples_of_a_page_run_in_their_order(page):
+    found, names = blocks(f"docs/{page}.md", "python"), {}
+    assert found
+    for block in found:
+        exec(compile(block, f"docs/{page}.md", "exec"), names)
+
+
 def test_the_readmes_python_example_prints_what_it_says(capsys):
     (block,) = blocks("README.md", "python")
     exec(compile(block, "README.md", "exec"), {})

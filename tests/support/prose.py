@@ -23,7 +23,7 @@ FRAGMENT = 2        # words of what is a label, not a sentence
 
 _WORD = re.compile(r"[^\W_]+(?:['’.,/:_^+\-][^\W_]+)*")
 _END = re.compile(r"(?<=[.!?])[\"')\]*]*\s+(?=[\"'(\[*]*[A-Z0-9])")
-_ABBREVIATION = re.compile(r"\b(e\.g|i\.e|cf|vs|al|eq|fig|sec|[A-Z])\.$", re.IGNORECASE)
+_ABBREVIATION = re.compile(r"\b(e\.g|i\.e|cf|vs|al|eq|fig)\.$", re.IGNORECASE)
 
 
 class Prose(NamedTuple):
@@ -44,6 +44,7 @@ class Prose(NamedTuple):
 
 def find_paragraphs(text: str) -> list[str]:
     """Running text by paragraphs and list items, each on one line."""
+    text = re.sub(r'<a id="[^"]*"></a>', "", text)
     text = re.sub(r"^(```|~~~).*?^\1[^\n]*$|\$\$.*?\$\$|<!--.*?-->", "\n\n", text, flags=re.DOTALL | re.MULTILINE)
     paragraphs: list[str] = []
     indented = open_ = in_list = False   # a code block by indentation follows an empty line, outside of lists
