@@ -1,7 +1,7 @@
 """Two ways to know an error: carried along by one run, or the difference of two. What is claimed holds, and is not far
 above.
 
-The error that is carried is an estimate: in two of a hundred scenes it is below the truth, by up to a half (docs/notes/certificates.md).
+The error that is carried is an estimate: in two of a hundred scenes it is below the truth (docs/notes/certificates.md).
 """
 
 import numpy as np
