@@ -3,7 +3,7 @@
     python benchmarks/taylor.py [-o results.json] [SCENE ...]
 
 Times are the thread's CPU time, the least of interleaved repeats, all samples included; heyoka's compilation is not
-counted and printed. The true error is against the stored truth of the scenes (docs/scenes.md).
+counted and printed. The true error is against the stored truth of the scenes (docs/reference_scenes.md).
 """
 
 import argparse

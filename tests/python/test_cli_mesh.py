@@ -85,7 +85,7 @@ PAGE = (pathlib.Path(__file__).parents[2] / "docs/inertia.md").read_text()
 
 
 def section(name):
-    return re.search(rf"^## {name}\n(.*?)(?=^## )", PAGE, flags=re.S | re.M)[1]
+    return re.search(rf"^### {name}\n(.*?)(?=^##)", PAGE, flags=re.S | re.M)[1]
 
 
 def test_the_page_shows_this_part(part):

@@ -20,7 +20,7 @@ def rates_error(omega, reference):
 
 
 def error(omega, attitude, reference):
-    """The error of a trajectory as docs/scenes.md defines it: the larger of the two."""
+    """The error of a trajectory as docs/conventions.md defines it: the larger of the two."""
     return max(rates_error(omega, reference["omega"]), attitude_error(attitude, reference["attitude"]))
 
 

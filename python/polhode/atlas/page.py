@@ -47,12 +47,12 @@ def page(content: dict[str, Any], pictures: str = "", introduction: str = "") ->
     machine = content["machine"]
     whole = "" if not content["quick"] else " --quick"
     lines = ["# Where methods fail", "", introduction.strip(), ""] if introduction else ["# Where methods fail", ""]
-    said = "; ".join(f"{name}: {family['number']}" for name, family in content["families"].items())
     lines += [f"![Methods against families: what holds, what degrades, what fails]({pictures}matrix.svg)", "",
               f"`polhode atlas{whole}`, polhode {content['polhode']['version']}, {machine['processor']}, "
-              f"{content['made']}; {content['cpu_seconds']:.0f} s of CPU time. ● holds, ◐ degrades, ✕ fails, ? too "
-              "slow to be known, empty: does not apply.",
-              "", *_matrix(content), "", f"What the cells say: {said}.", ""]
+              f"{content['made']}; {content['cpu_seconds']:.0f} s of CPU time.", "",
+              "● holds, ◐ degrades, ✕ fails, ? too slow to be known, empty: does not apply.", "", *_matrix(content), "",
+              "| column | each cell states |", "|---|---|",
+              *(f"| {name} | {_escaped(family['number'])} |" for name, family in content["families"].items()), ""]
     for name, family in content["families"].items():
         lines += [f"## {name}", "", f"**{family['title']}.** {family['about']}", "",
                   f"![{family['title']}]({pictures}{name}.svg)", "",

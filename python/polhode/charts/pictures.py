@@ -236,8 +236,8 @@ def limits(results: list[SceneResult], folder: pathlib.Path) -> list[pathlib.Pat
         return []
     with style.used() as plt:
         width = 0.3 + 5.6 * len(panels)
-        figure, grid = plt.subplots(1, len(panels), figsize=(width, 4.8), squeeze=False)
-        figure.subplots_adjust(left=0.85 / width, right=1 - 0.95 / width, bottom=0.13, top=0.72, wspace=0.5)
+        figure, grid = plt.subplots(1, len(panels), figsize=(width, 5.2), squeeze=False)
+        figure.subplots_adjust(left=0.85 / width, right=1 - 1.25 / width, bottom=0.19, top=0.75, wspace=0.6)
         for axes, (draw, result) in zip(grid.flat, panels):
             draw(axes, result, results)
         style.heading(figure, "Where no tolerance helps",
@@ -256,30 +256,41 @@ def _tolerance_axis(axes: Any) -> None:
 
 
 def _stalling(axes: Any, result: SceneResult, results: list[SceneResult]) -> None:
-    """Error against tolerance, beside error = tolerance and the closed form."""
+    """Error against tolerance, beside error = tolerance and the closed form.
+
+    Other programs that stall too are one grey bundle, named below the axis: their curves lie on one another.
+    """
     _tolerance_axis(axes)
     names = [n for n in result.names("method", "peer") if result.of(n)[0].swept == "rtol"]
     points = [p for n in names for p in result.of(n)]
     tolerances = sorted({p.value for p in points})
     axes.plot(tolerances, tolerances, color=style.FLOOR, linewidth=1.2, linestyle=(0, (4, 3)), zorder=1)
-    axes.annotate("error = tolerance", (1e-9, 1e-9), xytext=(-6, -4), textcoords="offset points", ha="right", va="top",
-                  fontsize=9, color=style.QUIET)
+    bundle = [n for n in result.names("peer") if n in names and stalls(result, n)]
+    ends: Ends = []
     for name in names:
         curve = result.of(name)
-        axes.plot([p.value for p in curve], [p.error for p in curve], label=name, **style.line(name, curve[0].family))
+        look = style.line(name, curve[0].family, name in bundle)
+        axes.plot([p.value for p in curve], [p.error for p in curve], **look)
+        if name not in bundle:
+            ends.append((curve[-1].value, curve[-1].error, name, look["color"]))
     for name in result.names("exact"):
         exact = result.of(name)[0]
         axes.axhline(exact.error, color=style.colour(name), linewidth=2)
         text = f"closed form: {to_error(exact.error)} in {to_time(exact.seconds)}"
         style.label(axes, tolerances[-1], exact.error, text, style.colour(name), xytext=(0, 6), va="bottom")
-    axes.set_ylim(min(1e-16, tolerances[0]), 1e7)   # room for the legend
+    axes.set_ylim(min(1e-16, tolerances[0]), 2 * LOST)
     _error_ticks(axes, "y")
     axes.set_ylabel("largest error")
+    guide = 1e-9
+    axes.annotate("error = tolerance", (guide, guide), xytext=(-6, -4), textcoords="offset points", ha="right", va="top",
+                  fontsize=9, color=style.QUIET)
+    if bundle:
+        axes.set_xlabel("tolerance\n" + textwrap.fill(f"grey: {', '.join(bundle)}", 66), linespacing=1.5)
     stalled = [n for n in adaptive(result) if stalls(result, n)]
     best = min(p.error for n in stalled for p in result.of(n))
     axes.set_title(f"{result.scene.name} {result.title}: rounding keeps {', '.join(stalled)}\n"
                    f"above {to_error(best)}, whatever the tolerance")
-    axes.legend(loc="upper right", frameon=False, fontsize=8, ncols=3, borderaxespad=0.2)
+    _spread(axes, ends)
 
 
 def _stiff(axes: Any, result: SceneResult, results: list[SceneResult]) -> None:

@@ -74,8 +74,8 @@ FAMILY = Family(
     holds="attitude within 0.1 rad for 180 s or longer at the best setting",
     degrades="for 60 s",
     number="until the attitude is lost, at the best setting",
-    about="Neighbouring motions part in bursts, so each digit of the tolerance buys some more seconds and no "
-          "more. Past the horizon of float64 every answer is a guess, whatever it costs.",
+    about="Neighbouring motions diverge in bursts. Each digit of the tolerance buys a few more seconds. Past "
+          "the horizon of float64 no answer is reliable, whatever it costs.",
     measure=measure, judge=judge, cost=18, x_label="tolerance, or step [s]", x_inverted=True, y="horizon",
     y_label="time until the attitude is lost [s]", y_log=False, y_limits=(0.0, 300.0),
     x_labels=(("tolerance", "tolerance (of solve: accuracy)"), ("step", "step [s]")),

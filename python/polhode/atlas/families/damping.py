@@ -103,9 +103,9 @@ FAMILY = Family(
     truth="113-bit Gauss collocation of order 24; S7b: the scene's stored truth",
     holds="1e-6 within 10,000 steps for every c and on S7b", degrades="1e-6 reached, at any cost within the time limit",
     number="most steps that 1e-6 takes, or how far it gets",
-    about="One rate dies at once and follows the others from then on, so an explicit method takes steps for a "
-          "motion that is no longer there. Its cost grows with the damping, that of a stiffly stable one does "
-          "not; scene S7b has the same with axes that are not the body's.",
+    about="One rate decays at once and follows the others from then on. An explicit method still takes steps "
+          "short enough for that rate. Its cost grows with the damping; the cost of a stiffly stable method "
+          "does not. Scene S7b damps about axes that are not the body's.",
     measure=measure, judge=judge, cost=53, x_label="damping c [N m s]", y="steps", y_label="steps for an error of 1e-6",
     x_scale="list", tick_names=((ASKEW, "S7b"),), lines=((CHEAP, "holds"),),
     takes=lambda entrant: "no closed form" if entrant.kind in ("exact", "witness") else "",

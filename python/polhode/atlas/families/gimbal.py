@@ -45,9 +45,9 @@ FAMILY = Family(
     holds="the error at every theta within twice that at 0.5 (or below 1e-10)",
     degrades="not lost (0.1 rad) at any theta",
     number="blind to the tilt, or how many times the error at 0.5 rad",
-    about="The textbook's three angles end where the body's axis is vertical, and Lagrange's equations divide "
-          "by the sine of its tilt. Methods that turn a quaternion hardly notice; those in angles need shorter "
-          "steps, or jump over the barrier and burst.",
+    about="The textbook's three angles are undefined where the body's axis is vertical. Lagrange's equations "
+          "divide by the sine of its tilt. Methods that carry a quaternion hardly notice. Methods that carry "
+          "angles need shorter steps, or cross the barrier and burst.",
     measure=measure, judge=judge, x_label="least angle to the vertical [rad]", x_inverted=True,
     y="error", y_label="largest error over 20 s [rad]", series=(("free", "a free disk"), ("top", "a heavy top")),
     y_limits=(1e-16, 10.0),

@@ -42,9 +42,9 @@ FAMILY = Family(
     holds="attitude within 1e-7 rad after the longest time reached",
     degrades="attitude not lost (0.1 rad), or energy and angular momentum within 1e-3",
     number="error of the attitude after the longest time reached",
-    about="Energy and angular momentum can be kept to rounding for ever while the phase runs away: conserving "
-          "is not being right. What grows as the square of the time, as the time, or not at all, is the slope "
-          "in this picture.",
+    about="A method can conserve energy and angular momentum to rounding for ever while its phase drifts. "
+          "Conservation is not accuracy. The slope in this picture shows whether an error grows as the square "
+          "of the time, as the time, or not at all.",
     measure=measure, judge=judge, cost=120, x_label="turns", y="error", y_label="error of the attitude [rad]",
     also=(("energy", "energy moved by, relative", (1e-16, 10.0)),
           ("angular_momentum", "angular momentum in space moved by, relative", (1e-16, 10.0))),

@@ -31,9 +31,9 @@ FAMILY = Family(
     truth="closed form with 110 digits",
     holds="error within 1e-9 for every d", degrades="within 0.1",
     number="largest error",
-    about="Closed forms divide by differences of moments and steppers do not, so this is where formulas break: "
-          "a body that is all but a sphere, or all but symmetric. Nothing may happen as the difference goes to "
-          "zero, nor at zero itself.",
+    about="Closed forms divide by differences of moments, and steppers do not. Their formulas may break for a "
+          "body that is almost a sphere or almost symmetric. The error must stay small as the difference goes "
+          "to zero, and at zero itself.",
     measure=measure, judge=judge, cost=4, x_label="difference of moments d", x_inverted=True, x_scale="list",
     y="error", y_label="error after 1000 turns [rad]",
     series=(("sphere", "moments 1, 1 + d, 1 + 2d"), ("symmetric", "moments 1, 1 + d, 0.5")),

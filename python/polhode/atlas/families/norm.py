@@ -75,9 +75,9 @@ FAMILY = Family(
     truth="1",
     holds="every quaternion returned is unit within 1e-15", degrades="within 1e-6",
     number="largest difference of the norm from 1",
-    about="A Runge-Kutta step leaves the unit sphere by its own error, so the norm of a quaternion nobody tends "
-          "shows how wrong the attitude is. Bringing it back hides the symptom and changes the attitude's error "
-          "not at all.",
+    about="A Runge-Kutta step leaves the unit sphere by its own error. The norm of a quaternion that is never "
+          "normalised therefore shows the error of the attitude. Normalising hides the symptom and does not "
+          "reduce that error.",
     measure=measure, judge=judge, x_label="step [s]", x_inverted=True, y="norm", y_label="largest | |q| - 1 |",
     y_limits=(3e-17, 1.0), lines=((1e-15, "holds"),), takes=lambda entrant: "",
 )

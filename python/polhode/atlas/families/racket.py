@@ -85,9 +85,10 @@ FAMILY = Family(
     truth="closed form with 110 digits; first flip to 1e-15",
     holds="attitude within 1e-9 rad for every e", degrades="the first flip within 1e-3 s for every e",
     number="largest error, or when the attitude is first lost",
-    about="A throw about the intermediate axis turns over again and again, and each flip forgets how close the "
-          "throw was. Explicit steps of high order get the first flip; the later ones hang on digits of the "
-          "small rates that rounding takes away, unless they are carried along or the motion is evaluated.",
+    about="A body thrown about its intermediate axis flips again and again. Each flip loses information on how "
+          "close the throw was. Explicit steps of high order find the first flip. The later flips depend on "
+          "digits of the small rates that rounding removes. Methods that carry separatrix variables keep those "
+          "digits, and a closed form needs none.",
     measure=measure, judge=judge, x_label="distance from the axis e [rad/s]", x_inverted=True,
     y="error", y_label="largest error over 200 s [rad]",
     also=(("flip", "first flip off by [s]", (1e-16, 10.0)),), lines=((1e-9, "holds"), (LOST, "lost")),

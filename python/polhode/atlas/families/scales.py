@@ -98,8 +98,8 @@ FAMILY = Family(
     truth="the same method's answer without the factor (a power of two)",
     holds="the same answer to 1e-12 at every scale", degrades="or, at some scales, an error that says why",
     number="largest difference",
-    about="Grams or tonnes, seconds or years: the same motion in other units must be the same motion. Factors "
-          "are powers of two, so that a method which scales its work returns the very same bits.",
+    about="The same motion in other units must be the same motion: grams or tonnes, seconds or years. The "
+          "factors are powers of two. A method that scales its work returns exactly the same bits.",
     measure=measure, judge=judge, x_label="power of ten of the factor", x_scale="linear",
     y="error", y_label="difference from the plain answer", y_limits=(1e-17, 10.0),
     lines=((1e-12, "holds"),),

@@ -57,9 +57,9 @@ FAMILY = Family(
     holds="the greatest tilt within a relative 1e-3 for every s",
     degrades="it stands and falls as it should for |s| >= 1e-3",
     number="largest relative error of the tilt, or what goes wrong",
-    about="Spun a little faster than the critical rate a top stands upright, a little slower it falls, however "
-          "small the difference. A method's own error acts like a torque and moves the critical rate, so it may "
-          "let a sleeping top fall or keep a falling one up.",
+    about="A top spun slightly faster than the critical rate stands upright. Slightly slower, it falls, however "
+          "small the difference. A method's own error acts like a torque and shifts the critical rate. It may "
+          "let a sleeping top fall, or keep a falling top up.",
     measure=measure, judge=judge, cost=61, x_label="excess over the critical rate", x_inverted=True, x_scale="list",
     y="tilt", y_label="greatest tilt within 200 s [rad]", y_limits=(3e-7, 10.0),
 )

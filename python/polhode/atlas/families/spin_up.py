@@ -55,9 +55,9 @@ FAMILY = Family(
     truth="113-bit Taylor series, the longest time in 64 bits",
     holds="error within 1e-6 over every time", degrades="within 0.1",
     number="largest error",
-    about="A torque that stays in the body spins it up, so turns grow as the square of the time and nearly all "
-          "the work is at the end. A step that was fine at the start is wrong by then; fixed steps here are "
-          "chosen for the last turn.",
+    about="A constant torque in body axes spins the body up. The turns grow as the square of the time, so "
+          "nearly all the work is at the end. A step that was right at the start is wrong by then. Fixed steps "
+          "are chosen here for the last turn.",
     measure=measure, judge=judge, cost=165, x_label="time it burns [s]", y="error", y_label="largest error [rad]",
     lines=((1e-6, "holds"), (LOST, "lost")), y_limits=(1e-16, 10.0),
 )

@@ -121,9 +121,9 @@ FAMILY = Family(
     truth="closed form (FreeMotion)",
     holds="attitude within 0.1 rad over 10 turns for every body at 64 steps a turn", degrades="at 512 steps a turn",
     number="longest step, as an angle, for the worst body",
-    about="No body makes the free equations stiff, since no moment differs from another by more than the third: "
-          "what a step may be is an angle, h times the rate. Bounded energy says little about being right, so "
-          "the attitude decides.",
+    about="The free equations are never stiff, since no moment differs from another by more than the third. The "
+          "step is therefore limited as an angle, h times the rate. Bounded energy says little about accuracy, "
+          "so the attitude decides.",
     measure=measure, judge=judge, cost=12, takes=fixed_only,
     x_label="smallest moment over the middle one", x_inverted=True,
     y="right", y_label="longest step h |omega| [rad]", failed_below=True,
