@@ -1,7 +1,7 @@
 """The docs' copy of the atlas: `polhode atlas -o DIR`, then `python benchmarks/atlas.py DIR`.
 
-Copies the matrix's numbers to benchmarks/results, the pictures to docs/pictures/atlas, and writes docs/results/atlas.md from
-them. Without a folder the stored numbers stay, and the sentences about the families are taken anew from the package.
+Copies the matrix's numbers to benchmarks/results, the pictures to docs/pictures/atlas, and writes docs/results/atlas.md
+from them. Without a folder the stored numbers stay, and the sentences about the families are taken anew from the package.
 """
 
 import json
@@ -14,9 +14,11 @@ from polhode.atlas.families import FAMILIES
 from polhode.atlas.page import page
 
 DOCS = pathlib.Path(__file__).parents[1] / "docs"
-RESULTS, PICTURES, PAGE = DOCS.parent / "benchmarks/results/atlas.json", DOCS / "pictures/atlas", DOCS / "results/atlas.md"
+RESULTS, PICTURES = DOCS.parent / "benchmarks/results/atlas.json", DOCS / "pictures/atlas"
+PAGE = DOCS / "results/atlas.md"
 INTRODUCTION = """
-`polhode atlas` and `python benchmarks/atlas.py` make this page. [The atlas](../atlas.md) explains the settings and the verdicts.
+`polhode atlas` and `python benchmarks/atlas.py` make this page.
+[The atlas](../atlas.md) explains the settings and the verdicts.
 """
 
 

@@ -3,6 +3,7 @@
 import importlib.util
 import json
 import math
+import re
 import sys
 from pathlib import Path
 
@@ -272,3 +273,9 @@ def test_the_docs_are_made_of_their_results():
     assert module.PAGE.read_text() == module.render(content)
     assert list(content["families"]) == [f.name for f in FAMILIES] and not content["quick"]
     assert content["broken_claims"] == []
+
+
+def test_the_docs_list_the_families():
+    page = (ROOT / "docs/atlas.md").read_text()
+    listed = re.findall(r"^\| \[([\w-]+)\]\(results/atlas.md#\1\) \| (.*) \|$", page, flags=re.M)
+    assert listed == [(family.name, family.title) for family in FAMILIES]

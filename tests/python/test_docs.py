@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+import polhode as ph
+
 ROOT = Path(__file__).parents[2]
 PAGES = sorted(page for places in ("*.md", "docs/**/*.md", "scenes/**/*.md", "tests/**/*.md")
                for page in ROOT.glob(places))
@@ -53,11 +55,27 @@ def test_the_python_examples_of_a_page_run_in_their_order(page):
         exec(compile(block, f"docs/{page}.md", "exec"), names)
 
 
-def test_the_readmes_python_example_prints_what_it_says(capsys):
-    (block,) = blocks("README.md", "python")
-    exec(compile(block, "README.md", "exec"), {})
-    expected = re.findall(r"^print\(.*\) +# (.*)$", block, flags=re.M)
-    assert capsys.readouterr().out.splitlines() == expected and len(expected) == 2
+@pytest.mark.parametrize("page", ["docs/scene.md", "docs/reference_scenes.md"])
+def test_the_scene_files_of_the_pages_load(page, tmp_path):
+    (block,) = blocks(page, "toml")
+    (tmp_path / "scene.toml").write_text(block)
+    assert ph.Scene.load(tmp_path / "scene.toml").times.size in (201, 501)
+
+
+def test_the_refusal_of_a_wrong_key_is_the_one_shown(tmp_path):
+    (toml,), (shown,) = blocks("docs/scene.md", "toml"), blocks("docs/scene.md", "text")
+    (tmp_path / "S5.toml").write_text(toml.replace("weight =", "weigth ="))
+    with pytest.raises(ph.InvalidInput) as refused:
+        ph.Scene.load(tmp_path / "S5.toml")
+    assert str(refused.value).removeprefix(f"{tmp_path}/") == shown.strip()
+
+
+def test_the_names_of_scipys_rotation_that_are_left_out_are_listed():
+    theirs = pytest.importorskip("scipy.spatial.transform").Rotation
+    missing = {name for name in dir(theirs) if not name.startswith("_") and not hasattr(ph.Rotation, name)}
+    page = (ROOT / "docs/attitude.md").read_text()
+    (listed,) = re.findall(r"^- `Rotation` lacks these names of SciPy's: (.*)\.$", page, flags=re.M)
+    assert missing == set(re.findall(r"`(\w+)`", listed))
 
 
 def test_the_readmes_python_example_needs_no_extra(tmp_path):

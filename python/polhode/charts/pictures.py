@@ -237,7 +237,7 @@ def limits(results: list[SceneResult], folder: pathlib.Path) -> list[pathlib.Pat
     with style.used() as plt:
         width = 0.3 + 5.6 * len(panels)
         figure, grid = plt.subplots(1, len(panels), figsize=(width, 5.2), squeeze=False)
-        figure.subplots_adjust(left=0.85 / width, right=1 - 1.25 / width, bottom=0.19, top=0.75, wspace=0.6)
+        figure.subplots_adjust(left=0.85 / width, right=1 - 1.25 / width, bottom=0.21, top=0.75, wspace=0.6)
         for axes, (draw, result) in zip(grid.flat, panels):
             draw(axes, result, results)
         style.heading(figure, "Where no tolerance helps",
@@ -258,14 +258,16 @@ def _tolerance_axis(axes: Any) -> None:
 def _stalling(axes: Any, result: SceneResult, results: list[SceneResult]) -> None:
     """Error against tolerance, beside error = tolerance and the closed form.
 
-    Other programs that stall too are one grey bundle, named below the axis: their curves lie on one another.
+    Other programs that get no further are one grey bundle, named below the axis: their curves lie on one another.
     """
     _tolerance_axis(axes)
     names = [n for n in result.names("method", "peer") if result.of(n)[0].swept == "rtol"]
     points = [p for n in names for p in result.of(n)]
     tolerances = sorted({p.value for p in points})
     axes.plot(tolerances, tolerances, color=style.FLOOR, linewidth=1.2, linestyle=(0, (4, 3)), zorder=1)
-    bundle = [n for n in result.names("peer") if n in names and stalls(result, n)]
+    stalled = [n for n in adaptive(result) if stalls(result, n)]
+    best = min(p.error for n in stalled for p in result.of(n))
+    bundle = [n for n in result.names("peer") if n in names and min(p.error for p in result.of(n)) > 0.1 * best]
     ends: Ends = []
     for name in names:
         curve = result.of(name)
@@ -281,13 +283,11 @@ def _stalling(axes: Any, result: SceneResult, results: list[SceneResult]) -> Non
     axes.set_ylim(min(1e-16, tolerances[0]), 2 * LOST)
     _error_ticks(axes, "y")
     axes.set_ylabel("largest error")
-    guide = 1e-9
-    axes.annotate("error = tolerance", (guide, guide), xytext=(-6, -4), textcoords="offset points", ha="right", va="top",
+    axes.annotate("error = tolerance", (1e-9, 1e-9), xytext=(-6, -4), textcoords="offset points", ha="right", va="top",
                   fontsize=9, color=style.QUIET)
     if bundle:
-        axes.set_xlabel("tolerance\n" + textwrap.fill(f"grey: {', '.join(bundle)}", 66), linespacing=1.5)
-    stalled = [n for n in adaptive(result) if stalls(result, n)]
-    best = min(p.error for n in stalled for p in result.of(n))
+        axes.text(0, -0.19, textwrap.fill(f"in grey: {', '.join(bundle)}", 68), transform=axes.transAxes, va="top",
+                  fontsize=8, color=style.QUIET, linespacing=1.4)
     axes.set_title(f"{result.scene.name} {result.title}: rounding keeps {', '.join(stalled)}\n"
                    f"above {to_error(best)}, whatever the tolerance")
     _spread(axes, ends)
