@@ -31,7 +31,8 @@ def page(content):
         f"{machine['processor']}, {machine['cores']} cores, compiler {content['polhode']['compiler']}, simd "
         f"{content['polhode']['simd']}, "
         f"Python {machine['python']}. {versions}.",
-        f"What is measured: {content['measure']}.",
+        "What is measured:",
+        "\n".join(f"- {part}" for part in content["measure"].split("; ")),
         "## The fastest at each error",
         tables.markdown(tables.winners(content)),
         "## The smallest error of each",
