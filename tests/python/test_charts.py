@@ -365,32 +365,6 @@ def test_failing_scenes_have_their_picture(tmp_path):
     assert pictures.limits([made_up(curve("rk45", "method", VALUES, VALUES, times))], tmp_path) == []
 
 
-def test_names_in_the_picture_of_the_limits_lie_apart(tmp_path, monkeypatch):
-    from matplotlib.text import Text
-
-    from polhode.charts import pictures
-
-    boxes = {}
-
-    def look(figure, *_):
-        (axes,) = figure.axes
-        figure.canvas.draw()
-        # Of the words alone: an annotation's own extent includes its line to the curve.
-        boxes.update({text.get_text(): Text.get_window_extent(text) for text in axes.texts})
-        assert axes.get_legend() is None
-        return []
-
-    monkeypatch.setattr(pictures.style, "save", look)
-    times = [1e-3 * 1.6**k for k in range(10)]
-    kinds = {"rk45": "method", "dop853": "method", "heyoka": "peer", "SciPy RK45": "peer"}
-    stuck = [p for name, family in kinds.items()
-             for p in curve(name, family, VALUES, [max(v, 2e-5) for v in VALUES], times)]
-    pictures.limits([made_up(stuck + curve("taylor", "method", VALUES, VALUES, times))], tmp_path)
-    assert {"rk45", "dop853", "taylor", "in grey: heyoka, SciPy RK45"} < set(boxes)
-    names = list(boxes)
-    assert not [(a, b) for i, a in enumerate(names) for b in names[:i] if boxes[a].overlaps(boxes[b])]
-
-
 def test_the_command_prints_tables_uncut(tmp_path, monkeypatch):
     from typer.testing import CliRunner
 
