@@ -1,7 +1,8 @@
 """The docs' copy of the atlas: `polhode atlas -o DIR`, then `python benchmarks/atlas.py DIR`.
 
-Copies the matrix's numbers to benchmarks/results, the pictures to docs/pictures/atlas, and writes docs/results/atlas.md
-from them. Without a folder the stored numbers stay, and the sentences about the families are taken anew from the package.
+Copies the matrix's numbers to benchmarks/results, the pictures to docs/pictures/atlas, and writes
+docs/results/atlas.md from them. Without a folder the stored numbers stay, and the sentences about the families are
+taken anew from the package.
 """
 
 import json

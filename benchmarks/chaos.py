@@ -2,10 +2,10 @@
 
     python benchmarks/chaos.py
 
-Errors against the stored truth (docs/reference_scenes.md) until 20 s and until 60 s, beside the floor, which is what rounding of the
-inputs alone does at worst; and against heyoka's 80-bit run, which starts from the rounded inputs too: the integrator's
-own error. The 80-bit answers are rounded to double. The start's quaternion, in doubles, is unit to 9e-17.
-Times are the thread's CPU time, the least of repeats, all 601 samples included, without heyoka's compilation.
+Errors against the stored truth (docs/reference_scenes.md) until 20 s and until 60 s, beside the floor, which is what
+rounding of the inputs alone does at worst; and against heyoka's 80-bit run, which starts from the rounded inputs too:
+the integrator's own error. The 80-bit answers are rounded to double. The start's quaternion, in doubles, is unit to
+9e-17. Times are the thread's CPU time, the least of repeats, all 601 samples included, without heyoka's compilation.
 """
 
 import json

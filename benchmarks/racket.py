@@ -2,10 +2,10 @@
 
     python benchmarks/racket.py              # --add: only the solvers without stored results; --draw: the picture alone
 
-The homework's block (0.20, 0.40, 0.52) is thrown at omega = (e, 5, e) rad/s and followed for 200 s, for e from 1 to 1e-15.
-Truth: the closed form of tests/reference with mpmath at 110 digits, at 41 times. Every solver runs at the tightest setting
-that its makers document or accept, symplectic in steps of 0.02 s. A peer that is not installed is named as missing.
-Writes benchmarks/results/racket.json and docs/pictures/racket.svg and .png.
+The homework's block (0.20, 0.40, 0.52) is thrown at omega = (e, 5, e) rad/s and followed for 200 s, for e from 1 to
+1e-15. Truth: the closed form of tests/reference with mpmath at 110 digits, at 41 times. Every solver runs at the
+tightest setting that its makers document or accept, symplectic in steps of 0.02 s. A peer that is not installed is
+named as missing. Writes benchmarks/results/racket.json and docs/pictures/racket.svg and .png.
 """
 
 import json
@@ -120,7 +120,8 @@ def measure(stored):
                 if q is not None:
                     worst = max(worst, attitude_error(q / np.linalg.norm(q, axis=1)[:, None], attitude))
             results["errors"][name].append(float(worst) if np.isfinite(worst) else None)
-        last = {name: errors[-1] if errors else None for name, errors in results["errors"].items() if name not in stored}
+        last = {name: errors[-1] if errors else None
+                for name, errors in results["errors"].items() if name not in stored}
         print(f"{e:8.0e}", *(f"{name}: {'-' if error is None else f'{error:.1e}'}" for name, error in last.items()),
               sep="  ", flush=True)
     results["errors"] |= stored
@@ -130,7 +131,8 @@ def measure(stored):
 COLOURS = {"polhode, closed form": style.colour("FreeMotion"), "polhode, taylor": style.colour("taylor"),
            "polhode, symplectic": style.colour("symplectic"), "polhode, radau": style.colour("radau"),
            "polhode, rk45": style.colour("rk45"),
-           "SciPy DOP853": style.colour("SciPy DOP853"), "heyoka, Taylor": "#8c6bb1", "textbook form, SciPy's ellipj": "#a6761d"}
+           "SciPy DOP853": style.colour("SciPy DOP853"), "heyoka, Taylor": "#8c6bb1",
+           "textbook form, SciPy's ellipj": "#a6761d"}
 
 
 def draw(results):
@@ -154,8 +156,9 @@ def draw(results):
         axes.text(1.4, 4.5, "upside down", color=style.QUIET, fontsize=8.5)
         axes.legend(frameon=False, loc="upper right", bbox_to_anchor=(1.0, 0.88), fontsize=9)
         style.heading(figure, "The racket: the closed form and separatrix variables keep it",
-                      "Block (0.20, 0.40, 0.52) kg m², error of rates and attitude against 110 digits; tightest tolerances.\n"
-                      "taylor, radau, symplectic (steps of 0.02 s) carry separatrix variables, other methods the rates.",
+                      "Block (0.20, 0.40, 0.52) kg m², error of rates and attitude against 110 digits; tightest "
+                      "tolerances.\ntaylor, radau, symplectic (steps of 0.02 s) carry separatrix variables, other methods "
+                      "the rates.",
                       0.09)
         paths = style.save(figure, folder, "racket")
         plt.close(figure)

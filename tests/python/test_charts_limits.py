@@ -6,7 +6,7 @@ from matplotlib.text import Text
 import polhode as ph
 from polhode.charts import pictures
 from polhode.charts.measure import Point, SceneResult
-from polhode.charts.truth import Truth
+from polhode._harness.truth import Truth
 
 SCENE = ph.Scene(inertia=(1.0, 2.0, 2.5), omega=(1.0, 2.0, 3.0), times=np.linspace(0, 1, 5), name="tiny")
 TRUTH = Truth(np.ones((1, 3)), np.ones((1, 4)), "stored", "", 3e-16, 1e-13)
@@ -15,7 +15,8 @@ VALUES = [10.0**-k for k in range(3, 13)]
 
 def curve(name, family, least):
     """Errors as small as the tolerance, but not below `least`."""
-    return [Point(name, family, f"{v:g}", v, error=max(v, least), seconds=1e-3 * v**-0.2, repeats=1, stats={"steps": 100})
+    return [Point(name, family, f"{v:g}", v, error=max(v, least),
+                  seconds=1e-3 * v**-0.2, repeats=1, stats={"steps": 100})
             for v in VALUES]
 
 

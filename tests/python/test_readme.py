@@ -80,7 +80,7 @@ def commands(page):
 
 
 def check(words):
-    """Raise unless there is such a command: make's target, polhode's verb and options, pip's extras, a script's file."""
+    """Raise unless there is such a command: a target, a verb with its options, an extra, or a script's file."""
     program, first, *rest = words
     if program == "make":
         assert re.search(rf"^{re.escape(first)}:", (ROOT / "Makefile").read_text(), flags=re.M), f"no target {first}"
@@ -108,6 +108,7 @@ def test_the_commands_of_a_page_exist(page):
 def test_commands_are_found_and_wrong_ones_refused():
     found = commands(ROOT / "README.md")
     assert ["polhode", "plan", "S7b"] in found and ["make", "test"] in found
-    for wrong in ("make nothing", "polhode nothing", "polhode run S5 --nothing", "pip install '.[nothing]'", "python no.py"):
+    for wrong in ("make nothing", "polhode nothing", "polhode run S5 --nothing", "pip install '.[nothing]'",
+                  "python no.py"):
         with pytest.raises(AssertionError):
             check(shlex.split(wrong))

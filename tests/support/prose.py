@@ -4,8 +4,8 @@
 
 Prints for each page the mean, the share of sentences above 25 words and the longest sentence; exits with 1 if a mean is
 above the limit. Counted is running text: paragraphs, quotations and list items. Code blocks, indented blocks, tables,
-headings, displayed formulas, pictures and HTML tags are left out. Code in a line and a formula in a line are one word each;
-of a link only its text counts. A sentence ends at a full stop, a question or exclamation mark, and at the end of its
+headings, displayed formulas, pictures and HTML tags are left out. Code in a line and a formula in a line are one word
+each; of a link only its text counts. A sentence ends at a full stop, a question or exclamation mark, and at the end of its
 paragraph or list item; a colon or a semicolon does not end it. Fragments of one or two words are not sentences.
 """
 
@@ -102,7 +102,8 @@ def main(arguments: list[str] | None = None) -> int:
     for page in asked.pages:
         prose = count(page.read_text(encoding="utf-8"))
         above += prose.mean > asked.mean
-        print(f"{prose.mean:5.1f} words a sentence, {100 * prose.share_long:3.0f} % of {len(prose.sentences)} above {LONG}: {page}")
+        print(f"{prose.mean:5.1f} words a sentence, {100 * prose.share_long:3.0f} % of {len(prose.sentences)} above "
+              f"{LONG}: {page}")
         for words, sentence in prose.sentences[:asked.worst]:
             print(f"        {words}: {sentence}")
     return int(above > 0)

@@ -21,8 +21,8 @@ import numpy as np
 ROOT = pathlib.Path(__file__).parents[2]
 STORE = ROOT / "tests/reference/same_bits.json"
 LEVELS = {"baseline": "baseline", "avx2": "wide", "avx512": "wide"}   # AVX2 and AVX-512 have the same bits
-FIXED_STEPS = {"S1": 0.01, "S2": 0.01, "S3": 0.01, "S4": 0.01, "S5": 0.01, "S5c": 0.01, "S6": 5.0, "S7": 0.01, "S7b": 1e-5,
-               "S9": 0.01, "N2": 0.01, "Z1": 0.01}
+FIXED_STEPS = {"S1": 0.01, "S2": 0.01, "S3": 0.01, "S4": 0.01, "S5": 0.01, "S5c": 0.01, "S6": 5.0, "S7": 0.01,
+               "S7b": 1e-5, "S9": 0.01, "N2": 0.01, "Z1": 0.01}
 SPANS = {"S7b": 0.05}   # of fixed steps; else the scene's own, at most 2000 steps
 
 
@@ -104,10 +104,12 @@ def closed_forms(ph):
         yield f"top {name}, grid", lambda m=top: m.at(grid)
     moments, omega, attitude, t = bodies(1003, 2)
     yield "free bodies, one state each", lambda: ph.free_motion(moments, omega, attitude, t)
-    yield "free bodies, few, grid", lambda: ph.free_motion(moments[:37, None], omega[:37, None], attitude[:37, None], grid)
+    yield "free bodies, few, grid", lambda: ph.free_motion(
+        moments[:37, None], omega[:37, None], attitude[:37, None], grid)
     tensors = full_tensors(57, 3)
     for i in range(3):
-        yield f"free bodies, one full tensor {i}", lambda i=i: ph.free_motion(ph.InertiaTensor(tensors[i]), omega[:9, None], attitude[:9, None], t[:9])
+        yield f"free bodies, one full tensor {i}", lambda i=i: ph.free_motion(
+            ph.InertiaTensor(tensors[i]), omega[:9, None], attitude[:9, None], t[:9])
     tops = np.sort(moments[:301], axis=1)[:, [2, 2, 0]]   # prolate
     yield "tops, one state each", lambda: ph.heavy_top(tops, 2.0, omega[:301], attitude[:301], t[:301] / 50)
     yield "tops, grid", lambda: ph.heavy_top(tops[:11, None], 2.0, omega[:11, None], attitude[:11, None], grid)
@@ -131,9 +133,10 @@ def drawn_scenes(ph):
     }
     times = (0.0, 1.0, 0.25, -2.0, 3.0, -0.5, 7.5, 3.0)
     for name, torques in lists.items():
-        yield name, ph.Scene(inertia=(1, 2, 2.5), omega=(0.3, 0.2, 3), attitude=TILTED, torques=torques, times=times, name=name)
+        common = {"torques": torques, "times": times, "name": name}
+        yield name, ph.Scene(inertia=(1, 2, 2.5), omega=(0.3, 0.2, 3), attitude=TILTED, **common)
         full = ((2, 0.25, -0.125), (0.25, 3, 0.5), (-0.125, 0.5, 4))
-        yield f"{name}, full tensor", ph.Scene(inertia=full, omega=(1, 2, 3), torques=torques, times=times, t0=0.5, name=name)
+        yield f"{name}, full tensor", ph.Scene(inertia=full, omega=(1, 2, 3), t0=0.5, **common)
 
 
 def motion_parts(motion):
@@ -182,7 +185,8 @@ def plans(ph):
         found.pop("costs")
         return (json.dumps(found, sort_keys=True),)
 
-    scenes = [ph.Scene.load(ROOT / "scenes" / f"{name}.toml") for name in FIXED_STEPS] + [s for _, s in drawn_scenes(ph)]
+    scenes = [ph.Scene.load(ROOT / "scenes" / f"{name}.toml") for name in FIXED_STEPS]
+    scenes += [scene for _, scene in drawn_scenes(ph)]
     for i, scene in enumerate(scenes):
         for accuracy in (1e-3, 1e-8, 1e-12):
             yield f"plan {i} of {scene.name}, {accuracy:g}", lambda s=scene, a=accuracy: parts(ph.plan(s, accuracy=a))
@@ -237,8 +241,8 @@ def compute_at(level):
     """The hashes at one level of SIMD, in a process of its own; None where the machine does not have it."""
     with tempfile.TemporaryDirectory() as cache:   # no cost factors of somebody's calibration
         environment = {**os.environ, "POLHODE_SIMD": level, "POLHODE_CACHE": cache}
-        done = subprocess.run([sys.executable, __file__, "--compute"], env=environment, stdout=subprocess.PIPE, text=True,
-                              check=True)
+        done = subprocess.run([sys.executable, __file__, "--compute"], env=environment, stdout=subprocess.PIPE,
+                              text=True, check=True)
     found = json.loads(done.stdout)
     return found["hashes"] if found["level"] == level else None
 
