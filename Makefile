@@ -16,7 +16,7 @@ $(shell mkdir -p build; find python/polhode -type f -not -name '*.py[ci]' | sort
 inputs := build/.names $(shell find CMakeLists.txt pyproject.toml cpp python/CMakeLists.txt python/bindings \
             tests/cpp/CMakeLists.txt scenes -type f 2>/dev/null)
 
-.PHONY: help demo test check-long install module sanitize stubs clean
+.PHONY: help demo test same-bits check-long install module sanitize stubs clean
 # An environment whose Python has gone is made anew.
 ifneq ($(shell $(VENV)/bin/python -c 'import pip; print("there")' 2>/dev/null),there)
 .PHONY: $(VENV)/.ready
@@ -48,6 +48,10 @@ test: install
 	@cmake --build $(BUILD) -j $(JOBS) --target polhode_tests polhode_headers_alone | sed -n '/warning\|error/p'
 	@$(BUILD)/tests/cpp/polhode_tests
 	@$(PYTHON) -m pytest
+
+# Hashes of some hundred answers at every level of SIMD: the same on every machine. `--write` remakes them.
+same-bits: install
+	@$(PYTHON) tests/support/same_bits.py
 
 check-long: install
 	@$(PYTHON) -m pytest -m "long or not long"

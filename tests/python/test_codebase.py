@@ -12,7 +12,7 @@ import pytest
 import polhode
 
 ROOT = pathlib.Path(__file__).parents[2]
-ORDER = ["core", "math", "attitude", "inertia", "torque", "exact", "ode", "scene", "solve", "batch"]
+ORDER = ["core", "math", "attitude", "inertia", "torque", "exact", "ode", "scene", "method", "solve", "batch"]
 MAY_USE = {
     "core": [],
     "math": ["core"],
@@ -22,9 +22,11 @@ MAY_USE = {
     "exact": ["core", "math", "attitude", "inertia"],
     "ode": ["core", "math"],
     "scene": ["core", "math", "attitude", "inertia", "torque"],
-    "solve": ORDER[:8],
-    "batch": ORDER[:9],
+    "method": ORDER[:8],
+    "solve": ORDER[:9],
+    "batch": ORDER[:10],
 }
+OLD_PLACES = {"euler_formulas", "euler_problem", "lagrangian_problem", "methods"}   # headers of one line until 0.3
 
 
 def sources(*folders, suffixes=(".hpp", ".cpp", ".inl", ".def")):
@@ -36,10 +38,40 @@ def sources(*folders, suffixes=(".hpp", ".cpp", ".inl", ".def")):
 def test_includes_only_run_along_the_arrows(word):
     wrong = []
     for path in sources(f"cpp/include/polhode/{word}", f"cpp/src/{word}"):
-        for used in re.findall(r'#include ["<]polhode/(\w+)/', path.read_text()):
-            if used != word and used not in MAY_USE[word]:
+        for used in re.findall(r'#include ["<](?:polhode/)?(\w+)/', path.read_text()):
+            if used in ORDER and used != word and used not in MAY_USE[word]:
                 wrong.append(f"{path.relative_to(ROOT)} uses {used}")
     assert not wrong
+
+
+def rooms(word):
+    """The private files of a word by their names without ending, each with those that it includes."""
+    found = {}
+    for path in sources(f"cpp/src/{word}"):
+        room = path.relative_to(ROOT / "cpp/src").with_suffix("").as_posix()
+        used = re.findall(rf'#include "({word}/[\w/]+)\.(?:hpp|inl)"', path.read_text())
+        found.setdefault(room, set()).update(set(used) - {room})
+    return found
+
+
+@pytest.mark.parametrize("word", ORDER)
+def test_no_private_include_runs_back_up(word):
+    # Kernels per instruction set include the table of levels that names them.
+    below = {room: {used for used in all_used if "/lanes/" not in used} for room, all_used in rooms(word).items()}
+    while below:
+        floor = {room for room, used in below.items() if not used & below.keys()}
+        assert floor, f"a circle among {sorted(below)}"
+        below = {room: used for room, used in below.items() if room not in floor}
+
+
+def test_kernels_are_not_shown_as_api():
+    pages = [p for folder in ("examples", "docs") for p in (ROOT / folder).rglob("*") if p.suffix in (".md", ".cpp", ".py")]
+    assert not [p for p in pages if re.search(r"polhode/\w+/detail/", p.read_text())]
+
+
+def test_old_headers_name_the_new_place():
+    for name in OLD_PLACES:
+        assert f'#include "polhode/method/{name}.hpp"' in (ROOT / f"cpp/include/polhode/solve/{name}.hpp").read_text()
 
 
 def test_no_python_under_cpp():

@@ -4,28 +4,13 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <numbers>
 
 #include "solve/candidates.hpp"
 #include "solve/certify_carried.hpp"
 #include "solve/certify_pair.hpp"
-#include "solve/options.hpp"
 #include "solve/pilot.hpp"
-#include "solve/planned_run.hpp"
 
 namespace polhode {
-
-Motion CountedRuns::run(const Scene& scene, const SolveOptions& options, double rtol, bool perturb_joins,
-                        ode::ErrorTrace* trace) {
-  const double atol = options.atol.value_or(find_atol(method_.record, decision_.scene, rtol));
-  Motion motion = decision_.pieces.size() == 0
-                      ? Motion(method_.integrate(scene, to_run_options(options, {rtol, atol}, trace)))
-                      : run_planned(decision_, scene, options, rtol, perturb_joins);
-  stats_ += motion.stats;
-  ++runs_;
-  return motion;
-}
-
 namespace {
 
 constexpr int pilot_intervals = 48;        // of the span, to count its revolutions

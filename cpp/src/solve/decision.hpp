@@ -18,11 +18,4 @@ struct Decision {
   double turns = 0.0;                      ///< of all pieces together, as a person counts revolutions
 };
 
-/// @throws InvalidInput for a method that does not take the scene; `options` have been checked
-Decision decide(const Scene& scene, const SolveOptions& options);
-
-Motion execute(const Decision& decision, const SolveOptions& options);
-
-PlanReport explain(const Decision& decision, const SolveOptions& options);
-
 }  // namespace polhode

@@ -5,8 +5,9 @@
 
 #include "method/method.hpp"
 #include "solve/candidates.hpp"
-#include "solve/decision.hpp"
+#include "solve/decide.hpp"
 #include "solve/distance.hpp"
+#include "solve/explain.hpp"
 #include "solve/explain_pieces.hpp"
 #include "solve/options.hpp"
 #include "solve/perturb.hpp"

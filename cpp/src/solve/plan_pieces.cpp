@@ -9,6 +9,7 @@
 #include "solve/candidates.hpp"
 #include "solve/exact_run.hpp"
 #include "solve/options.hpp"
+#include "solve/piece_runner.hpp"
 #include "solve/pilot.hpp"
 
 namespace polhode {

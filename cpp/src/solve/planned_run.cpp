@@ -10,6 +10,7 @@
 #include "solve/exact_run.hpp"
 #include "solve/options.hpp"
 #include "solve/perturb.hpp"
+#include "solve/piece_runner.hpp"
 
 namespace polhode {
 namespace {

@@ -5,7 +5,8 @@
 
 #include "polhode/solve/invariants.hpp"
 #include "solve/custom_check.hpp"
-#include "solve/decision.hpp"
+#include "solve/decide.hpp"
+#include "solve/execute.hpp"
 #include "solve/options.hpp"
 
 namespace polhode {

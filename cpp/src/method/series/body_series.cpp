@@ -299,7 +299,7 @@ void BodySeries::keep_unit(double* y, double* carry) {
   const double lack = 0.5 * (1.0 - norm) - cross;
   for (int i = 4; i < 8; ++i) {
     const DD sum = math::two_sum(y[i], carry[i] + lack * y[i]);
-    y[i] = restored.hi, carry[i] = restored.lo;
+    y[i] = sum.hi, carry[i] = sum.lo;
   }
 }
 

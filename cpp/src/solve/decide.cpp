@@ -1,14 +1,10 @@
-#include "solve/decision.hpp"
+#include "solve/decide.hpp"
 
-#include "method/method.hpp"
 #include "polhode/core/error.hpp"
 #include "solve/candidates.hpp"
-#include "solve/certify.hpp"
-#include "solve/exact_run.hpp"
 #include "solve/method_switch.hpp"
 #include "solve/options.hpp"
 #include "solve/plan_pieces.hpp"
-#include "solve/planned_run.hpp"
 
 namespace polhode {
 namespace {
@@ -16,21 +12,6 @@ namespace {
 [[noreturn]] void throw_no_closed_form(const Scene& scene, const Facts& facts) {
   throw InvalidInput("method 'exact'", "used where a closed form holds", exact_models().back().refuse(scene, facts),
                      "no closed form is known for it; leave method out");
-}
-
-/// By tolerances of a step, or steps of one length: the error is not estimated.
-Motion run_by_tolerance(const Decision& decision, const SolveOptions& options) {
-  const BodyMethod& method = find_body_method(decision.plan.method);
-  const StepTolerances step = choose_tolerances(method.record, options);
-  const auto run_piece = [&](const Scene& scene, const Piece&, const SolveOptions& piece_options) {
-    return Motion(method.integrate(scene, to_run_options(piece_options, step.tolerances)));
-  };
-  Motion motion = decision.pieces.size() == 0
-                      ? Motion(method.integrate(decision.scene, to_run_options(options, step.tolerances)))
-                      : run_pieces(decision.scene, decision.pieces, options, run_piece);
-  motion.plan = decision.plan;
-  describe_end(step, motion);
-  return motion;
 }
 
 }  // namespace
@@ -64,13 +45,6 @@ Decision decide(const Scene& scene, const SolveOptions& options) {
   }
   if (!plan_damped(decision, options)) decision.plan = make_method_plan(decision.scene, decision.facts, options);
   return decision;
-}
-
-Motion execute(const Decision& decision, const SolveOptions& options) {
-  if (is_by_tolerance(options)) return run_by_tolerance(decision, options);
-  if (decision.form) return run_closed_form(decision.scene, decision.facts, options, *decision.form, decision.plan);
-  if (decision.plan.method == "exact") return solve_exact_pieces(decision, options);
-  return certify(decision, options);
 }
 
 Plan make_plan(const Scene& scene, const SolveOptions& options) { return decide(scene, options).plan; }
