@@ -177,7 +177,9 @@ TEST_CASE(
     const Drifts drifts = compute_drifts(scene, solve(scene, options));
     const std::pair<const char*, double> kept[] = {
         {"energy", drifts.energy}, {"|L|", drifts.size}, {"L", drifts.vector}};
-    for (const auto& [invariant, drift] : kept) {
+    for (const auto& each : kept) {   // CAPTURE is a lambda, which in C++20 Clang lets no structured binding into
+      const char* const invariant = each.first;
+      const double drift = each.second;
       CAPTURE(invariant);
       if (claims(method, invariant)) {
         CHECK(drift < 2e-13);

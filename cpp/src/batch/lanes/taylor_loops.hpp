@@ -144,7 +144,8 @@ class LaneSeries {
     const auto over = [&](Wide a) { return early && n == 2 ? a / count : a * inverse; };   // 1, 1/2 and 1/4 are exact
     Sums sums;
     sum_rates(b_, pass_, n, sums);
-    const auto &p = sums.p, &a = sums.a, &o = sums.o;
+    const auto& p = sums.p;
+    const auto &a = sums.a, &o = sums.o;
     Wide tau[3] = {zero, zero, zero};
     if (n == 0)
       for (int i = 0; i < 3; ++i) tau[i] = torque_[i];

@@ -76,7 +76,7 @@ class BodyStepper final : public ode::FixedStepper {
       std::copy_n(L_old_, momenta, L);
       std::copy_n(q_old_, 4, q);
       Step step = earlier_;
-      advance(step, t_old_, node(k) * h_taken(), L, q);
+      advance_body(step, t_old_, node(k) * h_taken(), L, q);
       put_node(k, L, q);
     }
     for (int level = 1; level < nodes; ++level) {
@@ -127,7 +127,7 @@ class BodyStepper final : public ode::FixedStepper {
     std::copy_n(L_, momenta, L);
     std::copy_n(q_, 4, q);
     Step next = step_;
-    if (!advance(next, t, h, L, q)) return ode::StepResult::no_solution;
+    if (!advance_body(next, t, h, L, q)) return ode::StepResult::no_solution;
     if (!std::isfinite(L[0] + L[1] + L[2]) || !std::isfinite(q[0] + q[1] + q[2] + q[3]))
       return ode::StepResult::not_finite;
     std::copy_n(L_, momenta, L_old_);
@@ -140,7 +140,7 @@ class BodyStepper final : public ode::FixedStepper {
     return ode::StepResult::accepted;
   }
 
-  bool advance(Step& one, double t, double h, double* L, double* q) {
+  bool advance_body(Step& one, double t, double h, double* L, double* q) {
     constexpr double none[3] = {0, 0, 0};
     const double scaled = body_.to_scaled_time(h);
     bool solved = true;

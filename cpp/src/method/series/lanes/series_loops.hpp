@@ -297,7 +297,7 @@ void expand(const SeriesTerms& terms, const SeriesStart& start, int order, doubl
   expansion.template advance_pair<true>(2, products);
   int n = 4;
   for (; n + 1 < order; n += 2) expansion.template advance_pair<false>(n, products);
-  if (n < order) expansion.template advance_last(n, products);
+  if (n < order) expansion.advance_last(n, products);
 }
 
 template <bool separatrix>
