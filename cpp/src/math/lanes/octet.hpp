@@ -37,37 +37,33 @@ POLHODE_INLINE Quad blend(Quad a, Quad b) {
 
 #else
 
+// A vector type, which the compiler splits into registers itself: an array of four doubles costs it minutes a file.
 struct Quad {
-  double v[4];
+  typedef double Vector __attribute__((vector_size(32)));
+  typedef long long Bits __attribute__((vector_size(32)));
+  Vector v;
 };
-POLHODE_INLINE Quad load4(const double* p) { return {{p[0], p[1], p[2], p[3]}}; }
+POLHODE_INLINE Quad set4(double a, double b, double c, double d) { return {Quad::Vector{a, b, c, d}}; }
+POLHODE_INLINE Quad all4(double a) { return set4(a, a, a, a); }
+POLHODE_INLINE Quad load4(const double* p) { return set4(p[0], p[1], p[2], p[3]); }
 POLHODE_INLINE void store4(double* p, Quad a) {
   for (int i = 0; i < 4; ++i) p[i] = a.v[i];
 }
-POLHODE_INLINE Quad all4(double a) { return {{a, a, a, a}}; }
-POLHODE_INLINE Quad set4(double a, double b, double c, double d) { return {{a, b, c, d}}; }
-#define POLHODE_EACH(name, expression)                 \
-  POLHODE_INLINE Quad name(Quad a, Quad b) {           \
-    Quad r;                                            \
-    for (int i = 0; i < 4; ++i) r.v[i] = expression;   \
-    return r;                                          \
-  }
-POLHODE_EACH(operator+, a.v[i] + b.v[i])
-POLHODE_EACH(operator-, a.v[i] - b.v[i])
-POLHODE_EACH(operator*, a.v[i] * b.v[i])
-POLHODE_EACH(operator/, a.v[i] / b.v[i])
-POLHODE_EACH(operator^, __builtin_signbit(b.v[i]) ? -a.v[i] : a.v[i])
-#undef POLHODE_EACH
+POLHODE_INLINE Quad operator+(Quad a, Quad b) { return {a.v + b.v}; }
+POLHODE_INLINE Quad operator-(Quad a, Quad b) { return {a.v - b.v}; }
+POLHODE_INLINE Quad operator*(Quad a, Quad b) { return {a.v * b.v}; }
+POLHODE_INLINE Quad operator/(Quad a, Quad b) { return {a.v / b.v}; }
+POLHODE_INLINE Quad operator^(Quad a, Quad signs) {
+  return {reinterpret_cast<Quad::Vector>(reinterpret_cast<Quad::Bits>(a.v) ^ reinterpret_cast<Quad::Bits>(signs.v))};
+}
 POLHODE_INLINE Quad madd(Quad a, Quad b, Quad c) { return a * b + c; }
 template <int a, int b, int c, int d>
 POLHODE_INLINE Quad permute(Quad q) {
-  return {{q.v[a], q.v[b], q.v[c], q.v[d]}};
+  return {__builtin_shufflevector(q.v, q.v, a, b, c, d)};
 }
 template <int mask>
 POLHODE_INLINE Quad blend(Quad a, Quad b) {
-  Quad r;
-  for (int i = 0; i < 4; ++i) r.v[i] = (mask >> i & 1) != 0 ? b.v[i] : a.v[i];
-  return r;
+  return {__builtin_shufflevector(a.v, b.v, mask & 1 ? 4 : 0, mask & 2 ? 5 : 1, mask & 4 ? 6 : 2, mask & 8 ? 7 : 3)};
 }
 
 #endif
