@@ -2,6 +2,10 @@
 
 namespace polhode {
 
+void SeveralTorques::add(const TorqueInput& in, double* tau_B) const {
+  for (const AnyTorque& torque : torques) std::visit([&](const auto& one) { one.add(in, tau_B); }, torque);
+}
+
 TorqueTraits traits(const AnyTorque& torque) {
   return std::visit([](const auto& any) { return any.traits(); }, torque);
 }

@@ -13,14 +13,6 @@ struct NoTorque {
   void add(const TorqueInput&, double*) const {}
 };
 
-/// Several torques acting together.
-struct SeveralTorques {
-  const std::vector<AnyTorque>& torques;
-  void add(const TorqueInput& in, double* tau_B) const {
-    for (const AnyTorque& torque : torques) std::visit([&](const auto& one) { one.add(in, tau_B); }, torque);
-  }
-};
-
 /// Euler's equations I w' = tau + (I w) x w, and q' = q (w, 0) / 2 when the attitude is carried along.
 /// State: w_B [rad/s] and, `with_attitude`, q_WB. `diagonal`: the body axes are principal axes.
 template <class Torque, bool diagonal, bool with_attitude>

@@ -2,6 +2,7 @@
 
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "polhode/torque/during.hpp"
 #include "polhode/torque/list.hpp"
@@ -27,6 +28,12 @@ struct TorqueSum {
   bool keeps_energy = true;         ///< all potentials are fixed in space
   bool keeps_jacobi = false;        ///< all potentials rotate at pattern_rate: energy - pattern_rate L_z is constant
   double pattern_rate = 0.0;
+};
+
+/// Torques acting together, of any kinds: one function for all that evaluates them, compiled once.
+struct SeveralTorques {
+  const std::vector<AnyTorque>& torques;
+  void add(const TorqueInput& in, double* tau_B) const;
 };
 
 TorqueTraits traits(const AnyTorque& torque);
