@@ -45,9 +45,9 @@ py::object get_torque(const During& torque) {
   return from_torque(std::visit([](const auto& one) { return AnyTorque(one); }, torque.torque()));
 }
 
-py::tuple get_state(const During& torque) { return py::make_tuple(get_torque(torque), from_windows(torque)); }
+py::tuple get_during_state(const During& torque) { return py::make_tuple(get_torque(torque), from_windows(torque)); }
 
-constexpr const char* doc =
+constexpr const char* during_doc =
     R"doc(During(torque, windows)
 
 Another torque within windows of time, and none outside: a thruster's firings, a brake that is let go.
@@ -71,7 +71,7 @@ InvalidInput
 }  // namespace
 
 void bind_during(py::module_& m) {
-  py::class_<During>(m, "During", doc)
+  py::class_<During>(m, "During", during_doc)
       .def(py::init([](const py::object& torque, const py::object& windows) {
              return During(to_lasting(torque), to_windows(windows));
            }),
@@ -88,10 +88,10 @@ void bind_during(py::module_& m) {
            })
       .def("__eq__",
            [](const During& a, const py::object& b) {
-             return py::isinstance<During>(b) && get_state(a).equal(get_state(b.cast<const During&>()));
+             return py::isinstance<During>(b) && get_during_state(a).equal(get_during_state(b.cast<const During&>()));
            })
-      .def("__hash__", [](const During& torque) { return py::hash(get_state(torque)); })
-      .def(py::pickle(&get_state,
+      .def("__hash__", [](const During& torque) { return py::hash(get_during_state(torque)); })
+      .def(py::pickle(&get_during_state,
                       [](const py::tuple& state) { return During(to_lasting(state[0]), to_windows(state[1])); }));
 }
 

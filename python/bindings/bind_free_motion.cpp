@@ -9,7 +9,7 @@
 namespace polhode::python {
 namespace {
 
-FreeMotion make(py::handle inertia, py::handle omega, py::handle attitude) {
+FreeMotion make_free_motion(py::handle inertia, py::handle omega, py::handle attitude) {
   const Vector3d w = to_vector3(omega, "omega");
   const Quat q = to_attitude(attitude, "attitude");
   if (py::isinstance<InertiaTensor>(inertia)) return {inertia.cast<const InertiaTensor&>(), w, q};
@@ -57,7 +57,8 @@ Notes
 -----
 Jacobi (1850), "Sur la rotation d'un corps", J. reine angew. Math. 39, in the Cayley-Klein form; see docs/exact.md.)");
   cls.attr("__module__") = "polhode";
-  cls.def(py::init(&make), py::arg("inertia"), py::arg("omega"), py::arg("attitude") = py::make_tuple(0, 0, 0, 1))
+  cls.def(py::init(&make_free_motion), py::arg("inertia"), py::arg("omega"),
+          py::arg("attitude") = py::make_tuple(0, 0, 0, 1))
       .def("at", &at<FreeMotion>, py::arg("t"), R"(Angular velocity and attitude at the given times.
 
 Parameters
@@ -153,7 +154,7 @@ ndarray, shape (n,)
       });
   cls.def(py::pickle(
       [](const FreeMotion& f) { return py::make_tuple(f.inertia(), from_vector3(f.omega()), from_quat(f.attitude())); },
-      [](const py::tuple& s) { return make(s[0], s[1], s[2]); }));
+      [](const py::tuple& s) { return make_free_motion(s[0], s[1], s[2]); }));
 }
 
 }  // namespace polhode::python

@@ -11,7 +11,7 @@
 namespace polhode::python {
 namespace {
 
-HeavyTop make(py::handle inertia, py::handle weight_arm, py::handle omega, py::handle attitude) {
+HeavyTop make_heavy_top(py::handle inertia, py::handle weight_arm, py::handle omega, py::handle attitude) {
   const double arm = to_real(weight_arm, "weight_arm");
   const Vector3d w = to_vector3(omega, "omega");
   const Quat q = to_attitude(attitude, "attitude");
@@ -53,7 +53,7 @@ Notes
 -----
 F. Klein and A. Sommerfeld, "Ueber die Theorie des Kreisels" (1897-1910); see docs/heavy_top.md.)");
   cls.attr("__module__") = "polhode";
-  cls.def(py::init(&make), py::arg("inertia"), py::arg("weight_arm"), py::arg("omega"),
+  cls.def(py::init(&make_heavy_top), py::arg("inertia"), py::arg("weight_arm"), py::arg("omega"),
           py::arg("attitude") = py::make_tuple(0, 0, 0, 1))
       .def("at", &at<HeavyTop>, py::arg("t"), R"(Angular velocity and attitude at the given times.
 

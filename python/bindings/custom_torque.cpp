@@ -158,13 +158,13 @@ Custom make_custom(const py::object& function, bool uses_time, bool uses_attitud
                 std::move(owner));
 }
 
-py::tuple get_state(const Custom& torque) {
+py::tuple get_custom_state(const Custom& torque) {
   const Owner& owner = *static_cast<const Owner*>(torque.owner().get());
   return py::make_tuple(owner.function, owner.claims.uses_time, owner.claims.uses_attitude, owner.claims.uses_rates,
                         owner.potential, owner.data);
 }
 
-constexpr const char* doc =
+constexpr const char* custom_doc =
     R"doc(Custom(function, *, uses_time=True, uses_attitude=True, uses_rates=True, potential=None, data=None)
 
 A torque of your own.
@@ -194,22 +194,23 @@ InvalidInput
 }  // namespace
 
 void bind_custom_torque(py::module_& m) {
-  py::class_<Custom> type(m, "Custom", doc);
+  py::class_<Custom> type(m, "Custom", custom_doc);
   type.def(py::init(&make_custom), py::arg("function"), py::kw_only(), py::arg("uses_time") = true,
            py::arg("uses_attitude") = true, py::arg("uses_rates") = true, py::arg("potential") = py::none(),
            py::arg("data") = py::none());
-  type.def_property_readonly("function", [](const Custom& torque) -> py::object { return get_state(torque)[0]; });
+  type.def_property_readonly("function",
+                             [](const Custom& torque) -> py::object { return get_custom_state(torque)[0]; });
   type.def_property_readonly("traits", [](const Custom& torque) {
     return describe_traits(torque.traits());
   });
   type.def("__repr__", [](const Custom& torque) {
-    return "polhode.torques.Custom(" + std::string(py::repr(get_state(torque)[0])) + ")";
+    return "polhode.torques.Custom(" + std::string(py::repr(get_custom_state(torque)[0])) + ")";
   });
   type.def("__eq__", [](const Custom& a, const py::object& b) {
-    return py::isinstance<Custom>(b) && get_state(a).equal(get_state(b.cast<const Custom&>()));
+    return py::isinstance<Custom>(b) && get_custom_state(a).equal(get_custom_state(b.cast<const Custom&>()));
   });
-  type.def("__hash__", [](const Custom& torque) { return py::hash(get_state(torque)[0]); });
-  type.def(py::pickle(&get_state, [](const py::tuple& s) {
+  type.def("__hash__", [](const Custom& torque) { return py::hash(get_custom_state(torque)[0]); });
+  type.def(py::pickle(&get_custom_state, [](const py::tuple& s) {
     return make_custom(s[0], s[1].cast<bool>(), s[2].cast<bool>(), s[3].cast<bool>(), s[4], s[5]);
   }));
 }

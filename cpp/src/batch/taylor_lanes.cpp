@@ -26,7 +26,7 @@ int choose_lane_order(double tolerance) {
   return std::clamp(order, ode::Taylor::least_order, ode::most_series_order - 2);
 }
 
-void put(Row* rows, int lane, const double* values, int n) {
+void put_rows(Row* rows, int lane, const double* values, int n) {
   for (int i = 0; i < n; ++i) rows[i][lane] = values[i];
 }
 
@@ -74,7 +74,7 @@ class TaylorIntegrator final : public LaneIntegrator {
     put_constants(lane, series);
     double carry[8];
     series.start_carry(carry);
-    put(b_.y, lane, series.start(), 8), put(b_.carry, lane, carry, 8);
+    put_rows(b_.y, lane, series.start(), 8), put_rows(b_.carry, lane, carry, 8);
     const double t0 = b_.time[lane];
     b_.time_low[lane] = 0.0, phase_[lane] = series.orbit_phase(), attempts_[lane] = 0;
     const double unit = std::min(series.compute_time_scale(t0, series.start()), std::abs(b_.t_end[lane] - t0));
@@ -119,12 +119,12 @@ class TaylorIntegrator final : public LaneIntegrator {
   void put_constants(int lane, const BodySeries& series) {
     const SeriesTerms& terms = series.terms();
     b_.to_rates[lane] = terms.to_rates[0], b_.orbit_rate[lane] = terms.orbit_rate;
-    put(b_.product, lane, terms.product, 3), put(b_.product_low, lane, terms.product_low, 3),
-        put(b_.torque, lane, terms.torque, 3);
-    for (int j = 0; j < 3; ++j) put(b_.damping[j], lane, terms.damping[j], 3);
+    put_rows(b_.product, lane, terms.product, 3), put_rows(b_.product_low, lane, terms.product_low, 3),
+        put_rows(b_.torque, lane, terms.torque, 3);
+    for (int j = 0; j < 3; ++j) put_rows(b_.damping[j], lane, terms.damping[j], 3);
     for (int i = 0; i < 2; ++i) {
-      for (int j = 0; j < 3; ++j) put(b_.pull[i][j], lane, terms.pull[i][j], 3);
-      put(b_.tidal[i], lane, terms.tidal[i], 3), put(b_.space[i], lane, series.fixed_vector(i).data(), 3);
+      for (int j = 0; j < 3; ++j) put_rows(b_.pull[i][j], lane, terms.pull[i][j], 3);
+      put_rows(b_.tidal[i], lane, terms.tidal[i], 3), put_rows(b_.space[i], lane, series.fixed_vector(i).data(), 3);
       b_.kept[i][lane] = series.kept(i).hi, b_.kept_low[i][lane] = series.kept(i).lo;
     }
     b_.balance[lane] = series.balance();
