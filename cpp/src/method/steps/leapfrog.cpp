@@ -70,7 +70,7 @@ class Leapfrog {
   double M_ = 0.0, phi_ = 0.0, theta_ = 0.0, psi_ = 0.0, p_ = 0.0, p_phi_ = 0.0, p_psi_ = 0.0;
 };
 
-std::string refuse(const Scene& scene) {
+std::string refuse_leapfrog(const Scene& scene) {
   const Matrix3d& I = scene.inertia_B().matrix();
   if (!scene.inertia_B().is_diagonal() || I(0, 0) != I(1, 1)) return "another body";
   if (std::isnan(find_weight_arm(scene))) return "another torque";
@@ -96,7 +96,7 @@ const BodyMethod leapfrog_method{
         .source = "Goldstein, Classical Mechanics, sec. 5.7; Hairer, Lubich & Wanner 2003, Acta Numerica 12, 399",
     },
     &integrate_with<Leapfrog>,
-    &refuse,
+    &refuse_leapfrog,
 };
 
 }  // namespace polhode

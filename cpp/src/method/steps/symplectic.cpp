@@ -88,7 +88,7 @@ class ExactDrift {
   double I_[3];
 };
 
-std::string refuse(const Scene& scene) {
+std::string refuse_symplectic(const Scene& scene) {
   return scene.torque_sum().uses_rates ? "a torque that sees the rates" : "";
 }
 
@@ -108,7 +108,7 @@ const BodyMethod symplectic_method{
         .source = "Blanes & Moan 2002, J. Comput. Appl. Math. 142, 313 (SRKN6b)",
     },
     &integrate_with<ExactDrift>,
-    &refuse,
+    &refuse_symplectic,
 };
 
 }  // namespace polhode
