@@ -49,21 +49,21 @@ TEST_CASE("a batch is the objects, one by one and on the full grid, with one thr
   REQUIRE(free_motion(batch, nullptr, again.data(), 3) == 0);
   CHECK(again == grid_attitude);
   for (std::size_t i = 0; i < 100; ++i) {
-    const State one = many.motion(i).at(many.t[i]), last = many.motion(i).at(times[2]);
+    const State state = many.motion(i).at(many.t[i]), last = many.motion(i).at(times[2]);
     for (Eigen::Index k = 0; k < 3; ++k) {
       const auto u = static_cast<std::size_t>(k);
-      CHECK(std::abs(omega[3 * i + u] - one.omega[k]) <= 2e-15 * one.omega.norm());
+      CHECK(std::abs(omega[3 * i + u] - state.omega[k]) <= 2e-15 * state.omega.norm());
       CHECK(std::abs(grid_omega[9 * i + 6 + u] - last.omega[k]) <= 2e-15 * last.omega.norm());
     }
     const double *q = &attitude[4 * i], *p = &grid_attitude[12 * i + 8];
-    const Quat a = conjugate(one.attitude) * Quat{q[0], q[1], q[2], q[3]},
+    const Quat a = conjugate(state.attitude) * Quat{q[0], q[1], q[2], q[3]},
                b = conjugate(last.attitude) * Quat{p[0], p[1], p[2], p[3]};
     CHECK(std::hypot(a.x, a.y, a.z) <= 1e-15);
     CHECK(std::hypot(b.x, b.y, b.z) <= 1e-15);
   }
 }
 
-TEST_CASE("a batch counts what is not finite, and refuses what no body is") {
+TEST_CASE("a batch counts rows that are not finite, and refuses impossible bodies") {
   Many many;
   std::vector<double> omega(300), attitude(400);
   many.omega[30] = NAN, many.t[99] = INFINITY;

@@ -24,7 +24,7 @@ Scene make_tilted(std::size_t) {
 
 }  // namespace
 
-TEST_CASE("solve_many: a callback ends bodies in lanes, and what they reached is kept") {
+TEST_CASE("solve_many: a callback stops bodies in lanes, and the rows they reached are kept") {
   constexpr std::size_t n = 200;
   SolveOptions options;
   SUBCASE("taylor") { options.method = "taylor"; }
@@ -45,7 +45,7 @@ TEST_CASE("solve_many: a callback ends bodies in lanes, and what they reached is
   CHECK(stopped > 100);
 }
 
-TEST_CASE("solve_many: lanes are taken with taylor and rk45 alone, and options are checked as solve() does") {
+TEST_CASE("solve_many: lanes run taylor and rk45 only, and options are checked as by solve()") {
   SolveOptions options;
   options.rtol = 1e-9;
   for (const char* method : {"taylor", "rk45", "dop853", "rk45 of angles"}) {

@@ -8,11 +8,11 @@
 
 using namespace polhode;
 
-TEST_CASE("the checks of many tensors: margins and flaws, whatever stands beside them") {
+TEST_CASE("the checks of many tensors: margins and flaws do not depend on the neighbours") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<std::vector<double>> rows = {
       {1, 0, 0, 0, 1, 0, 0, 0, 1},     // a sphere
-      {3, 0, 0, 0, 1, 0, 0, 0, 2},     // flat: just so
+      {3, 0, 0, 0, 1, 0, 0, 0, 2},     // flat, at the limit
       {0, 0, 0, 0, 0, 0, 0, 0, 0},     // a point
       {1, 0, 0, 0, 2, 0, 0, 0, 5},     // above the sum of the two others
       {-1, 0, 0, 0, 2, 0, 0, 0, 2},    // negative

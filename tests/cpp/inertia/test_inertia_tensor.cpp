@@ -51,13 +51,13 @@ TEST_CASE("classes and arbitrary directions") {
   CHECK(rod.symmetry() == Symmetry::prolate);
   CHECK(rod.axes() == Matrix3d::Identity());
   CHECK_FALSE(rod.is_positive_definite());
-  CHECK_FALSE(rod.rotated(normalized({0.1, 0.2, 0.3, 0.4})).is_positive_definite());  // whatever rounding made of its 0
-  CHECK(InertiaTensor::from_moments({1e-20, 3, 3}).is_positive_definite());           // exactly what was given
+  CHECK_FALSE(rod.rotated(normalized({0.1, 0.2, 0.3, 0.4})).is_positive_definite());  // its 0 became rounding
+  CHECK(InertiaTensor::from_moments({1e-20, 3, 3}).is_positive_definite());           // exactly as given
   CHECK(InertiaTensor(Matrix3d::Zero()).symmetry() == Symmetry::spherical);
   CHECK(InertiaTensor(make(1, 1 + 1e-9, 1.5)).principal(1e-6).arbitrary() == Arbitrary::plane);
 }
 
-TEST_CASE("turning a tensor keeps its moments and turns its axes") {
+TEST_CASE("rotating a tensor keeps its moments and rotates its axes") {
   const InertiaTensor t(make(4, 5, 6, -0.7, 0.3, 1.1));
   const Quat q = normalized({0.3, -0.2, 0.5, 0.7});
   const InertiaTensor turned = t.rotated(q);
@@ -67,7 +67,7 @@ TEST_CASE("turning a tensor keeps its moments and turns its axes") {
   CHECK(t.about_axis(1e-300 * u) == doctest::Approx(t.about_axis(u)).epsilon(1e-14));
 }
 
-TEST_CASE("what no body can have is refused at the door") {
+TEST_CASE("a tensor that no body can have is refused") {
   CHECK_THROWS_WITH_AS(InertiaTensor::from_moments({1, 2, 5}), doctest::Contains("a deficit of 40 %"), InvalidInput);
   CHECK_THROWS_WITH_AS(InertiaTensor::from_moments({1, 2, 5}), doctest::Contains("(0, 0, 1)"), InvalidInput);
   CHECK(InertiaTensor::from_moments({1, 2, 5}, false).moments() == Vector3d(1, 2, 5));
