@@ -69,7 +69,8 @@ void run_in_lanes(const std::vector<std::unique_ptr<LaneJob>>& jobs, const ode::
                   const std::function<bool()>& stopped) {
   std::vector<LaneJob*> order;
   for (const auto& job : jobs) order.push_back(job.get());
-  std::ranges::stable_sort(order, {}, &LaneJob::kind);
+  std::stable_sort(order.begin(), order.end(),
+                   [](const LaneJob* a, const LaneJob* b) { return a->kind() < b->kind(); });
   for (auto begin = order.begin(); begin != order.end();) {
     const auto end =
         std::find_if(begin, order.end(), [&](const LaneJob* job) { return job->kind() != (*begin)->kind(); });
