@@ -4,7 +4,7 @@
 #include <limits>
 #include <numbers>
 
-#include "exact/error_range.hpp"
+#include "error_range.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/exact/free_motion.hpp"
 

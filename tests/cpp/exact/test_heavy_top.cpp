@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "exact/error_range.hpp"
+#include "error_range.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/exact/free_motion.hpp"
 #include "polhode/exact/heavy_top.hpp"
