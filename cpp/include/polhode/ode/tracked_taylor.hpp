@@ -47,7 +47,7 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   using Base = Taylor::Stepper<P>;
 
  public:
-  /// @param perturbed  the same problem with its constants perturbed by compute_move(trace)
+  /// @param perturbed  the same problem with its constants perturbed by compute_perturbation(trace)
   TrackedTaylor(const P& problem, const P& perturbed, double t0, const double* y0, double t_end,
                 const Tolerances& tolerances, ErrorTrace& trace)
       : Base(problem, t0, y0, t_end, tolerances),
@@ -55,13 +55,13 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
         trace_(trace),
         scale_(find_scale(trace)),
         t0_(t0) {
-    for (int i = 0; i < W; ++i) error_[i] = (coin_.toss() ? 1.0 : -1.0) * compute_move(trace) * y0[i];
+    for (int i = 0; i < W; ++i) error_[i] = (coin_.toss() ? 1.0 : -1.0) * compute_perturbation(trace) * y0[i];
     measure(0.0);
     old_[0] = now_[0], old_[1] = now_[1];
   }
 
   /// The relative perturbation of the inputs: half a unit in the last place, enlarged by `scale`.
-  static double compute_move(const ErrorTrace& trace) {
+  static double compute_perturbation(const ErrorTrace& trace) {
     return find_scale(trace) * 0.5 * std::numeric_limits<double>::epsilon();
   }
 

@@ -3,7 +3,7 @@
 #include "batch/lanes/taylor_step.hpp"
 
 // Taylor steps with a body in each lane, for one lane type `Wide`. Each file that is built for one instruction set
-// includes this header once. The recurrences are those of solve/lanes/series_loops.hpp, with a body in each lane.
+// includes this header once. The recurrences are those of method/series/lanes/series_loops.hpp.
 namespace polhode::POLHODE_ISA {
 
 /// Sum over 0 <= j <= n of left_j right_{n-j} for several products. `term(j, i)` adds left_j right_i. The products with

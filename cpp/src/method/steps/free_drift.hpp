@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "method/series/lanes/levels.hpp"
 #include "method/series/separatrix.hpp"
@@ -68,7 +69,7 @@ class FreeDrift {
     // The poles of Jacobi's functions are K'/rate and more away, K' > pi/2; the quaternion besides turns by |w| h / 2.
     const double first = square_[0] * w[0] * w[0], third = square_[2] * w[2] * w[2];
     const double rate = std::sqrt(square_[1] * w[1] * w[1] + std::max(first, third));
-    const double radii = std::abs(h) * rate * (2 / 3.14159265358979323846);
+    const double radii = std::abs(h) * rate * (2 / std::numbers::pi);
     const double turn = 0.5 * std::abs(h) * std::sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
     const double parts = std::max(1.0, std::ceil(std::max(radii / enough.radii[most], turn / enough.turn[most])));
     if (!(parts <= most_parts)) return false;

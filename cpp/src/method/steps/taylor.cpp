@@ -16,11 +16,12 @@ Trajectory integrate_taylor(const Scene& scene, const RunOptions& options) {
     series->unpack(rows, n, omega, attitude);
   };
   std::optional<BodySeries> perturbed;
-  if (options.trace != nullptr) perturbed = series->perturbed(ode::TrackedTaylor<BodySeries>::compute_move(*options.trace));
+  if (options.trace != nullptr)
+    perturbed = series->perturbed(ode::TrackedTaylor<BodySeries>::compute_perturbation(*options.trace));
   const auto make = [&](const double* y, double t_end) -> std::unique_ptr<ode::Stepper> {
     if (perturbed) {
-      return std::make_unique<ode::TrackedTaylor<BodySeries>>(*series, *perturbed, scene.t0(), y, t_end, options.tolerances,
-                                                              *options.trace);
+      return std::make_unique<ode::TrackedTaylor<BodySeries>>(*series, *perturbed, scene.t0(), y, t_end,
+                                                              options.tolerances, *options.trace);
     }
     return std::make_unique<ode::Taylor::Stepper<BodySeries>>(*series, scene.t0(), y, t_end, options.tolerances);
   };

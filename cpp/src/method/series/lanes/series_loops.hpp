@@ -17,9 +17,9 @@ constexpr auto reciprocals = [] {
   return table;
 }();
 
-/// The products of the recurrences, sum_j left_j right_{n-j}, eight components each. Two rows' sums are made in one
-/// pass, where every factor that was loaded serves both: loads bind here, not sums. From `shared` on the products have
-/// one right factor in common.
+/// The products of the recurrences, sum_j left_j right_{n-j}, eight components each. One pass makes the sums of two
+/// rows and uses every loaded factor twice, because loads limit the speed. From `shared` on the products have one
+/// right factor in common.
 template <int count, int shared>
 class Products {
  public:
@@ -29,15 +29,15 @@ class Products {
   POLHODE_INLINE void put_right(int p, int n, Octet row) { store8(right_[n][p], row); }
   POLHODE_INLINE void put(int p, int n, Octet left, Octet right) { put_left(p, n, left), put_right(p, n, right); }
 
-  /// The sums of row n over 0 < j < n, without the two terms that have row n itself: nobody should have to wait for the
-  /// newest row here. Of row n + 1 those terms, too, that are known before row n.
+  /// The sums of row n over 0 < j < n. They omit the two terms that need row n, to keep it off the critical path.
+  /// `next` receives the terms of row n + 1 that need no row above n - 1.
   POLHODE_INLINE void sum_older(int n, Octet (&out)[count], Octet (&next)[count]) const {
     for (int p = 0; p < count; ++p) out[p] = next[p] = all8(0.0);
     if (n < 2) return;
     sum_groups<0>(n, out, next);
   }
 
-  /// What sum_older left out of the row after n, once row n is known.
+  /// Adds the terms of row n + 1 with 0 < j < n + 1 that sum_older omitted, once row n is known.
   POLHODE_INLINE void add_newer(int n, Octet (&next)[count]) const {
     if (n == 0) return;
     for (int p = 0; p < count; ++p) {
@@ -47,8 +47,8 @@ class Products {
   }
 
   POLHODE_INLINE Octet sum_newest(int p, int n) const {
-    const Octet one = load8(left_[n][p]) * load8(right_[0][right(p)]);
-    return n == 0 ? one : madd(load8(left_[0][p]), load8(right_[n][right(p)]), one);
+    const Octet first = load8(left_[n][p]) * load8(right_[0][right(p)]);
+    return n == 0 ? first : madd(load8(left_[0][p]), load8(right_[n][right(p)]), first);
   }
 
  private:
