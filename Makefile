@@ -16,19 +16,25 @@ $(shell mkdir -p build; find python/polhode -type f -not -name '*.py[ci]' | sort
 inputs := build/.names $(shell find CMakeLists.txt pyproject.toml cpp python/CMakeLists.txt python/bindings \
             tests/cpp/CMakeLists.txt scenes -type f 2>/dev/null)
 
-.PHONY: help demo test same-bits check-long install module sanitize stubs clean
+.PHONY: help demo test same-bits check-long install module clang sanitize stubs clean
+.NOTPARALLEL:
 # An environment whose Python has gone is made anew.
 ifneq ($(shell $(VENV)/bin/python -c 'import pip; print("there")' 2>/dev/null),there)
-.PHONY: $(VENV)/.ready
+.PHONY: $(VENV)/.demo
 endif
 help:
 	@sed -n '1,3s/^# //p' Makefile
 
-$(VENV)/.ready: pyproject.toml .ci/prepare
-	@.ci/prepare $(VENV)
+# What the demo runs with, and all that the tests need.
+$(VENV)/.demo: pyproject.toml .ci/prepare
+	@.ci/prepare $(VENV) cli plot scipy
+	@touch $@
+$(VENV)/.ready: $(VENV)/.demo
+	@.ci/prepare $(VENV) cli plot mesh test
+	@touch $@
 
 # One editable build serves the Python module and the C++ tests; ninja rebuilds only what changed.
-build/.installed: $(VENV)/.ready $(inputs)
+build/.installed: $(VENV)/.demo $(inputs)
 	@echo "building polhode (the first time takes a few minutes)"
 	@# The build imports an installed polhode (its CMake entry point), which fails when its Python is ahead of its core.
 	@$(PYTHON) -m pip uninstall -qq -y --disable-pip-version-check polhode
@@ -38,11 +44,12 @@ build/.installed: $(VENV)/.ready $(inputs)
 	  $$($(VENV)/bin/python .ci/eigen_dir.py) -e .
 	@touch $@
 
-install: build/.installed
+install: $(VENV)/.ready build/.installed
 
-demo: install
+# Half the usual time for the charts: fewer repeats, which they say. `polhode chart` alone takes two minutes.
+demo: build/.installed
 	@$(PYTHON) -m polhode plan scenes/S*.toml
-	@$(PYTHON) -m polhode chart scenes/S*.toml -o demo
+	@$(PYTHON) -m polhode chart scenes/S*.toml --budget 60s -o demo
 
 test: install
 	@cmake --build $(BUILD) -j $(JOBS) --target polhode_tests polhode_headers_alone | sed -n '/warning\|error/p'
@@ -61,8 +68,15 @@ module:
 	@cmake --build $(BUILD) -j $(JOBS) --target _core > /dev/null && cmake --install $(BUILD) --prefix \
 	  $$($(PYTHON) -c 'import sysconfig; print(sysconfig.get_paths()["platlib"])')/polhode > /dev/null
 
+# The library and its C++ tests by Clang, each file by itself, and each public header alone; no warning passes.
+clang: $(VENV)/.demo
+	@cmake -S . -B build/clang -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=clang++ -DPOLHODE_WERROR=ON \
+	  -DPOLHODE_UNITY=OFF -DPOLHODE_BUILD_TESTS=ON $$($(VENV)/bin/python .ci/eigen_dir.py --cmake) > /dev/null
+	@cmake --build build/clang -j $(JOBS) --target polhode_tests polhode_headers_alone | sed -n '/warning\|error/p'
+	@build/clang/tests/cpp/polhode_tests
+
 # The C++ tests under the address and undefined-behaviour sanitizers.
-sanitize: $(VENV)/.ready
+sanitize: $(VENV)/.demo
 	@cmake -S . -B build/sanitize -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo -DPOLHODE_BUILD_TESTS=ON \
 	  -DPOLHODE_SANITIZE=ON $$($(VENV)/bin/python .ci/eigen_dir.py --cmake) > /dev/null
 	@cmake --build build/sanitize -j $(JOBS) --target polhode_tests
