@@ -67,17 +67,25 @@ inline SinCosOf<T> sincos_dd(DoubleDouble<T> angle) {
   return {select(odd, scaled(c, quadrant), scaled(s, even)), select(odd, -scaled(s, quadrant), scaled(c, even))};
 }
 
+/// e^r - 1 with its relative accuracy, |r| < 0.36.
+template <class T>
+inline DoubleDouble<T> expm1_dd(DoubleDouble<T> r) {
+  using N = DoubleDouble<T>;
+  r = scaled(r, T(0x1p-8));
+  N e = inverse_factorial<T>(10);
+  for (int i = 9; i >= 1; --i) e = e * r + inverse_factorial<T>(i);
+  e = e * r;  // then (e^r)^2 - 1 = 2 e + e^2
+  for (int i = 0; i < 8; ++i) e = twice(e) + e * e;
+  return e;
+}
+
 /// |x| < 700.
 template <class T>
 inline DoubleDouble<T> exp_dd(DoubleDouble<T> x) {
   using N = DoubleDouble<T>;
   const T n = rint(x.hi * T(1.4426950408889634));
-  const N r = scaled(x - N(T(0.6931471805599453), T(2.3190468138462996e-17)) * N(n), T(0x1p-8));  // |r| < 1.4e-3
-  N e = inverse_factorial<T>(10);
-  for (int i = 9; i >= 1; --i) e = e * r + inverse_factorial<T>(i);
-  e = e * r;  // e^r - 1, then (e^r)^2 - 1 = 2 e + e^2
-  for (int i = 0; i < 8; ++i) e = twice(e) + e * e;
-  return scaled(e + N(1.0), power_of_two(n));
+  const N r = x - N(T(0.6931471805599453), T(2.3190468138462996e-17)) * N(n);
+  return scaled(expm1_dd(r) + N(1.0), power_of_two(n));
 }
 
 /// 1e-290 < x < 1e290. A plain logarithm to 4e-13, then one step of third order.

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "polhode/math/detail/double_double.hpp"
+
+namespace polhode::math {
+
+/// An angle as quarter turns and a rest: angle = quarters pi / 2 + rest, |rest| <= pi / 4 (1 + 1e-10).
+struct QuarterTurns {
+  double rest, low;    ///< rest + low, relative error below 2^-64
+  unsigned quarters;   ///< modulo 4
+};
+
+/// For |angle| > pi / 4, finite.
+QuarterTurns reduce_to_quarter(double angle);
+
+}  // namespace polhode::math
