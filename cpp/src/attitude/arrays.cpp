@@ -7,6 +7,7 @@
 #include "attitude/sincos.hpp"
 #include "polhode/attitude/kinematics.hpp"
 #include "polhode/attitude/rotation_vector.hpp"
+#include "polhode/math/detail/functions.hpp"
 
 namespace polhode::arrays {
 namespace {
@@ -40,7 +41,8 @@ std::size_t quat_from_euler(const EulerSequence& sequence, std::size_t n, const 
     } else {
       for (std::size_t i = 0; i < count; ++i) {
         if (!std::isfinite(half[i])) return begin + i / 3;
-        s[i] = std::sin(half[i]), c[i] = std::cos(half[i]);
+        const math::SinCosPair at = math::sincos(half[i]);
+        s[i] = at.sin, c[i] = at.cos;
       }
     }
     for (std::size_t row = 0; row < rows; ++row) {

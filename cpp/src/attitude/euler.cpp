@@ -6,6 +6,7 @@
 
 #include "attitude/rows.hpp"
 #include "polhode/core/error.hpp"
+#include "polhode/math/detail/functions.hpp"
 
 namespace polhode {
 namespace {
@@ -84,8 +85,8 @@ std::string EulerSequence::letters() const {
 Quat quat_from_euler(const EulerSequence& sequence, const Vector3d& angles) {
   double s[3], c[3], q[4];
   for (int i = 0; i < 3; ++i) {
-    const double half = 0.5 * angles[sequence.extrinsic() ? 2 - i : i];
-    s[i] = std::sin(half), c[i] = std::cos(half);
+    const math::SinCosPair half = math::sincos(0.5 * angles[sequence.extrinsic() ? 2 - i : i]);
+    s[i] = half.sin, c[i] = half.cos;
   }
   compose(sequence, s, c, q);
   return {q[0], q[1], q[2], q[3]};
@@ -100,24 +101,24 @@ Vector3d to_euler(const EulerSequence& sequence, const Quat& q_WB) {
   double first, middle, last;
   if (p.locked(sequence)) {
     // Only the half angle of the longer vector is known; the angle that comes third in the letters is 0.
-    const double half = at_sum_pole ? std::atan2(p.sum_y, p.sum_x) : std::atan2(p.difference_y, p.difference_x);
+    const double half = at_sum_pole ? math::atan2(p.sum_y, p.sum_x) : math::atan2(p.difference_y, p.difference_x);
     const double whole = wrap(2.0 * half);
     first = sequence.extrinsic() ? 0.0 : whole;
     last = sequence.extrinsic() ? last_sign * (at_sum_pole ? whole : -whole) : 0.0;
     middle = (at_sum_pole ? 0.0 : pi);
     if (!sequence.proper()) middle = at_sum_pole ? 0.5 * pi : -0.5 * pi;
   } else {
-    const double sum = std::atan2(p.sum_y, p.sum_x), difference = std::atan2(p.difference_y, p.difference_x);
+    const double sum = math::atan2(p.sum_y, p.sum_x), difference = math::atan2(p.difference_y, p.difference_x);
     first = wrap(sum + difference);
     last = last_sign * wrap(sum - difference);
     if (sequence.proper()) {
-      middle = 2.0 * std::atan2(p.r_difference, p.r_sum);
+      middle = 2.0 * math::atan2(p.r_difference, p.r_sum);
     } else {
       // Its sine and cosine: (r_sum^2 - r_difference^2)/2, without the cancellation, and r_sum r_difference.
       const double v[3] = {q_WB.x, q_WB.y, q_WB.z};
       const double sine = 2.0 * (q_WB.w * v[sequence.second()] +
                                  sequence.sign() * v[sequence.first()] * v[sequence.other()]);
-      middle = std::atan2(sine, p.r_sum * p.r_difference);
+      middle = math::atan2(sine, p.r_sum * p.r_difference);
     }
   }
   if (sequence.extrinsic()) std::swap(first, last);

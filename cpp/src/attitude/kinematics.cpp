@@ -7,6 +7,7 @@
 
 #include "attitude/rows.hpp"
 #include "polhode/core/error.hpp"
+#include "polhode/math/detail/functions.hpp"
 
 namespace polhode {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 /// v turned by the angle about the axis.
 Vector3d turned(const Vector3d& v, int axis, double angle) {
   const int a = (axis + 1) % 3, b = (axis + 2) % 3;
-  const double s = std::sin(angle), c = std::cos(angle);
+  const auto [s, c] = math::sincos(angle);
   Vector3d out = v;
   out[a] = c * v[a] - s * v[b];
   out[b] = s * v[a] + c * v[b];
@@ -31,8 +32,9 @@ Vector3d body_rates(const EulerSequence& sequence, const Vector3d& angles, const
   const int out = sequence.extrinsic() ? 2 : 0;
   const double first_rate = angle_rates[out];
   Vector3d w_F = Vector3d::Zero();
-  w_F[sequence.first()] = first_rate * std::cos(angles[1]);
-  w_F[sequence.other()] = first_rate * sequence.sign() * std::sin(angles[1]);
+  const math::SinCosPair middle = math::sincos(angles[1]);
+  w_F[sequence.first()] = first_rate * middle.cos;
+  w_F[sequence.other()] = first_rate * sequence.sign() * middle.sin;
   w_F[sequence.second()] = angle_rates[1];
   w_F[sequence.last()] += angle_rates[2 - out];
   return turned(w_F, sequence.last(), -angles[2 - out]);
@@ -41,7 +43,7 @@ Vector3d body_rates(const EulerSequence& sequence, const Vector3d& angles, const
 bool try_euler_rates(const EulerSequence& sequence, const Vector3d& angles, const Vector3d& w_B,
                      Vector3d& angle_rates) {
   const int out = sequence.extrinsic() ? 2 : 0;
-  const double s = std::sin(angles[1]), c = std::cos(angles[1]);
+  const auto [s, c] = math::sincos(angles[1]);
   // The double nearest to a pole is within half an ulp of it; theta = 0 is a pole only when it is 0.
   const double distance = std::abs(sequence.proper() ? s : c);
   if (!(distance > 0.5 * std::numeric_limits<double>::epsilon() * std::abs(angles[1]))) return false;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "polhode/math/detail/functions.hpp"
+
 namespace polhode {
 
 Quat quat_from_rotation_vector(const Vector3d& v) {
@@ -12,9 +14,10 @@ Quat quat_from_rotation_vector(const Vector3d& v) {
     scale = 0.5 - square * (1.0 / 48 - square * (1.0 / 3840 - square / 645120));
     w = 1.0 - square * (1.0 / 8 - square * (1.0 / 384 - square / 46080));
   } else {
-    const double angle = square < 1e300 ? std::sqrt(square) : std::hypot(v[0], v[1], v[2]);
-    scale = std::sin(0.5 * angle) / angle;
-    w = std::cos(0.5 * angle);
+    const double angle = square < 1e300 ? std::sqrt(square) : math::hypot(v[0], v[1], v[2]);
+    const math::SinCosPair half = math::sincos(0.5 * angle);
+    scale = half.sin / angle;
+    w = half.cos;
   }
   return {scale * v[0], scale * v[1], scale * v[2], w};
 }
@@ -32,15 +35,15 @@ Vector3d to_rotation_vector(const Quat& q_WB) {
   double scale = 2.0 / q.w;  // below 1e-100 the angle is twice the sine of its half
   if (square > 1e-200) {
     const double sine = std::sqrt(square);
-    scale = 2.0 * std::atan2(sine, q.w) / sine;
+    scale = 2.0 * math::atan2(sine, q.w) / sine;
   }
   return {scale * q.x, scale * q.y, scale * q.z};
 }
 
 double rotation_angle(const Quat& q_WB) {
   const double square = q_WB.x * q_WB.x + q_WB.y * q_WB.y + q_WB.z * q_WB.z;
-  const double sine = square > 1e-200 ? std::sqrt(square) : std::hypot(q_WB.x, q_WB.y, q_WB.z);
-  return 2.0 * std::atan2(sine, std::abs(q_WB.w));
+  const double sine = square > 1e-200 ? std::sqrt(square) : math::hypot(q_WB.x, q_WB.y, q_WB.z);
+  return 2.0 * math::atan2(sine, std::abs(q_WB.w));
 }
 
 }  // namespace polhode

@@ -5,6 +5,7 @@
 #include "batch/lanes/taylor_block.hpp"
 #include "method/series/body_series.hpp"
 #include "polhode/core/simd.hpp"
+#include "polhode/math/detail/functions.hpp"
 #include "polhode/ode/taylor.hpp"
 
 namespace polhode {
@@ -22,7 +23,7 @@ TaylorKernels find_kernels(const SeriesTerms& terms, bool attitude) {
 
 /// One order for all lanes, fitted to measured times: in lanes the cost of a step grows as about its order squared.
 int choose_lane_order(double tolerance) {
-  const int order = static_cast<int>(std::ceil(1.0 - 0.65 * std::log(tolerance)));
+  const int order = static_cast<int>(std::ceil(1.0 - 0.65 * math::fast_log(tolerance)));
   return std::clamp(order, ode::Taylor::least_order, ode::most_series_order - 2);
 }
 
@@ -135,7 +136,7 @@ class TaylorIntegrator final : public LaneIntegrator {
     const double rate = b_.orbit_rate[lane];
     const math::DD product = math::two_prod(rate, b_.time[lane]), angle = math::two_sum(product.hi, phase_[lane]);
     const double low = angle.lo + product.lo + rate * b_.time_low[lane];
-    const double s = std::sin(angle.hi), c = std::cos(angle.hi);
+    const auto [s, c] = math::sincos(angle.hi);
     b_.orbit_sin[lane] = s + c * low, b_.orbit_cos[lane] = c - s * low;
   }
 

@@ -1,10 +1,23 @@
 #include "polhode/core/quat.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "polhode/core/error.hpp"
 
 namespace polhode {
+
+double norm(const Quat& q) {
+  const double square = (q.x * q.x + q.y * q.y) + (q.z * q.z + q.w * q.w);
+  if (square > 1e-250 && square < 1e300) return std::sqrt(square);
+  const double largest = std::max({std::abs(q.x), std::abs(q.y), std::abs(q.z), std::abs(q.w)});
+  if (largest == 0.0 || !std::isfinite(largest) || std::isnan(square)) return square;
+  int exponent = 0;
+  std::frexp(largest, &exponent);
+  const auto scaled = [&](double x) { return std::ldexp(x, -exponent); };
+  return std::ldexp(norm({scaled(q.x), scaled(q.y), scaled(q.z), scaled(q.w)}), exponent);
+}
 
 Quat make_attitude(const Quat& q) {
   const double n = norm(q);

@@ -10,6 +10,7 @@
 #include "exact/heavy_top_start.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/exact/detail/heavy_top_kernels.hpp"
+#include "polhode/math/detail/functions.hpp"
 
 namespace polhode {
 namespace {
@@ -190,11 +191,11 @@ void HeavyTop::set_up() {
   kind_ = motion.kind;
   period_ = std::ldexp(motion.period, -e);
   precession_ = std::ldexp(motion.precession, e);
-  tilt_min_ = 2.0 * std::atan2(motion.sin_high, motion.cos_high);
-  tilt_max_ = 2.0 * std::atan2(motion.sin_low, motion.cos_low);
+  tilt_min_ = 2.0 * math::atan2(motion.sin_high, motion.cos_high);
+  tilt_max_ = 2.0 * math::atan2(motion.sin_low, motion.cos_low);
   if (below) {
-    tilt_min_ = 2.0 * std::atan2(motion.cos_low, motion.sin_low);
-    tilt_max_ = 2.0 * std::atan2(motion.cos_high, motion.sin_high);
+    tilt_min_ = 2.0 * math::atan2(motion.cos_low, motion.sin_low);
+    tilt_max_ = 2.0 * math::atan2(motion.cos_high, motion.sin_high);
   }
   scaled_[0] = motion.energy.hi, scaled_[1] = motion.p_phi.hi;
   scaled_[2] = below ? -motion.p_psi.hi : motion.p_psi.hi;

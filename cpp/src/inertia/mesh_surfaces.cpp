@@ -6,6 +6,7 @@
 #include <string>
 
 #include "polhode/core/error.hpp"
+#include "polhode/math/detail/functions.hpp"
 
 namespace polhode::inertia {
 namespace {
@@ -49,7 +50,7 @@ double winding(const Vector3d& point, const std::uint32_t* face, const std::uint
     const std::uint32_t* v = corners[*face];
     const Vector3d a = vertex(mesh, v[0]) - point, b = vertex(mesh, v[1]) - point, c = vertex(mesh, v[2]) - point;
     const double la = a.norm(), lb = b.norm(), lc = c.norm();
-    sum += std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+    sum += math::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
   }
   return sum / (2 * std::numbers::pi);
 }

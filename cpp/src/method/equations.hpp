@@ -4,6 +4,7 @@
 
 #include "method/integrate.hpp"
 #include "polhode/core/error.hpp"
+#include "polhode/math/detail/functions.hpp"
 #include "polhode/method/euler_problem.hpp"
 #include "polhode/method/lagrangian_problem.hpp"
 
@@ -54,7 +55,7 @@ Trajectory integrate_lagrangian(const Scene& scene, const RunOptions& options) {
       "Lagrange's equations in z-x-z angles divide by sin(theta); Euler's, the default, do not";
   using Problem = LagrangianProblem<SeveralTorques>;
   const double theta = Problem::compute_angles(scene.attitude())[1];
-  if (!(std::sin(theta) > Problem::least_sine)) {
+  if (!(math::sin(theta) > Problem::least_sine)) {
     throw InvalidInput("formulation 'lagrangian'", "started away from theta = 0 and pi",
                        "theta = " + to_text(theta) + " rad", cause);
   }

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "polhode/math/detail/functions.hpp"
 #include "solve/candidates.hpp"
 #include "solve/certify_carried.hpp"
 #include "solve/certify_pair.hpp"
@@ -59,7 +60,7 @@ class Certifier {
     const Attempt pilot{.motion = runs_.run(Scene(std::move(parts)), limited, pilot_rtol)};
     const Motion& motion = pilot.motion;
     if (!pilot.finished() || motion.t.empty()) return expected;
-    const double rate = std::hypot(motion.omega[0], motion.omega[1], motion.omega[2]);
+    const double rate = math::hypot(motion.omega[0], motion.omega[1], motion.omega[2]);
     const double turns = measure_rotation(motion, motion.t[0], rate).revolutions();
     return std::isfinite(turns) ? turns : expected;
   }
@@ -84,7 +85,7 @@ class Certifier {
       if (round == 0 || is_better(attempt) || attempt.motion.status == Status::stopped) best_ = std::move(attempt);
       if (done || stalled >= 2 || coarse <= ratio_ * least) break;
       // Errors fall more slowly than tolerances do, and a third try costs more than a finer second one.
-      coarse = std::max(coarse / std::clamp(std::pow(2 * error / accuracy_, 1.2), 3.0, 1e4), ratio_ * least);
+      coarse = std::max(coarse / std::clamp(math::fast_pow(2 * error / accuracy_, 1.2), 3.0, 1e4), ratio_ * least);
     }
     pair.drop_added_times(best_.motion);
     return conclude();
@@ -101,7 +102,7 @@ class Certifier {
       if (given_up > 0) {
         // What grew so much in a part of the span may grow as much again in each other part of its length.
         const double parts = std::min(decision_.facts.span() / given_up, 4.0);
-        rtol = std::max(rtol / std::pow(10 * give_up_factor, parts), least);
+        rtol = std::max(rtol / math::fast_pow(10 * give_up_factor, parts), least);
         safety_ = std::max(safety_, chaotic_safety);
         continue;
       }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "polhode/math/detail/functions.hpp"
 #include "polhode/ode/tracked_taylor.hpp"
 
 namespace polhode {
@@ -20,7 +21,7 @@ Attempt run_carried(CountedRuns& runs, double rtol, double safety, double most, 
   if (!attempt.finished() || motion.t.empty()) return attempt;
   double size = 0.0;
   for (std::size_t i = 0; i + 2 < motion.omega.size(); i += 3) {
-    size = std::max(size, std::hypot(motion.omega[i], motion.omega[i + 1], motion.omega[i + 2]));
+    size = std::max(size, math::hypot(motion.omega[i], motion.omega[i + 1], motion.omega[i + 2]));
   }
   const double rates = motion.omega.empty() || trace.rate_error == 0.0 ? 0.0 : trace.rate_error / size;
   const double error = std::max(rates, motion.attitude.empty() ? 0.0 : trace.attitude_error);

@@ -8,6 +8,7 @@
 
 #include "polhode/core/error.hpp"
 #include "polhode/math/detail/double_double.hpp"
+#include "polhode/math/detail/functions.hpp"
 #include "solve/distance.hpp"
 
 namespace polhode {
@@ -166,9 +167,9 @@ std::string_view ClosedForm::model() const {
 }
 
 double ClosedForm::rate(const double* omega) const {
-  const double w = std::hypot(omega[0], omega[1], omega[2]);
+  const double w = math::hypot(omega[0], omega[1], omega[2]);
   if (const auto* top = std::get_if<HeavyTop>(&motion_)) {
-    return std::hypot(w, std::sqrt(std::abs(top->weight_arm()) / top->inertia().moments()[2]));
+    return math::hypot(w, std::sqrt(std::abs(top->weight_arm()) / top->inertia().moments()[2]));
   }
   return w;
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "polhode/math/detail/functions.hpp"
+
 namespace polhode {
 
 /// The distance of two motions at n samples, as the accuracy is meant: the larger of |omega - omega'| relative to the
@@ -34,7 +36,7 @@ inline double compute_distance(std::size_t n, const double* omega_a, const doubl
   const double rates = rate_square == 0.0 ? 0.0 : std::sqrt(rate_square / size);
   const double angle = attitude_square != attitude_square
                            ? attitude_square
-                           : 4 * std::asin(std::min(1.0, std::sqrt(attitude_square) / 2));
+                           : 4 * math::asin(std::min(1.0, std::sqrt(attitude_square) / 2));
   return rates > angle || rates != rates ? rates : angle;
 }
 
@@ -45,12 +47,12 @@ inline double find_divergence_time(std::size_t n, const double* t, double t0, co
                                    double most) {
   double size = 0.0, divergence = HUGE_VAL;
   for (std::size_t i = 0; omega_a != nullptr && i < n; ++i) {
-    size = std::max(size, std::hypot(omega_a[3 * i], omega_a[3 * i + 1], omega_a[3 * i + 2]));
+    size = std::max(size, math::hypot(omega_a[3 * i], omega_a[3 * i + 1], omega_a[3 * i + 2]));
   }
   for (std::size_t i = 0; i < n; ++i) {
     double rate_error = 0.0;
     for (std::size_t k = 3 * i; omega_a != nullptr && k < 3 * i + 3; ++k)
-      rate_error = std::hypot(rate_error, omega_a[k] - omega_b[k]);
+      rate_error = math::hypot(rate_error, omega_a[k] - omega_b[k]);
     const double attitude_error =
         attitude_a == nullptr ? 0.0 : compute_distance(1, nullptr, attitude_a + 4 * i, nullptr, attitude_b + 4 * i);
     if (!(rate_error <= most * size && attitude_error <= most)) divergence = std::min(divergence, std::abs(t[i] - t0));

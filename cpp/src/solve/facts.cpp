@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "polhode/math/detail/functions.hpp"
+
 namespace polhode {
 namespace {
 
@@ -58,8 +60,8 @@ double turn_under_thrust(const Scene& scene, double span) {
   const double start = scene.omega().norm(), added = gain * span;
   if (added <= 1e-8 * start) return start * span;
   // The integral of hypot(start, gain t).
-  const double before = start > 0 ? 0.5 * start * (start / gain) * std::asinh(added / start) : 0.0;
-  return 0.5 * span * std::hypot(start, added) + before;
+  const double before = start > 0 ? 0.5 * start * (start / gain) * math::asinh(added / start) : 0.0;
+  return 0.5 * span * math::hypot(start, added) + before;
 }
 
 }  // namespace
@@ -77,7 +79,7 @@ TorqueSum find_acting_torques(const Scene& scene) {
 double compute_off_axis_angle(const Scene& scene) {
   const Vector3d w = find_principal(scene).w.cwiseAbs();
   double least = std::numbers::pi;
-  for (int i = 0; i < 3; ++i) least = std::min(least, std::atan2(std::hypot(w[(i + 1) % 3], w[(i + 2) % 3]), w[i]));
+  for (int i = 0; i < 3; ++i) least = std::min(least, math::atan2(math::hypot(w[(i + 1) % 3], w[(i + 2) % 3]), w[i]));
   return least;
 }
 
@@ -133,14 +135,14 @@ double estimate_turns(const Scene& scene, const TorqueSum& torques, double span)
     }
     // Between a torque that never adds up and one that always does, in the middle by their ratio.
     const double acceleration = compute_torque_scale(scene) / scene.inertia_B().moments()[0];
-    turned = std::hypot(start, std::sqrt(acceleration)) * span;
+    turned = math::hypot(start, std::sqrt(acceleration)) * span;
     turned = std::sqrt(turned * std::max(turned, start * span + 0.5 * acceleration * span * span));
   } else if (torques.has_potential) {
     const double acceleration = compute_torque_scale(scene) / scene.inertia_B().moments()[0];
-    turned = std::hypot(start, std::sqrt(acceleration)) * span;
+    turned = math::hypot(start, std::sqrt(acceleration)) * span;
   } else if (torques.uses_rates) {
     const double slowest = -compute_drive_rates(scene)[2];
-    if (slowest > 0) turned = start * -std::expm1(-slowest * span) / slowest;
+    if (slowest > 0) turned = start * -math::expm1(-slowest * span) / slowest;
   }
   return turned / (2 * std::numbers::pi);
 }

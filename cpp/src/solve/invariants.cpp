@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "polhode/math/detail/functions.hpp"
+
 namespace polhode {
 namespace {
 
@@ -68,15 +70,15 @@ std::map<std::string, double> compute_drift(const Scene& scene, const Motion& mo
     compute_angular_momentum(scene, n, motion.omega.data(), motion.attitude.data(), L.data());
     compute_angular_momentum(scene, 1, start_omega, start_attitude, L0);
     for (std::size_t i = 0; i < n; ++i)
-      largest_L = std::max(largest_L, std::hypot(L[3 * i], L[3 * i + 1], L[3 * i + 2]));
-    largest_L = std::max(largest_L, std::hypot(L0[0], L0[1], L0[2]));
+      largest_L = std::max(largest_L, math::hypot(L[3 * i], L[3 * i + 1], L[3 * i + 2]));
+    largest_L = std::max(largest_L, math::hypot(L0[0], L0[1], L0[2]));
   }
   if (free && has_attitude) {
     double moved = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
-      moved = std::max(moved, std::hypot(L[3 * i] - L0[0], L[3 * i + 1] - L0[1], L[3 * i + 2] - L0[2]));
+      moved = std::max(moved, math::hypot(L[3 * i] - L0[0], L[3 * i + 1] - L0[1], L[3 * i + 2] - L0[2]));
     }
-    drift["angular_momentum"] = relative(moved, std::hypot(L0[0], L0[1], L0[2]));
+    drift["angular_momentum"] = relative(moved, math::hypot(L0[0], L0[1], L0[2]));
   }
   if (!free && sum.keeps_vertical && has_attitude) {
     double moved = 0.0;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "method/method.hpp"
+#include "polhode/math/detail/functions.hpp"
 #include "solve/candidates.hpp"
 #include "solve/options.hpp"
 #include "solve/pilot.hpp"
@@ -32,7 +33,7 @@ std::optional<DampedRun> run_pilot(const Decision& decision, const SolveOptions&
   SceneParts parts = scene.parts();
   parts.times.clear(), parts.name.clear();
   for (int i = log_samples; i > 0; --i)
-    parts.times.push_back(scene.t0() + facts.after * std::pow(10.0, -static_cast<double>(i) / per_decade));
+    parts.times.push_back(scene.t0() + facts.after * math::fast_pow(10.0, -static_cast<double>(i) / per_decade));
   for (int i = 1; i <= even_samples; ++i) parts.times.push_back(scene.t0() + facts.after * i / even_samples);
   std::sort(parts.times.begin(), parts.times.end());
   parts.want = {true, carries_attitude(scene, facts, options)};
@@ -52,7 +53,7 @@ std::optional<DampedRun> run_pilot(const Decision& decision, const SolveOptions&
   for (std::size_t i = 0; i < pilot.t.size() && pilot.rate[i] > least; ++i) {
     const double turned = 0.5 * (rate + pilot.rate[i]) * (pilot.t[i] - t);
     run.angle += turned;
-    work += turned + std::abs(std::log(pilot.rate[i] / rate));
+    work += turned + std::abs(math::fast_log(pilot.rate[i] / rate));
     t = pilot.t[i], rate = pilot.rate[i];
     run.t.push_back(t), run.work.push_back(work);
   }
@@ -87,8 +88,8 @@ bool plan_damped(Decision& decision, const SolveOptions& options) {
   };
   const double radian = cost_per_radian(first, coarse), implicit_radian = cost_per_radian(second, coarse * scale);
   const double stable =
-      radian / (explicitly.steps_per_radian * std::pow(coarse, -explicitly.power)) * facts.decay / explicitly.stability;
-  const double step = implicit_radian / (implicitly.steps_per_radian * std::pow(coarse * scale, -implicitly.power));
+      radian / (explicitly.steps_per_radian * math::fast_pow(coarse, -explicitly.power)) * facts.decay / explicitly.stability;
+  const double step = implicit_radian / (implicitly.steps_per_radian * math::fast_pow(coarse * scale, -implicitly.power));
   const double start_up = start_up_steps * step;
   const double all = run->work.back(), end = scene.t0() + facts.after;
 
@@ -101,7 +102,7 @@ bool plan_damped(Decision& decision, const SolveOptions& options) {
     if (t < end && total < best) best = total, when = t, before = spent;
   }
   // Turns about a principal axis cost Radau's rates no steps: the pilot run has counted those that are needed.
-  const double counted = step * run->steps * std::pow(coarse * scale / pilot_rtol, -implicitly.power);
+  const double counted = step * run->steps * math::fast_pow(coarse * scale / pilot_rtol, -implicitly.power);
   const double taylor_alone = spent + (end - t) * stable,
                radau_alone = std::min(all * implicit_radian + start_up, counted);
   Plan& plan = decision.plan;

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "polhode/math/detail/functions.hpp"
+
 namespace polhode {
 
 double PilotRun::revolutions() const { return angle.empty() ? 0.0 : angle.back() / (2 * std::numbers::pi); }
@@ -12,7 +14,7 @@ PilotRun measure_rotation(const Trajectory& trajectory, double t0, double rate0)
   double t = t0, rate = rate0, angle = 0.0;
   for (std::size_t i = 0; i < trajectory.t.size(); ++i) {
     const double* w = trajectory.omega.data() + 3 * i;
-    const double next = std::hypot(w[0], w[1], w[2]);
+    const double next = math::hypot(w[0], w[1], w[2]);
     angle += 0.5 * (rate + next) * std::abs(trajectory.t[i] - t);
     t = trajectory.t[i], rate = next;
     run.t.push_back(t), run.rate.push_back(rate), run.angle.push_back(angle);

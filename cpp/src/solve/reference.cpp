@@ -7,6 +7,8 @@
 #include <variant>
 
 #include "polhode/core/error.hpp"
+#include "polhode/math/detail/double_double.hpp"
+#include "polhode/math/detail/functions.hpp"
 #include "solve/pieces.hpp"
 
 namespace polhode {
@@ -27,6 +29,21 @@ Real evaluate(const Series& a, Real s) {
   Real sum = 0;
   for (std::size_t k = a.size(); k-- > 0;) sum = sum * s + a[k];
   return sum;
+}
+
+/// x^(1/n) for x > 0, rounded down to 8 bits: steps are the same wherever the coefficients are, to their last bits.
+Real find_root(Real x, int n) {
+  int exponent = 0;
+  const double mantissa = static_cast<double>(std::frexp(x, &exponent));
+  const double log = (exponent + math::fast_log2(mantissa)) / n, whole = std::floor(log);
+  return std::ldexp(Real(std::floor(256 * math::fast_exp2(log - whole))), static_cast<int>(whole) - 8);
+}
+
+/// sin and cos from double-double: those of the system's library differ between processors.
+std::array<Real, 2> compute_sincos(Real angle) {
+  const double high = static_cast<double>(angle);
+  const math::SinCos found = math::sincos(math::DD(high, static_cast<double>(angle - high)));
+  return {Real(found.sin.hi) + found.sin.lo, Real(found.cos.hi) + found.cos.lo};
 }
 
 /// The series of a body's motion about one time; every method here works on coefficient n of all of them.
@@ -83,8 +100,8 @@ class LongDoubleSeries {
       Real size = 0, last = 0, turn = 0;
       for (const Series& s : w_) size = std::max(size, std::fabs(s[0])), last = std::max(last, std::fabs(s[index(m)]));
       for (const Series& s : q_) turn = std::max(turn, std::fabs(s[index(m)]));
-      if (last > 0 && size > 0) h = std::min(h, std::pow(tolerance * size / last, Real(1) / m));
-      if (turn > 0) h = std::min(h, std::pow(tolerance / turn, Real(1) / m));
+      if (last > 0 && size > 0) h = std::min(h, find_root(tolerance * size / last, m));
+      if (turn > 0) h = std::min(h, find_root(tolerance / turn, m));
     }
     return h;
   }
@@ -160,8 +177,8 @@ class LongDoubleSeries {
     const auto at = index(n);
     auto& [cos, sin, u, Iu] = *orbit_++;
     if (n == 0) {
-      cos[0] = std::cos(rate * t + torque.phase());
-      sin[0] = std::sin(rate * t + torque.phase());
+      const auto [s, c] = compute_sincos(rate * t + torque.phase());
+      sin[0] = s, cos[0] = c;
     } else {
       cos[at] = -rate * sin[at - 1] / n;
       sin[at] = rate * cos[at - 1] / n;

@@ -29,7 +29,7 @@ inline Quat operator*(const Quat& q_AB, const Quat& q_BC) {
 inline Quat conjugate(const Quat& q) { return {-q.x, -q.y, -q.z, q.w}; }
 
 /// |q|, without overflow or underflow for any finite components.
-inline double norm(const Quat& q) { return std::hypot(std::hypot(q.x, q.y), std::hypot(q.z, q.w)); }
+double norm(const Quat& q);
 
 /// q / |q|; the caller vouches for |q| > 0.
 inline Quat normalized(const Quat& q) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "polhode/math/detail/functions.hpp"
 #include "polhode/scene/scene.hpp"
 
 namespace polhode {
@@ -22,7 +23,8 @@ class LagrangianProblem {
   LagrangianProblem(const InertiaTensor& inertia_B, const Torque& torque) : I_(inertia_B.matrix()), torque_(torque) {}
 
   static Matrix3d compute_rate_map(double theta, double psi) {
-    const double st = std::sin(theta), ct = std::cos(theta), sp = std::sin(psi), cp = std::cos(psi);
+    const auto [st, ct] = math::sincos(theta);
+    const auto [sp, cp] = math::sincos(psi);
     Matrix3d E;
     E << st * sp, cp, 0, st * cp, -sp, 0, ct, 0, 1;
     return E;
@@ -30,8 +32,8 @@ class LagrangianProblem {
 
   /// The angles (phi, theta, psi) of an attitude, theta in [0, pi].
   static Vector3d compute_angles(const Quat& q) {
-    const double sum = 2 * std::atan2(q.z, q.w), difference = 2 * std::atan2(q.y, q.x);
-    return {0.5 * (sum + difference), 2 * std::atan2(std::hypot(q.x, q.y), std::hypot(q.z, q.w)),
+    const double sum = 2 * math::atan2(q.z, q.w), difference = 2 * math::atan2(q.y, q.x);
+    return {0.5 * (sum + difference), 2 * math::atan2(math::hypot(q.x, q.y), math::hypot(q.z, q.w)),
             0.5 * (sum - difference)};
   }
 
@@ -43,15 +45,16 @@ class LagrangianProblem {
 
   static void unpack(const double* y, double* omega, double* attitude) {
     const Vector3d w = compute_rate_map(y[1], y[2]) * Vector3d{y[3], y[4], y[5]};
-    const double c = std::cos(0.5 * y[1]), s = std::sin(0.5 * y[1]);
-    const double sum = 0.5 * (y[0] + y[2]), difference = 0.5 * (y[0] - y[2]);
+    const auto [s, c] = math::sincos(0.5 * y[1]);
+    const math::SinCosPair sum = math::sincos(0.5 * (y[0] + y[2])), difference = math::sincos(0.5 * (y[0] - y[2]));
     for (int i = 0; i < 3; ++i) omega[i] = w[i];
-    attitude[0] = s * std::cos(difference), attitude[1] = s * std::sin(difference);
-    attitude[2] = c * std::sin(sum), attitude[3] = c * std::cos(sum);
+    attitude[0] = s * difference.cos, attitude[1] = s * difference.sin;
+    attitude[2] = c * sum.sin, attitude[3] = c * sum.cos;
   }
 
   void compute_derivative(double t, const double* y, double* f) const {
-    const double st = std::sin(y[1]), ct = std::cos(y[1]), sp = std::sin(y[2]), cp = std::cos(y[2]);
+    const auto [st, ct] = math::sincos(y[1]);
+    const auto [sp, cp] = math::sincos(y[2]);
     if (!(std::abs(st) > least_sine)) {
       for (int i = 0; i < 6; ++i) f[i] = std::numeric_limits<double>::quiet_NaN();
       return;
@@ -77,7 +80,7 @@ class LagrangianProblem {
 
   double error_norm(const double* error, const double* y0, const double* y1, double rtol, double atol) const {
     // A step that leaps over theta = 0 or pi has lost what phi and psi mean: refused, whatever its error.
-    if ((std::sin(y0[1]) > 0) != (std::sin(y1[1]) > 0)) return std::numeric_limits<double>::quiet_NaN();
+    if ((math::sin(y0[1]) > 0) != (math::sin(y1[1]) > 0)) return std::numeric_limits<double>::quiet_NaN();
     const auto sum = [](const double* v) { return std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]); };
     const double e = sum(error + 3), allowed = rtol * std::max(sum(y0 + 3), sum(y1 + 3)) + atol;
     const double rates = e == 0.0 ? 0.0 : e / allowed, angles = sum(error) / (rtol + atol);

@@ -132,8 +132,8 @@ class RungeKuttaStepper final : public Stepper {
   double estimate_error(double h) {
     const double error = norm_of(Tableau::error, h);
     if constexpr (requires { Tableau::error_low; }) {
-      const double low = norm_of(Tableau::error_low, h), both = std::hypot(error, 0.1 * low);
-      return error == 0.0 ? 0.0 : error * (error / both);
+      const double ratio = 0.1 * norm_of(Tableau::error_low, h) / error;
+      return error == 0.0 ? 0.0 : error / std::sqrt(1.0 + ratio * ratio);
     } else {
       return error;
     }

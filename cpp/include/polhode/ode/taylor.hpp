@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "polhode/math/detail/double_double.hpp"
+#include "polhode/math/detail/functions.hpp"
 #include "polhode/ode/method_record.hpp"
 #include "polhode/ode/problem.hpp"
 #include "polhode/ode/series.hpp"
@@ -66,7 +67,7 @@ struct Taylor {
   /// the square of their number. Loose tolerances, with few rows, are near the first case. Near the rounding error
   /// lower orders are better, because short steps round less.
   static int choose_order(double tolerance) {
-    const double digits = -std::log(tolerance), tight = std::clamp((digits - 18.0) / 18.0, 0.0, 1.0);
+    const double digits = -math::fast_log(tolerance), tight = std::clamp((digits - 18.0) / 18.0, 0.0, 1.0);
     const int order = static_cast<int>(std::ceil(1.0 + (1.0 - 0.46 * tight) * digits));
     return std::clamp(order, least_order, most_series_order - 2);
   }

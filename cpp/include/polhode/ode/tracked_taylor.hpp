@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "polhode/math/detail/coin.hpp"
+#include "polhode/math/detail/functions.hpp"
 #include "polhode/ode/taylor.hpp"
 
 namespace polhode::ode {
@@ -101,7 +102,7 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     for (int k = W; k < W * (terms + 1); ++k) twin_rows_[k] -= rows[k];
     series_kernels().evaluate(twin_rows_, terms, Base::zero, error_, &s, 1, propagated);
     // The truncation error, from the largest of the last four terms: one or two of them may happen to be small.
-    double loss[W] = {}, sizes[3], power = scale_ * safety * shrink_ * std::pow(std::abs(s), order);
+    double loss[W] = {}, sizes[3], power = scale_ * safety * shrink_ * math::power(std::abs(s), order);
     for (int k = order; k > order - 4; --k, power *= shrink_ / std::abs(s)) {
       for (int i = 0; i < W; ++i) loss[i] = std::max(loss[i], std::abs(rows[W * k + i]) * power);
     }
@@ -154,7 +155,7 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   ErrorTrace& trace_;
   double scale_, t0_;
   // the ratio of successive terms by the rule for the step
-  double shrink_ = std::pow(this->tolerances_.rtol, 1.0 / (this->order_ - 1));
+  double shrink_ = math::fast_pow(this->tolerances_.rtol, 1.0 / (this->order_ - 1));
   double largest_ = 0.0, now_[2] = {}, old_[2] = {}, good_until_ = 0.0;
   math::Coin coin_;
   alignas(64) double error_[W] = {};

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "polhode/math/detail/functions.hpp"
 #include "polhode/math/detail/sincos_unfused.hpp"
 #include "polhode/torque/formulas.hpp"
 #include "polhode/torque/record.hpp"
@@ -58,7 +59,8 @@ class GravityGradient {
     if (std::abs(angle) <= math::most_unfused_angle) {
       math::sincos_unfused(angle, sine, cosine);   // the same bits for bodies in lanes
     } else {
-      sine = std::sin(angle), cosine = std::cos(angle);
+      const math::SinCosPair far = math::sincos(angle);
+      sine = far.sin, cosine = far.cos;
     }
     polhode::compute_radial(cosine, sine, in.attitude, u_B);
   }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "exact/lanes/heavy_top_cubic.hpp"
+#include "polhode/math/detail/functions.hpp"
 
 namespace polhode::POLHODE_ISA {
 
@@ -60,7 +61,7 @@ inline TiltCubic::TiltCubic(const TiltStart& t) : ab(t.ab), ba(t.ba) {
   DD Sg, f;
   const bool upper = bend.hi < 0.0;  // the far root is d3, else d1
   if (upper) {
-    const double start = 2.0 * math::max(abs(c2.hi), math::max(sqrt(abs(b1.hi)), std::cbrt(b0.hi / 2.0)));
+    const double start = 2.0 * math::max(abs(c2.hi), math::max(sqrt(abs(b1.hi)), math::cbrt(b0.hi / 2.0)));
     e3 = far_root(DD(1.0), c2, b1, b0, start);
     const DD G = t.du0 / sqrt(e3), F = -(bt * squared(G) + c1) / e3;  // d1 d2 = -G^2, d1 + d2 = -F
     D = hypot(F, G + G);
@@ -80,7 +81,7 @@ inline TiltCubic::TiltCubic(const TiltStart& t) : ab(t.ab), ba(t.ba) {
       const double b = bt.hi;
       const double start =
           -math::min(t.op.hi * 1.0000001,
-                     2.0 * math::max(abs(c2.hi / b), math::max(sqrt(abs(c1.hi / b)), std::cbrt(c0.hi / b / 2.0))));
+                     2.0 * math::max(abs(c2.hi / b), math::max(sqrt(abs(c1.hi / b)), math::cbrt(c0.hi / b / 2.0))));
       d1 = far_root(bt, c2, c1, c0, start);
     }
     const double size = bt.hi * -(d1.hi * d1.hi * d1.hi);

@@ -6,6 +6,7 @@
 #include "exact/lanes/heavy_top_complex.hpp"
 #include "exact/lanes/heavy_top_enlargement.hpp"
 #include "exact/lanes/heavy_top_roots.hpp"
+#include "polhode/math/detail/functions.hpp"
 #include "polhode/math/detail/landen.hpp"
 
 // Names follow docs/heavy_top.md: a = C w3 / A, b = p_phi / A, bt (there mu) = 2 M / A, u = cos(tilt),
@@ -189,7 +190,7 @@ inline void set_up_trig(HeavyTopConstants& c, HeavyTopMotion& motion, const Comm
   const bool along = abs(z0.re.hi) >= abs(z0.im.hi);
   const double quadrant = along ? (z0.re.hi > 0 ? 0.0 : 0.5) : (z0.im.hi > 0 ? 0.25 : -0.25);
   const double ratio = along ? (z0.im / z0.re).hi : -(z0.re / z0.im).hi;
-  c.start_z = quadrant + std::atan(ratio) * 0.15915494309189535;
+  c.start_z = quadrant + math::atan(ratio) * 0.15915494309189535;
   using M = Monomials;
   const M N1r(a.cosh, -1, false, M::W, 1), N1i(a.sinh, -1, false, M::V, -m.sA);  // times sin z, cos z
   const M D1r(a.cosh, -1, true, M::V, 1), D1i(a.sinh, -1, true, M::W, m.sA);     // cos z, sin z

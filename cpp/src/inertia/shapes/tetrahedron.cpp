@@ -9,7 +9,7 @@ void require_volume(const Real (&e)[4][3]) {
                       e[1][1] * (e[2][2] * e[3][0] - e[2][0] * e[3][2]) +
                       e[1][2] * (e[2][0] * e[3][1] - e[2][1] * e[3][0]);
   Real box = 1;
-  for (int i = 1; i < 4; ++i) box *= std::hypot(e[i][0], e[i][1], e[i][2]);
+  for (int i = 1; i < 4; ++i) box *= std::sqrt(e[i][0] * e[i][0] + e[i][1] * e[i][1] + e[i][2] * e[i][2]);
   if (!(std::abs(volume) > 1e-15L * box)) {
     throw InvalidInput("vertices", "the corners of a tetrahedron", "four points in one plane");
   }

@@ -13,7 +13,8 @@ MassProperties triangular_prism(double mass, const Triangle& vertices, double he
     }
   }
   const Real area = edge[1][0] * edge[2][1] - edge[1][1] * edge[2][0];
-  if (!(std::abs(area) > 1e-15L * std::hypot(edge[1][0], edge[1][1]) * std::hypot(edge[2][0], edge[2][1]))) {
+  const auto length = [](const Real* v) { return std::sqrt(v[0] * v[0] + v[1] * v[1]); };   // no square overflows
+  if (!(std::abs(area) > 1e-15L * length(edge[1]) * length(edge[2]))) {
     throw InvalidInput("vertices", "the corners of a triangle", "three points on one line");
   }
   Real xx = 0, yy = 0, xy = 0;

@@ -8,6 +8,7 @@
 #include "method/series/separatrix.hpp"
 #include "polhode/attitude/matrix.hpp"
 #include "polhode/core/simd.hpp"
+#include "polhode/math/detail/functions.hpp"
 
 namespace polhode {
 namespace {
@@ -238,7 +239,8 @@ void BodySeries::compute_series(DD t, double unit, const double* y, const double
     // n t without its rounding: the angle's own error would grow with the number of orbits.
     const DD product = math::two_prod(orbit_rate_, t.hi), angle = math::two_sum(product.hi, orbit_phase_);
     const double low = angle.lo + product.lo + orbit_rate_ * t.lo;
-    const double s0 = std::sin(angle.hi), c0 = std::cos(angle.hi), s = s0 + c0 * low, c = c0 - s0 * low;
+    const auto [s0, c0] = math::sincos(angle.hi);
+    const double s = s0 + c0 * low, c = c0 - s0 * low;
     const Vector3d radius = to_body(y + 4, {c, s, 0}), tangent = to_body(y + 4, {-s, c, 0});
     std::copy_n(radius.data(), 3, vectors + 4 * n);
     std::copy_n(tangent.data(), 3, vectors + 4 * (n + 1));

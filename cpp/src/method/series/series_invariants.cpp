@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "polhode/math/detail/functions.hpp"
+
 namespace polhode {
 
 using math::DD;
@@ -71,7 +73,8 @@ SeriesInvariants::Values SeriesInvariants::compute(DD t, const double* y, const 
     if (tidal_ != 0.0) {
       // R^T (cos nt, sin nt, 0), from the first two rows of R.
       const DD product = math::two_prod(orbit_rate_, t.hi), angle = math::two_sum(product.hi, orbit_phase_);
-      const double low = angle.lo + product.lo + orbit_rate_ * t.lo, s0 = std::sin(angle.hi), c0 = std::cos(angle.hi);
+      const double low = angle.lo + product.lo + orbit_rate_ * t.lo;
+      const auto [s0, c0] = math::sincos(angle.hi);
       const DD s = DD(s0, c0 * low), c = DD(c0, -s0 * low);
       const DD xx = q[0] * q[0], yy = q[1] * q[1], zz = q[2] * q[2], xy = q[0] * q[1], xz = q[0] * q[2],
                yz = q[1] * q[2];

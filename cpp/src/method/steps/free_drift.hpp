@@ -7,6 +7,7 @@
 #include "method/series/lanes/levels.hpp"
 #include "method/series/separatrix.hpp"
 #include "polhode/math/detail/double_double.hpp"
+#include "polhode/math/detail/functions.hpp"
 #include "polhode/ode/series.hpp"
 
 namespace polhode {
@@ -87,8 +88,11 @@ class FreeDrift {
   struct Enough {
     double radii[most + 1], turn[most + 1];
     Enough() {
-      for (int n = 1; n <= most; ++n)
-        radii[n] = std::exp2(-64.0 / n), turn[n] = std::exp2((std::lgamma(n + 1.0) / std::log(2.0) - 64) / n);
+      double factorial = 1.0;
+      for (int n = 1; n <= most; ++n) {
+        factorial *= n;
+        radii[n] = math::fast_exp2(-64.0 / n), turn[n] = math::fast_pow(0x1p-64 * factorial, 1.0 / n);
+      }
     }
   };
   static inline const Enough enough;

@@ -1,6 +1,7 @@
 #include <string>
 
 #include "method/steps/body_stepper.hpp"
+#include "polhode/math/detail/functions.hpp"
 
 namespace polhode {
 namespace {
@@ -30,38 +31,40 @@ class Leapfrog {
     const double* I = body_->I;
     if (!ready_) start(L, q);
     p_ += 0.5 * h * force(theta_);
-    const double middle = theta_ + 0.5 * h * p_ / I[0], s = std::sin(middle), c = std::cos(middle);
+    const auto [s, c] = math::sincos(theta_ + 0.5 * h * p_ / I[0]);
     const double r = (p_phi_ - p_psi_ * c) / (I[0] * s * s);
     phi_ += h * r;
     psi_ += h * (p_psi_ / I[2] - r * c);
     theta_ += h * p_ / I[0];
     p_ += 0.5 * h * force(theta_);
 
-    const double half = 0.5 * theta_, sum = 0.5 * (phi_ + psi_), difference = 0.5 * (phi_ - psi_);
-    q[0] = std::sin(half) * std::cos(difference), q[1] = std::sin(half) * std::sin(difference);
-    q[2] = std::cos(half) * std::sin(sum), q[3] = std::cos(half) * std::cos(sum);
-    const double across = (p_phi_ - p_psi_ * std::cos(theta_)) / std::sin(theta_);   // I1 phi' sin(theta)
-    L[0] = across * std::sin(psi_) + p_ * std::cos(psi_);
-    L[1] = across * std::cos(psi_) - p_ * std::sin(psi_);
+    const math::SinCosPair half = math::sincos(0.5 * theta_), sum = math::sincos(0.5 * (phi_ + psi_));
+    const math::SinCosPair difference = math::sincos(0.5 * (phi_ - psi_));
+    q[0] = half.sin * difference.cos, q[1] = half.sin * difference.sin;
+    q[2] = half.cos * sum.sin, q[3] = half.cos * sum.cos;
+    const math::SinCosPair theta = math::sincos(theta_), psi = math::sincos(psi_);
+    const double across = (p_phi_ - p_psi_ * theta.cos) / theta.sin;   // I1 phi' sin(theta)
+    L[0] = across * psi.sin + p_ * psi.cos;
+    L[1] = across * psi.cos - p_ * psi.sin;
     L[2] = p_psi_;
     return true;
   }
 
  private:
   void start(const double* L, const double* q) {
-    const double sum = 2 * std::atan2(q[2], q[3]), difference = 2 * std::atan2(q[1], q[0]);
+    const double sum = 2 * math::atan2(q[2], q[3]), difference = 2 * math::atan2(q[1], q[0]);
     phi_ = 0.5 * (sum + difference), psi_ = 0.5 * (sum - difference);
-    theta_ = 2 * std::atan2(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
+    theta_ = 2 * math::atan2(math::hypot(q[0], q[1]), math::hypot(q[2], q[3]));
     p_psi_ = L[2];
-    const double s = std::sin(theta_), across = L[0] * std::sin(psi_) + L[1] * std::cos(psi_);
-    p_phi_ = across * s + p_psi_ * std::cos(theta_);
-    p_ = L[0] * std::cos(psi_) - L[1] * std::sin(psi_);
+    const math::SinCosPair theta = math::sincos(theta_), psi = math::sincos(psi_);
+    p_phi_ = (L[0] * psi.sin + L[1] * psi.cos) * theta.sin + p_psi_ * theta.cos;
+    p_ = L[0] * psi.cos - L[1] * psi.sin;
     ready_ = true;
   }
 
   /// p_theta' = -dV/dtheta of the effective potential
   double force(double theta) const {
-    const double s = std::sin(theta), c = std::cos(theta);
+    const auto [s, c] = math::sincos(theta);
     return -(p_phi_ - p_psi_ * c) * (p_psi_ - p_phi_ * c) / (body_->I[0] * s * s * s) + M_ * s;
   }
 
@@ -75,7 +78,7 @@ std::string refuse_leapfrog(const Scene& scene) {
   if (!scene.inertia_B().is_diagonal() || I(0, 0) != I(1, 1)) return "another body";
   if (std::isnan(find_weight_arm(scene))) return "another torque";
   const double s =
-      std::hypot(scene.attitude().x, scene.attitude().y) * std::hypot(scene.attitude().z, scene.attitude().w);
+      math::hypot(scene.attitude().x, scene.attitude().y) * math::hypot(scene.attitude().z, scene.attitude().w);
   return s > 0.5e-8 ? "" : "a start at theta = 0 or pi";
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "polhode/math/detail/functions.hpp"
 #include "polhode/method/euler_problem.hpp"
 #include "polhode/scene/scene.hpp"
 
@@ -133,8 +134,9 @@ inline void exponential(const double* r, double* p) {
                                               (1 - x * (1.0 / 90) * (1 - x * (1.0 / 132) * (1 - x * (1.0 / 182)))))));
   } else {
     const double half = std::sqrt(x);
-    s = 0.5 * std::sin(half) / half;
-    p[3] = std::cos(half);
+    const math::SinCosPair turn = math::sincos(half);
+    s = 0.5 * turn.sin / half;
+    p[3] = turn.cos;
   }
   for (int i = 0; i < 3; ++i) p[i] = s * r[i];
 }

@@ -6,6 +6,7 @@
 #include "method/steps/magnus.hpp"
 #include "method/steps/radau_body.hpp"
 #include "method/steps/radau_system.hpp"
+#include "polhode/math/detail/functions.hpp"
 #include "polhode/ode/detail/first_step.hpp"
 #include "polhode/ode/detail/step_control.hpp"
 
@@ -34,7 +35,7 @@ class RadauStepper final : public ode::Stepper {
         atol_(tolerances.atol) {
     // The estimate is of order 3, the solution of 5: tolerances are moved so that errors go as what was asked, as in
     // RADAU5 (Hairer & Wanner 1996, sec. IV.8).
-    rtol_ = 0.1 * std::pow(tolerances.rtol, 2.0 / 3);
+    rtol_ = 0.1 * math::fast_pow(tolerances.rtol, 2.0 / 3);
     newton_tolerance_ = std::max(10 * std::numeric_limits<double>::epsilon() / rtol_, std::min(0.03, std::sqrt(rtol_)));
     std::copy_n(y0, N, y_);
     std::copy_n(body.start_carry(), 3, carry_);
@@ -195,7 +196,7 @@ class RadauStepper final : public ode::Stepper {
       if (last >= 0.0) {
         const double rate = now / last;
         if (rate < 1.0 && rate / (1 - rate) * now < newton_tolerance_) return Newton::converged;
-        if (rate >= 1.0 || std::pow(rate, most_iterations_ - n) / (1 - rate) * now > newton_tolerance_)
+        if (rate >= 1.0 || math::power(rate, most_iterations_ - n) / (1 - rate) * now > newton_tolerance_)
           return Newton::diverged;
       }
       last = now;

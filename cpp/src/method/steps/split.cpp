@@ -1,5 +1,7 @@
 #include "method/steps/body_stepper.hpp"
 
+#include "polhode/math/detail/functions.hpp"
+
 namespace polhode {
 namespace {
 
@@ -24,7 +26,7 @@ class Split {
   /// The flow of L_i^2 / (2 I_i): L turns by -a about axis i, the body by a = h L_i / I_i.
   void turn(int i, double h, double* L, double* q) const {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
-    const double half = 0.5 * h * (L[i] / body_->I[i]), s = std::sin(half), c = std::cos(half);
+    const auto [s, c] = math::sincos(0.5 * h * (L[i] / body_->I[i]));
     const double sin_a = 2 * s * c, cos_a = 1 - 2 * s * s, Lj = L[j];
     L[j] = cos_a * Lj + sin_a * L[k];
     L[k] = cos_a * L[k] - sin_a * Lj;

@@ -3,6 +3,7 @@
 #include "method/steps/body_stepper.hpp"
 #include "method/steps/free_drift.hpp"
 #include "polhode/exact/free_motion.hpp"
+#include "polhode/math/detail/functions.hpp"
 
 namespace polhode {
 namespace {
@@ -76,9 +77,9 @@ class ExactDrift {
     double r[3], spin[4] = {0, 0, 0, 1};
     for (int i = 0; i < 3; ++i) r[i] = h * (L[i] / across);
     exponential(r, p);
-    const double half = 0.5 * h * (L[axis_] / I_[axis_]) * ((across - I_[axis_]) / across);
-    spin[axis_] = std::sin(half);
-    spin[3] = std::cos(half);
+    const math::SinCosPair half = math::sincos(0.5 * h * (L[axis_] / I_[axis_]) * ((across - I_[axis_]) / across));
+    spin[axis_] = half.sin;
+    spin[3] = half.cos;
     turn_by(spin, p);
   }
 

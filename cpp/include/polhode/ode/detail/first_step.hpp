@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "polhode/math/detail/functions.hpp"
 #include "polhode/ode/problem.hpp"
 
 namespace polhode::ode {
@@ -33,7 +34,7 @@ double choose_first_step(const P& problem, const Tolerances& tolerances, int ord
   for (int i = 0; i < N; ++i) change[i] = (f1[i] - f[i]) / h0;
   const double d2 = norm_of(change, y1);
   const double size = std::max(d0, d2 * tau * tau);
-  const double h1 = std::isfinite(size) && size > 0 ? tau * std::pow(0.01 / size, 1.0 / order) : h0;
+  const double h1 = std::isfinite(size) && size > 0 ? tau * math::fast_pow(0.01 / size, 1.0 / order) : h0;
   return direction * std::min(std::max(std::min(100 * h0, h1), shortest_first_step(t)), span);
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "polhode/math/detail/functions.hpp"
+
 namespace polhode::ode {
 
 /// The expected error and cost of an adaptive method. Each number is good to about a factor of two and was fitted by
@@ -34,12 +36,12 @@ struct Forecast {
   }
 
   double compute_steps(double rtol, double turns, double stiffness) const {
-    const double accurate = 1 + 2 * std::numbers::pi * turns * steps_per_radian * std::pow(rtol, -power);
+    const double accurate = 1 + 2 * std::numbers::pi * turns * steps_per_radian * math::fast_pow(rtol, -power);
     return stability > 0.0 ? std::max(accurate, stiffness / stability) : accurate;
   }
 
   double compute_seconds(double rtol, double turns, double stiffness, double seconds_per_call) const {
-    const double order = 2 - 0.5 * std::log(rtol);
+    const double order = 2 - 0.5 * math::fast_log(rtol);
     return compute_steps(rtol, turns, stiffness) *
            (step_seconds + order_seconds * order * order + calls_per_step * seconds_per_call);
   }
