@@ -93,7 +93,10 @@ class Taylor {
           last = std::fmax(last, std::fabs(y_[i].c[m]));
         }
         if (first == 0 || last == 0) continue;
-        const Real limit = std::pow(tolerance * first / last, Real(1) / m);
+        // Rounded down to 8 bits, because the last bits of pow differ between processors.
+        int exponent = 0;
+        const Real root = std::frexp(std::pow(tolerance * first / last, Real(1) / m), &exponent);
+        const Real limit = std::ldexp(std::floor(256 * root), exponent - 8);
         if (h == 0 || limit < h) h = limit;
       }
     }

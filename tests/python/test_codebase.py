@@ -4,6 +4,7 @@ import ast
 import importlib.metadata
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 
@@ -76,6 +77,35 @@ def test_old_headers_name_the_new_place():
 
 def test_no_python_under_cpp():
     assert not [p for p in sources("cpp") if re.search(r"Python\.h|pybind11", p.read_text())]
+
+
+# What IEEE 754 does not fix, the system's mathematical library decides: its last bits differ between systems and
+# processors. `math/detail/functions.hpp` has the same functions with the same bits everywhere.
+NOT_FIXED = ("sin cos tan sincos asin acos atan atan2 sinh cosh tanh asinh acosh atanh exp exp2 exp10 expm1 log log2 "
+             "log10 log1p pow cbrt hypot erf erfc tgamma lgamma beta polar arg").split()
+
+
+def find_library_calls(text):
+    """The functions of the system's mathematical library that C++ code calls by a full name, such as `std::sin(`."""
+    code = re.sub(r'//[^\n]*|/\*.*?\*/|"(?:[^"\\\n]|\\.)*"', "", text, flags=re.S)
+    names = "|".join(NOT_FIXED)
+    return re.findall(rf"(?:\bstd|(?<![\w>]))::((?:{names})[fl]?)\b|(?<![\w:.>])((?:{names})l)\s*\(", code)
+
+
+def test_no_answer_comes_from_the_systems_mathematical_library():
+    found = find_library_calls("a = std::sin(x) + ::pow(x, y) + sinl(x) + math::cos(x); using std::exp; // std::cos(x)")
+    assert ["".join(pair) for pair in found] == ["sin", "pow", "sinl", "exp"]
+    assert not [f"{p.relative_to(ROOT)}: {''.join(call)}" for p in sources("cpp")
+                for call in find_library_calls(p.read_text())]
+
+
+@pytest.mark.skipif(sys.platform != "linux" or shutil.which("nm") is None, reason="needs nm")
+def test_the_compiled_module_asks_the_system_for_no_such_function():
+    done = subprocess.run(["nm", "-D", "--undefined-only", polhode._core.__file__], capture_output=True, text=True,
+                          check=True)
+    asked = {line.split()[-1].partition("@")[0] for line in done.stdout.splitlines()}
+    assert "malloc" in asked   # the list is one
+    assert not {name for name in asked if name.rstrip("fl") in NOT_FIXED or name in NOT_FIXED}
 
 
 def test_no_eigen_type_with_flag_dependent_alignment():

@@ -87,9 +87,11 @@ bool plan_damped(Decision& decision, const SolveOptions& options) {
     return seconds * find_factor(options.cost_factors, record.name);
   };
   const double radian = cost_per_radian(first, coarse), implicit_radian = cost_per_radian(second, coarse * scale);
-  const double stable =
-      radian / (explicitly.steps_per_radian * math::fast_pow(coarse, -explicitly.power)) * facts.decay / explicitly.stability;
-  const double step = implicit_radian / (implicitly.steps_per_radian * math::fast_pow(coarse * scale, -implicitly.power));
+  const auto steps_per_radian = [](const ode::Forecast& forecast, double rtol) {
+    return forecast.steps_per_radian * math::fast_pow(rtol, -forecast.power);
+  };
+  const double stable = radian / steps_per_radian(explicitly, coarse) * facts.decay / explicitly.stability;
+  const double step = implicit_radian / steps_per_radian(implicitly, coarse * scale);
   const double start_up = start_up_steps * step;
   const double all = run->work.back(), end = scene.t0() + facts.after;
 
