@@ -19,14 +19,14 @@ Trajectory integrate_problem(const Scene& scene, const P& problem, const RunOpti
   });
 }
 
-/// Euler's equations are compiled by name for no torque, gravity and gravity's gradient, which are common and cheap to
-/// evaluate. All other torques share one type: the time it costs is small beside theirs, and the compiler has a fifth of
-/// the work.
+/// Euler's equations are compiled separately without a torque, with gravity, and with gravity's gradient. These are
+/// common and cheap to evaluate. All other torques share one type, which costs little time in a run and saves four
+/// fifths of the compilation.
 template <class Method>
 Trajectory integrate_euler(const Scene& scene, const RunOptions& options) {
   const bool with_attitude = scene.want().attitude || scene.torque_sum().uses_attitude || !options.events.empty();
   const InertiaTensor& inertia = scene.inertia_B();
-  const auto go = [&]<bool diagonal, bool attitude>(const auto& torque) {
+  const auto run = [&]<bool diagonal, bool attitude>(const auto& torque) {
     const EulerProblem<std::remove_cvref_t<decltype(torque)>, diagonal, attitude> problem(inertia, torque);
     Trajectory trajectory = integrate_problem<Method>(scene, problem, options);
     trajectory.model = "euler", trajectory.state = attitude ? "omega, attitude" : "omega";
@@ -35,24 +35,24 @@ Trajectory integrate_euler(const Scene& scene, const RunOptions& options) {
   const auto& torques = scene.torques();
   const SeveralTorques all{torques};
   if (!inertia.is_diagonal())
-    return with_attitude ? go.template operator()<false, true>(all) : go.template operator()<false, false>(all);
+    return with_attitude ? run.template operator()<false, true>(all) : run.template operator()<false, false>(all);
   if (torques.empty()) {
-    return with_attitude ? go.template operator()<true, true>(NoTorque{})
-                         : go.template operator()<true, false>(NoTorque{});
+    return with_attitude ? run.template operator()<true, true>(NoTorque{})
+                         : run.template operator()<true, false>(NoTorque{});
   }
   if (torques.size() == 1 && with_attitude) {
     if (const auto* gravity = std::get_if<torques::Gravity>(&torques.front()))
-      return go.template operator()<true, true>(*gravity);
+      return run.template operator()<true, true>(*gravity);
     if (const auto* gradient = std::get_if<torques::GravityGradient>(&torques.front()))
-      return go.template operator()<true, true>(*gradient);
+      return run.template operator()<true, true>(*gradient);
   }
-  return with_attitude ? go.template operator()<true, true>(all) : go.template operator()<true, false>(all);
+  return with_attitude ? run.template operator()<true, true>(all) : run.template operator()<true, false>(all);
 }
 
 template <class Method>
 Trajectory integrate_lagrangian(const Scene& scene, const RunOptions& options) {
   constexpr const char* cause =
-      "Lagrange's equations in z-x-z angles divide by sin(theta); Euler's, the default, do not";
+      "Lagrange's equations in z-x-z angles divide by sin(theta), Euler's equations do not";
   using Problem = LagrangianProblem<SeveralTorques>;
   const double theta = Problem::compute_angles(scene.attitude())[1];
   if (!(math::sin(theta) > Problem::least_sine)) {
@@ -67,7 +67,7 @@ Trajectory integrate_lagrangian(const Scene& scene, const RunOptions& options) {
   return trajectory;
 }
 
-/// A method for any y' = f(t, y) at work on a scene.
+/// Integrates a scene by a method for any y' = f(t, y).
 template <class Method>
 Trajectory integrate_equations(const Scene& scene, const RunOptions& options) {
   return options.formulation == Formulation::euler ? integrate_euler<Method>(scene, options)

@@ -21,9 +21,9 @@ State to_state(const Unpack& unpack, double t, const double* y) {
 }
 
 std::vector<ode::Event> make_events(std::span<const SceneEvent> events, const Unpack& unpack) {
-  std::vector<ode::Event> made;
+  std::vector<ode::Event> converted;
   for (const SceneEvent& event : events) {
-    made.push_back({[&](double t, const double* y) {
+    converted.push_back({[&](double t, const double* y) {
                       const double value = event.function(to_state(unpack, t, y));
                       if (std::isnan(value)) {
                         throw InvalidInput("the event's function", "a number",
@@ -33,10 +33,10 @@ std::vector<ode::Event> make_events(std::span<const SceneEvent> events, const Un
                     },
                     event.direction, event.terminal});
   }
-  return made;
+  return converted;
 }
 
-/// Puts the rows of one direction of time where the trajectory wants them.
+/// Copies the rows of one direction of time into the trajectory.
 class SampleRows {
  public:
   SampleRows(const Scene& scene, const Unpack& unpack, const std::vector<std::size_t>& order,
@@ -55,7 +55,7 @@ class SampleRows {
     double* q = attitude_in_place ? trajectory_.attitude.data() + 4 * order_[first] : attitude_.data();
     unpack_(rows, count, w, q);
     for (std::size_t i = 0; i < count && times[i] == scene_.t0(); ++i) {
-      // Whatever variables the method integrates: the start is as it was given.
+      // The start is returned as given, whatever variables the method integrates.
       const Quat& start = scene_.attitude();
       std::copy_n(scene_.omega().data(), 3, w + 3 * i);
       q[4 * i] = start.x, q[4 * i + 1] = start.y, q[4 * i + 2] = start.z, q[4 * i + 3] = start.w;
@@ -100,7 +100,8 @@ EndingText describe(ode::Ending ending, double t, long max_steps) {
       return {Status::failed, "the step became smaller than the spacing of the times" + when};
     case Ending::not_finite: return {Status::failed, "the derivative is not finite just beyond t = " + at};
     case Ending::no_solution:
-      return {Status::failed, "the implicit equations of a step have no solution near" + when + ": take shorter steps"};
+      return {Status::failed,
+              "the implicit equations of a step have no solution near t = " + at + "; take shorter steps"};
   }
   return {Status::finished, ""};
 }
@@ -120,7 +121,7 @@ Trajectory integrate(const Scene& scene, const RunOptions& options, const double
 
   const std::vector<ode::Event> events = make_events(options.events, unpack);
   std::vector<unsigned char> reached(times.size(), 0);
-  // False when the other direction is not to be begun.
+  // Returns false if the run must not continue in the other direction.
   const auto integrate_direction = [&](const std::vector<std::size_t>& order, ode::DenseOutput& dense) {
     if (order.empty()) return true;
     std::vector<double> sorted(order.size());

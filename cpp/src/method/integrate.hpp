@@ -9,7 +9,7 @@
 
 namespace polhode {
 
-/// From a function that unpacks one state of `dimension` numbers.
+/// Makes an Unpack from a function that unpacks one state of `dimension` numbers.
 template <int dimension, class UnpackOne>
 Unpack by_rows(UnpackOne unpack_one) {
   return [unpack_one](const double* rows, std::size_t n, double* omega, double* attitude) {
@@ -17,11 +17,11 @@ Unpack by_rows(UnpackOne unpack_one) {
   };
 }
 
-/// A stepper from the start state towards t_end.
+/// Makes a stepper from the start state towards t_end.
 using MakeStepper = std::function<std::unique_ptr<ode::Stepper>(const double* y0, double t_end)>;
 
-/// Integrates a scene in both directions of time and collects samples, events and dense output, whatever the method and
-/// the variables.
+/// Integrates a scene in both directions of time and collects samples, events and dense output. It works for any method
+/// and any variables.
 Trajectory integrate(const Scene& scene, const RunOptions& options, const double* y0, const Unpack& unpack,
                      const MakeStepper& make_stepper);
 

@@ -11,11 +11,11 @@ namespace {
 
 const std::vector<BodyMethod>& all() {
   static const std::vector<BodyMethod> list = [] {
-    std::vector<BodyMethod> made;
-#define POLHODE_METHOD(name) made.push_back(name##_method);
+    std::vector<BodyMethod> methods;
+#define POLHODE_METHOD(name) methods.push_back(name##_method);
 #include "polhode/method/methods.def"
 #undef POLHODE_METHOD
-    return made;
+    return methods;
   }();
   return list;
 }
@@ -35,9 +35,9 @@ const BodyMethod& find_body_method(std::string_view name) {
 
 std::span<const ode::MethodRecord> methods() {
   static const std::vector<ode::MethodRecord> records = [] {
-    std::vector<ode::MethodRecord> made;
-    for (const BodyMethod& method : all()) made.push_back(method.record);
-    return made;
+    std::vector<ode::MethodRecord> copies;
+    for (const BodyMethod& method : all()) copies.push_back(method.record);
+    return copies;
   }();
   return records;
 }

@@ -7,28 +7,28 @@
 
 namespace polhode {
 
-/// A way to integrate one body over one span. Whoever adds one keeps this contract:
+/// A method to integrate one body over one span. A new method must keep this contract:
 ///
 /// 1. `steps/<name>.cpp` defines `const BodyMethod <name>_method`, and `polhode/method/methods.def` lists <name>.
 /// 2. The record says what is true: order, `keeps`, `needs`, implicit, adaptive. The conformance tests measure it.
-/// 3. `integrate` returns a sample for each of the scene's times that was reached, in the scene's order, before and after
-///    the start, and the start itself bit for bit as it was given.
-/// 4. It goes through `polhode::integrate`, which asks for progress, finds events and obeys `max_steps`.
+/// 3. `integrate` returns a sample for each of the scene's times that was reached, in the scene's order. The times may
+///    lie before and after the start. A sample at the start equals the given start bit for bit.
+/// 4. It calls `polhode::integrate`, which reports progress, finds events and obeys `max_steps`.
 /// 5. It fills `Trajectory::model` and `Trajectory::state`.
-/// 6. `refuse` names in words what the method cannot integrate. A scene that is not refused is integrated.
-/// 7. The torque is read through the scene's torques alone; a torque that becomes infinite ends the run with a message.
-/// 8. Equal inputs give equal bits on every machine: exact arithmetic and polhode's own functions, no mathematical
-///    library of the system.
-/// 9. A record with a forecast can be chosen by a plan: `benchmarks/planner/fit.py` measures the forecast.
+/// 6. `refuse` says in words what the method cannot integrate. A scene that is not refused is integrated.
+/// 7. The torque comes from the scene's torques alone. A torque that becomes infinite ends the run with a message.
+/// 8. Equal inputs give equal bits on every machine. So it uses IEEE arithmetic and polhode's own functions, and no
+///    mathematical library of the system.
+/// 9. A plan can choose a method whose record has a forecast. `benchmarks/planner/fit.py` measures the forecast.
 struct BodyMethod {
   ode::MethodRecord record;
   Trajectory (*integrate)(const Scene& scene, const RunOptions& options);
-  std::string (*refuse)(const Scene& scene) = nullptr;   ///< "" when it takes the scene; null: it takes any
-  bool of_bodies = true;                                 ///< steps the body itself and no other formulation
+  std::string (*refuse)(const Scene& scene) = nullptr;   ///< "" if it can integrate the scene; null: any scene
+  bool of_bodies = true;                                 ///< has its own equations, and no other formulation
   bool carries_error = false;                            ///< fills RunOptions::trace
 };
 
-/// @throws InvalidInput for an unknown name, with the names there are.
+/// @throws InvalidInput for an unknown name, listing the known names.
 const BodyMethod& find_body_method(std::string_view name);
 
 #define POLHODE_METHOD(name) extern const BodyMethod name##_method;

@@ -8,7 +8,7 @@
 
 namespace polhode {
 
-/// The order in which the sample times are reached: those at or after the start forwards, the others backwards.
+/// The order in which a run reaches the sample times: forward from the start, and backward from it.
 struct SampleOrder {
   std::vector<std::size_t> forward, backward;
 

@@ -9,16 +9,16 @@ namespace polhode {
 
 inline constexpr double unknown_error = std::numeric_limits<double>::infinity();
 
-/// One run, or one pair of runs, towards a certificate.
+/// One run, or one pair of runs, and the error that it proves.
 struct Attempt {
   Motion motion;
   double error = unknown_error;          ///< bound on the error of all samples
-  double holds_until = unknown_error;    ///< how far from the start the accuracy holds [s]; infinity: to the end
+  double holds_until = unknown_error;    ///< time from the start for which the accuracy holds [s]; infinity: to the end
 
   bool finished() const { return motion.status == Status::finished || motion.status == Status::event; }
 };
 
-/// Runs a decision's method and adds up what all runs cost.
+/// Runs a decision's method and sums the counts of all runs.
 class CountedRuns {
  public:
   CountedRuns(const Decision& decision, const SolveOptions& options)

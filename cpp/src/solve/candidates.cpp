@@ -14,10 +14,10 @@ namespace {
 
 // Costs of a closed form [s], by benchmarks/planner/fit.py.
 constexpr double free_start = 1.5e-6, free_sample = 8e-9, top_start = 3.6e-6, top_sample = 9e-9;
-// What carrying the error costs, as a part of the run itself.
+// The cost of a run that carries its error, as a multiple of the run without.
 constexpr double carried_cost = 1.35, carried_cost_stiff = 1.9;
 
-/// Those that reach the accuracy by their time, then the others by their error.
+/// Candidates that reach the accuracy are ordered by time, and come before the others, ordered by error.
 bool is_better(const Candidate& a, const Candidate& b, double accuracy) {
   const double enough = forecast_slack * accuracy;
   const bool a_reaches = a.predicted_error <= enough, b_reaches = b.predicted_error <= enough;
@@ -61,15 +61,15 @@ Candidate evaluate_method(const Scene& scene, const Facts& facts, const SolveOpt
   Candidate candidate{.name = std::string(record.name)};
   const ode::Forecast& forecast = record.forecast;
   if (!record.adaptive) {
-    candidate.why_not = "takes steps of one fixed length, whose error is not in hand";
+    candidate.why_not = "takes steps of a fixed length, which do not control the error";
     return candidate;
   }
   if (!forecast.known()) {
-    candidate.why_not = "nothing is known beforehand about its error";
+    candidate.why_not = "has no forecast of its error";
     return candidate;
   }
   if (options.formulation != Formulation::euler && find_body_method(record.name).of_bodies) {
-    candidate.why_not = "steps the body itself, not its angles";
+    candidate.why_not = "integrates Euler's equations only";
     return candidate;
   }
   candidate.why_not = compute_refusal(record.name, scene);
@@ -79,7 +79,7 @@ Candidate evaluate_method(const Scene& scene, const Facts& facts, const SolveOpt
   candidate.rtol = std::max(coarse / pair_ratio, record.least_rtol);
   const double per_call = find_seconds_per_call(scene);
   candidate.predicted_seconds = forecast.compute_seconds(candidate.rtol, facts.turns, facts.stiffness, per_call);
-  // The coarser run of the pair is there only to be compared with.
+  // The coarser run of the pair serves for comparison only.
   const double compared = std::max(coarse, pair_ratio * record.least_rtol);
   if (options.certify && find_body_method(record.name).carries_error) {
     candidate.predicted_seconds *= facts.is_stiff_for_series() ? carried_cost_stiff : carried_cost;
@@ -87,7 +87,7 @@ Candidate evaluate_method(const Scene& scene, const Facts& facts, const SolveOpt
     candidate.predicted_seconds += forecast.compute_seconds(compared, facts.turns, facts.stiffness, per_call);
   }
   candidate.predicted_seconds *= find_factor(options.cost_factors, record.name);
-  // What the certificate will claim is the error of the coarser run.
+  // The certificate will claim the error of the coarser run.
   const double shown = options.certify ? compared : candidate.rtol;
   candidate.predicted_error = forecast.compute_error(shown, facts.turns);
   return candidate;
@@ -106,7 +106,7 @@ double find_atol(const ode::MethodRecord& record, const Scene& scene, double rto
   if (!record.implicit) return 0.0;
   double span = 0.0;
   for (const double t : scene.times()) span = std::max(span, std::abs(t - scene.t0()));
-  // At most 1: the same number is allowed in the quaternion's components.
+  // At most 1, because the quaternion's components have the same tolerance.
   return rtol * std::min({1.0, scene.omega().norm(), 1.0 / span});
 }
 
@@ -129,7 +129,7 @@ Candidate choose_method(const Scene& scene, const Facts& facts, const SolveOptio
     if (!candidate.why_not.empty()) continue;
     if (!best || is_better(candidate, *best, get_accuracy(options))) best = std::move(candidate);
   }
-  if (!best) throw InvalidInput("scene", "one that some method takes", "one that none does");
+  if (!best) throw InvalidInput("scene", "integrable by at least one method", "one that every method refuses");
   return *best;
 }
 

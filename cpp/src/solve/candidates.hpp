@@ -6,13 +6,13 @@
 #include "polhode/solve/closed_form.hpp"
 #include "polhode/solve/plan.hpp"
 
-// What each exact model and each method would cost and claim, and which of them is taken.
+// The expected cost and error of each exact model and each method, and the choice between them.
 namespace polhode {
 
 inline constexpr double default_accuracy = 1e-9;
-inline constexpr double forecast_slack = 1.1;         ///< a forecast this near the accuracy reaches it
-inline constexpr double pair_ratio = 5.0;             ///< of the tolerances of the two runs of a certificate
-inline constexpr double custom_call_seconds = 3e-7;    ///< of a user's own torque, somewhere between C and Python
+inline constexpr double forecast_slack = 1.1;         ///< forecast errors up to this times the accuracy pass
+inline constexpr double pair_ratio = 5.0;             ///< ratio of the tolerances of the two runs of a certificate
+inline constexpr double custom_call_seconds = 3e-7;    ///< of a user's own torque: between C and Python
 
 double get_accuracy(const SolveOptions& options);
 bool carries_attitude(const Scene& scene, const Facts& facts, const SolveOptions& options);
@@ -23,8 +23,8 @@ Candidate evaluate_method(const Scene& scene, const Facts& facts, const SolveOpt
                           const ode::MethodRecord& record);
 Candidate evaluate_closed_form(const Scene& scene, const ClosedForm& form, const Facts& facts,
                                const SolveOptions& options);
-/// The absolute tolerance of an implicit method [rad/s]: smaller rates are too small to affect any sample. It is 0 for
-/// explicit methods, whose steps would not be longer for it.
+/// The absolute tolerance of an implicit method [rad/s]: smaller rates affect no sample. It is 0 for explicit methods,
+/// because it would not lengthen their steps.
 double find_atol(const ode::MethodRecord& record, const Scene& scene, double rtol);
 double predict_closed_form(std::string_view model, double samples, const CostFactors* factors);   ///< [s]
 Candidate choose_method(const Scene& scene, const Facts& facts, const SolveOptions& options);

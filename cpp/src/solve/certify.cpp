@@ -14,16 +14,16 @@
 namespace polhode {
 namespace {
 
-constexpr int pilot_intervals = 48;        // of the span, to count its revolutions
-constexpr double chaotic_safety = 2.5;     // where a first run has lost more than is asked
-constexpr double give_up_factor = 30.0;    // times the accuracy: a run that has lost as much is not worth its end
+constexpr int pilot_intervals = 48;        // of the span, to count the revolutions
+constexpr double chaotic_safety = 2.5;     // after a first run whose error exceeds the accuracy
+constexpr double give_up_factor = 30.0;    // times the accuracy: a run with a larger error is abandoned
 
-/// One scene on its way to an answer whose error is known.
+/// Repeats the run of one scene until its error is known and small enough.
 class Certifier {
  public:
   Certifier(const Decision& decision, const SolveOptions& options)
       : decision_(decision), options_(options), runs_(decision, options), accuracy_(decision.plan.accuracy) {
-    // Rounding is as large as accuracies beyond this one, and differences of two runs are less faithful.
+    // Below these accuracies rounding matters, and the difference of two runs is a less reliable measure.
     if (accuracy_ <= 2e-12) {
       safety_ = carries_error() ? 4.0 : 5.0, ratio_ = 3 * pair_ratio;
     } else if (accuracy_ <= 1e-10) {
@@ -43,11 +43,11 @@ class Certifier {
  private:
   const ode::MethodRecord& record() const { return runs_.method().record; }
 
-  /// A motion in pieces has its whole chain run twice.
+  /// Pieces are certified by a pair of runs of all pieces.
   bool carries_error() const { return runs_.method().carries_error && decision_.pieces.size() == 0; }
 
-  /// A torque may have spun the body up: then a pilot run counts revolutions. Where a tighter tolerance costs little,
-  /// that run would cost more than it saves.
+  /// If a torque may spin the body up, a pilot run counts the revolutions. A method of adaptive order needs no pilot
+  /// run, because a smaller tolerance costs it little.
   double find_turns() {
     const double expected = decision_.facts.turns;
     if (!decision_.facts.may_spin_up || record().adaptive_order) return expected;
@@ -65,7 +65,7 @@ class Certifier {
     return std::isfinite(turns) ? turns : expected;
   }
 
-  /// Where all is lost by the end, its size says nothing: then the run counts that is good for longest.
+  /// Errors above 0.5 are meaningless numbers. Of two such runs the one whose accuracy holds longer is better.
   bool is_better(const Attempt& attempt) const {
     if (!(attempt.error < unknown_error)) return false;
     return attempt.error > 0.5 && best_.error > 0.5 ? attempt.holds_until > best_.holds_until
@@ -84,15 +84,15 @@ class Certifier {
       stalled = round == 0 || error < 0.5 * best_.error || (lost && is_better(attempt)) ? 0 : stalled + 1;
       if (round == 0 || is_better(attempt) || attempt.motion.status == Status::stopped) best_ = std::move(attempt);
       if (done || stalled >= 2 || coarse <= ratio_ * least) break;
-      // Errors fall more slowly than tolerances do, and a third try costs more than a finer second one.
+      // Errors fall more slowly than tolerances, and a third try costs more than a finer second one.
       coarse = std::max(coarse / std::clamp(math::fast_pow(2 * error / accuracy_, 1.2), 3.0, 1e4), ratio_ * least);
     }
     pair.drop_added_times(best_.motion);
     return conclude();
   }
 
-  /// The error is proportional to the tolerance until it is rounding, so the second run is at the right tolerance. A run
-  /// that has lost much more than asked is given up before its end.
+  /// The error is proportional to the tolerance until rounding dominates, so the second run has the right tolerance. A
+  /// run whose error far exceeds the accuracy is abandoned before its end.
   Motion certify_carried(double rtol) {
     const double least = record().least_rtol;
     for (bool first = true;; first = false) {
@@ -100,7 +100,7 @@ class Certifier {
       double given_up = 0.0;
       Attempt attempt = run_carried(runs_, rtol, safety_, last ? unknown_error : give_up_factor, given_up);
       if (given_up > 0) {
-        // What grew so much in a part of the span may grow as much again in each other part of its length.
+        // The error may grow by the same factor in each further part of the span.
         const double parts = std::min(decision_.facts.span() / given_up, 4.0);
         rtol = std::max(rtol / math::fast_pow(10 * give_up_factor, parts), least);
         safety_ = std::max(safety_, chaotic_safety);
@@ -110,7 +110,7 @@ class Certifier {
       const bool ended = !attempt.finished(), stalled = !first && error > 0.5 * best_.error;
       if (best_.motion.t.empty() || is_better(attempt) || ended) best_ = std::move(attempt);
       if (ended || error <= accuracy_ || last) return conclude();
-      // A motion that multiplies its errors shows the factor in a run at its own tolerance, but not to the last digit.
+      // The run measures how much the motion amplifies errors, but only approximately: the safety factor grows.
       const double wider = std::max(1.0, chaotic_safety / safety_);
       safety_ *= wider;
       rtol = stalled ? least : std::max(rtol / std::clamp(2 * wider * error / accuracy_, 10.0, 1e8), least);
@@ -125,7 +125,7 @@ class Certifier {
     if (best_.finished()) {
       best_.motion.error = forecast.known() ? forecast.compute_error(rtol, turns) : accuracy_;
       best_.motion.error_kind = "expected";
-      note("the error is what such scenes have at this tolerance, not certified");
+      note("the error is expected from the tolerance; no certificate was requested");
     }
     return finish();
   }
@@ -136,18 +136,18 @@ class Certifier {
     if (!best_.finished() || motion.t.empty() || !(best_.error < unknown_error)) {
       motion.error = std::numeric_limits<double>::quiet_NaN();
       if (motion.t.empty()) {
-        note("no sample was reached whose error could be bounded");
+        note("no sample was reached, so no error could be bounded");
       } else if (best_.finished()) {
         motion.status = Status::failed;
-        note("the run it was compared with failed, so that nothing is known of its error");
+        note("the comparison run failed, so the error is unknown");
       }
       return finish();
     }
     if (best_.error <= accuracy_) {
       motion.error_kind = "bounded";
-      note(carries_error() ? "certified: what each step loses and what rounding takes, carried along to the end, stays "
+      note(carries_error() ? "certified: the truncation and rounding errors of all steps, propagated to the end, stay "
                              "within the bound"
-                           : "certified: with the inputs moved by two units in the last place, a coarser run stays "
+                           : "certified: a coarser run, with inputs changed by two units in the last place, stays "
                              "within the bound");
     } else {
       motion.error_kind = "limit";
@@ -161,13 +161,13 @@ class Certifier {
     int n = 0;
     if (best_.error > 0.5) {
       n = std::snprintf(text, sizeof text,
-                        "the accuracy of %.3g was not reached: over this span rounding and the inputs' last digits "
-                        "grow until nothing is certain",
+                        "the accuracy of %.3g was not reached: rounding errors, including those of the inputs, grow "
+                        "over this span until no digit is certain",
                         accuracy_);
     } else {
       n = std::snprintf(text, sizeof text,
-                        "the accuracy of %.3g was not reached: rounding and the inputs' last digits grow to %.2g "
-                        "over this span, by %s in float64",
+                        "the accuracy of %.3g was not reached: rounding errors, including those of the inputs, grow "
+                        "to %.2g over this span with %s",
                         accuracy_, best_.error, decision_.plan.method.c_str());
     }
     const bool holds_for_a_while = best_.holds_until > 0 && best_.holds_until < unknown_error;

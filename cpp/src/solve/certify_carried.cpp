@@ -25,7 +25,7 @@ Attempt run_carried(CountedRuns& runs, double rtol, double safety, double most, 
   }
   const double rates = motion.omega.empty() || trace.rate_error == 0.0 ? 0.0 : trace.rate_error / size;
   const double error = std::max(rates, motion.attitude.empty() ? 0.0 : trace.attitude_error);
-  // What is carried along grows without end; two attitudes are no farther apart than half a turn.
+  // The carried error can grow without bound, but two attitudes differ by half a turn at most.
   attempt.error = safety * std::min(error, std::numbers::pi);
   attempt.holds_until = attempt.error <= accuracy ? unknown_error : trace.holds_until;
   return attempt;

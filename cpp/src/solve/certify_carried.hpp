@@ -4,11 +4,11 @@
 
 namespace polhode {
 
-/// A run that carries its error along: each step adds what its truncated series loses and what rounding takes, and the
-/// linearised motion carries the sum to the next step.
-/// @param safety  the factor between what was carried and what is claimed
-/// @param most    the run is given up where its error exceeds this multiple of the accuracy
-/// @return an attempt without motion where the run was given up; `given_up` is then how far it came [s]
+/// A run that propagates its own error. Each step adds its truncation and rounding errors, and the linearised motion
+/// propagates their sum to the next step.
+/// @param safety  the factor between the propagated error and the claimed error
+/// @param most    the run is abandoned when its error exceeds this multiple of the accuracy
+/// @return an attempt without motion if the run was abandoned; `given_up` is then the time from the start [s]
 Attempt run_carried(CountedRuns& runs, double rtol, double safety, double most, double& given_up);
 
 }  // namespace polhode

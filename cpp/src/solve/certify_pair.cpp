@@ -47,9 +47,9 @@ Attempt PairCertificate::run(double coarse, double fine) {
   Attempt attempt{.motion = runs_.run(longer_ ? *longer_ : scene, runs_.options(), fine)};
   Motion& motion = attempt.motion;
   motion.rtol_used = fine;
-  const double formulas = std::isnan(motion.error) ? 0.0 : motion.error;   // of closed forms between the steps
+  const double formulas = std::isnan(motion.error) ? 0.0 : motion.error;   // of the pieces with closed forms
   if (!attempt.finished() || motion.t.empty()) return attempt;
-  // A terminal event leaves the rest of the times unanswered: they are not compared either.
+  // After a terminal event the remaining times have no samples: they are not compared.
   const bool whole = motion.t.size() == perturbed_->times().size();
   const Motion other =
       runs_.run(whole ? *perturbed_ : with_times(*perturbed_, motion.t), comparison_options_, coarse, true);

@@ -6,16 +6,16 @@
 
 namespace polhode {
 
-/// A pair of runs: a coarser one with every input changed by two units in the last place, and a finer one with the
-/// inputs as they are, which is returned. Their difference is the error of the coarser run and what rounding of the
-/// inputs does to it.
+/// A pair of runs. The finer run has the inputs as given and is returned. The coarser run has every input changed by
+/// two units in the last place. Their difference contains the error of the coarser run and the effect of rounded
+/// inputs.
 class PairCertificate {
  public:
   PairCertificate(CountedRuns& runs, double safety);
 
   Attempt run(double coarse, double fine);
 
-  /// Removes the rows of the times that were added for the comparison alone.
+  /// Removes the rows of times that were added for the comparison.
   void drop_added_times(Motion& motion) const;
 
  private:
@@ -25,7 +25,7 @@ class PairCertificate {
   std::optional<Scene> longer_, perturbed_;
 };
 
-/// `count` + 1 times over the whole span, evenly spread.
+/// `count` + 1 evenly spaced times over the whole span.
 std::vector<double> spread_times(const Decision& decision, int count);
 
 }  // namespace polhode

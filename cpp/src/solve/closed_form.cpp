@@ -28,7 +28,7 @@ std::string degrees(double angle) {
   return text;
 }
 
-/// The one gravity of a scene in which nothing else acts.
+/// The gravity of a scene in which it is the only torque.
 const torques::Gravity* find_only_gravity(const Scene& scene) {
   const torques::Gravity* found = nullptr;
   for (const AnyTorque& torque : scene.torques()) {
@@ -40,8 +40,8 @@ const torques::Gravity* find_only_gravity(const Scene& scene) {
   return found;
 }
 
-/// The symmetry axis HeavyTop would take, from moments equal to the last bit; none for a full tensor that only nearly
-/// is one.
+/// The symmetry axis of HeavyTop, which requires two moments equal bit for bit. A full tensor has none, because its
+/// moments are rounded.
 std::optional<int> find_top_axis(const Scene& scene, const Vector3d& arm) {
   const Matrix3d& I = scene.inertia_B().matrix();
   if (!scene.inertia_B().is_diagonal()) return std::nullopt;
@@ -49,7 +49,7 @@ std::optional<int> find_top_axis(const Scene& scene, const Vector3d& arm) {
     const int a = (axis + 1) % 3, b = (axis + 2) % 3;
     if (I(a, a) != I(b, b)) continue;
     if (arm[a] == 0.0 && arm[b] == 0.0) return axis;
-    return std::nullopt;   // HeavyTop takes the first pair that is equal
+    return std::nullopt;   // HeavyTop takes the first equal pair
   }
   return std::nullopt;
 }
@@ -74,7 +74,7 @@ bool is_steady(const Facts& facts) {
 std::string refuse_rest(const Scene& scene, const Facts& facts) {
   std::string torques = refuse_free(scene, facts);
   if (!torques.empty()) return torques;
-  return refuse_unless(scene.omega().isZero(0.0), "it turns");
+  return refuse_unless(scene.omega().isZero(0.0), "the body rotates");
 }
 
 std::string refuse_spherical(const Scene& scene, const Facts& facts) {
@@ -101,53 +101,54 @@ std::string refuse_symmetric(const Scene& scene, const Facts& facts) {
 std::string refuse_separatrix(const Scene& scene, const Facts& facts) {
   std::string torques = refuse_free(scene, facts);
   if (!torques.empty()) return torques;
-  if (facts.symmetry != Symmetry::triaxial) return "it has no intermediate axis";
-  if (facts.separatrix == 0.0 && facts.off_axis > 0.0) return "";
+  if (facts.symmetry != Symmetry::triaxial) return "the body has no intermediate axis";
+  if (facts.off_axis == 0.0) return "omega is along a principal axis";
+  if (facts.separatrix == 0.0) return "";
   char text[64];
-  std::snprintf(text, sizeof text, "k'^2 = %.2g, and it is 0 on the separatrix alone", facts.separatrix);
+  std::snprintf(text, sizeof text, "k'^2 = %.2g, not exactly 0", facts.separatrix);
   return text;
 }
 
 std::string refuse_triaxial(const Scene& scene, const Facts& facts) { return refuse_free(scene, facts); }
 
 std::string refuse_top(const Scene& scene, const Facts& facts) {
-  if (facts.is_free()) return "no weight acts on it";
+  if (facts.is_free()) return "no gravity acts";
   const torques::Gravity* gravity = find_only_gravity(scene);
-  if (gravity == nullptr) return "needs gravity on a pivot and nothing else";
+  if (gravity == nullptr) return "needs gravity as the only torque";
   if (std::min(facts.gap_low, facts.gap_high) > symmetry_gap) {
     return "the closest two moments differ by " + percent(std::min(facts.gap_low, facts.gap_high));
   }
   return refuse_unless(find_top_axis(scene, gravity->arm()).has_value(),
-                       "the centre of mass is off the axis of two moments equal to the last bit");
+                       "the centre of mass is off the axis whose other two moments are equal bit for bit");
 }
 
 constexpr std::string_view jacobi = "Jacobi 1850; Klein & Sommerfeld 1897-1910 (Cayley-Klein form)";
 
 constexpr ExactModel models[] = {
-    {"rest", "no torque, no rotation: the attitude stays", "Newton's first law", refuse_rest},
+    {"rest", "no torque and no rotation: the attitude is constant", "Newton's first law", refuse_rest},
     {"spherical", "three equal moments: omega is constant", "Euler 1758", refuse_spherical},
     {"steady", "rotation about a principal axis: omega is constant", "Euler 1758", refuse_steady},
-    {"symmetric", "two equal moments: regular precession, in sines and cosines", "Poinsot 1834", refuse_symmetric},
-    {"separatrix", "L^2 = 2 T I2 exactly: one flip, in hyperbolic functions", jacobi, refuse_separatrix},
-    {"triaxial", "three moments: elliptic and theta functions", jacobi, refuse_triaxial},
-    {"heavy_top", "Lagrange's top: symmetric, on a pivot on its axis, under gravity; theta functions",
+    {"symmetric", "two equal moments: regular precession, by sines and cosines", "Poinsot 1834", refuse_symmetric},
+    {"separatrix", "L^2 = 2 T I2 exactly: one flip, by hyperbolic functions", jacobi, refuse_separatrix},
+    {"triaxial", "three different moments: elliptic and theta functions", jacobi, refuse_triaxial},
+    {"heavy_top", "Lagrange's top: a symmetric body on a pivot on its axis under gravity; theta functions",
      "Klein & Sommerfeld 1897-1910", refuse_top},
 };
 
-/// How far the closed form moves at the scene's times (sixteen of them) when its input moves by a part 2^-46.
+/// The largest distance of two closed forms at sixteen of the scene's times.
 double compare_closed_forms(const Scene& scene, const ClosedForm& a, const ClosedForm& b) {
   constexpr std::size_t most = 16;
   const std::vector<double>& times = scene.times();
   const std::size_t n = std::min(most, times.size());
   double t[most], wa[3 * most], wb[3 * most], qa[4 * most], qb[4 * most];
-  // The last ones, and evenly spread ones before them.
+  // The last time, and evenly spread times before it.
   for (std::size_t i = 0; i < n; ++i) t[i] = times[times.size() - 1 - i * ((times.size() - 1) / n)] - scene.t0();
   a.at(t, n, wa, qa);
   b.at(t, n, wb, qb);
   return compute_distance(n, wa, qa, wb, qb);
 }
 
-constexpr double nudge = 0x1p-46;
+constexpr double nudge = 0x1p-46;   // relative change of an input, to measure its effect
 
 }  // namespace
 
@@ -202,7 +203,7 @@ double compute_closed_form_error(const Scene& scene, const Facts& facts, const C
       error += 4 * (u / nudge) * compare_closed_forms(scene, form, ClosedForm(other));
     }
   } else if (!scene.inertia_B().is_diagonal() && !scene.omega().isZero(0.0)) {
-    // The principal moments and axes of a full tensor are good to a few units of rounding of the largest.
+    // The principal moments and axes of a full tensor have errors of a few units of rounding of the largest moment.
     const PrincipalAxes& principal = scene.inertia_B().principal();
     const double largest = principal.moments[2];
     const auto perturbed = [&](double sign) {

@@ -64,7 +64,7 @@ void require_true_claims(const Scene& scene) {
     if (custom == nullptr) continue;
     const TorqueTraits claims = custom->traits();
     if (claims.uses_time && claims.uses_attitude && claims.uses_rates) continue;
-    // The start, and three states near it and over the first eighth of the span.
+    // The start, and three states over the first eighth of the span.
     for (int i = 0; i < 4; ++i) {
       const double s = i / 24.0;
       const Look here{scene.t0() + s * span, scene.omega() + s * size * Vector3d{1.0, -0.5, 0.7},
@@ -75,9 +75,9 @@ void require_true_claims(const Scene& scene) {
         const Vector3d then = call(*custom, other, scene.inertia_B().matrix());
         if (then == tau || !then.allFinite() || !tau.allFinite()) return;
         throw InvalidInput(where,
-                           std::string(claim) + "=True, for its torque changes when only the " + changed + " does",
+                           "given " + std::string(claim) + "=True, because its torque depends on " + changed,
                            text(tau) + " and " + text(then) + " N m at t = " + to_text(here.t) + " s",
-                           "the claim makes the answer wrong; leave it out when in doubt");
+                           "a false claim gives a wrong motion; leave it out when in doubt");
       };
       Look other = here;
       other.t += 0.3 * (1 - s) * span;

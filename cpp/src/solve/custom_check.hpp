@@ -4,13 +4,13 @@
 
 namespace polhode {
 
-/// Refuses a torque that is no number at the start, and claims of custom torques that are not true.
+/// Refuses a torque that is not finite at the start, and a false claim of a custom torque.
 /// @throws InvalidInput
 void check_torques(const Scene& scene);
 
-/// Calls each custom torque that claims not to see time, attitude or rates a few times, with only that changed: near
-/// the start and over the first part of the span. @throws InvalidInput, naming the claim, when its torque changes: a
-/// plan built on it would be wrong. What the function throws comes through.
+/// Checks custom torques that claim not to depend on time, attitude or rates. Calls each a few times, near the start
+/// and over the first part of the span, with only that argument changed.
+/// @throws InvalidInput, naming the claim, if the torque changes. Exceptions of the function pass through.
 void require_true_claims(const Scene& scene);
 
 }  // namespace polhode

@@ -10,8 +10,8 @@ namespace polhode {
 namespace {
 
 [[noreturn]] void throw_no_closed_form(const Scene& scene, const Facts& facts) {
-  throw InvalidInput("method 'exact'", "used where a closed form holds", exact_models().back().refuse(scene, facts),
-                     "no closed form is known for it; leave method out");
+  throw InvalidInput("method 'exact'", "used with a scene that has a closed form", "one without",
+                     exact_models().back().refuse(scene, facts) + "; leave method out");
 }
 
 }  // namespace

@@ -8,14 +8,14 @@
 
 namespace polhode {
 
-/// How a scene is answered: made once by decide(), then carried out by execute() or put into words by explain().
+/// How a scene is solved. decide() makes it once; execute() carries it out, and explain() describes it.
 struct Decision {
-  Scene scene;                             ///< as given, or without windows where none ends within the span
-  Facts facts = {};                        ///< of pieces: `turns` are those whose forecast is that of the whole chain
+  Scene scene;                             ///< as given; without windows if none begins or ends within the span
+  Facts facts = {};                        ///< of pieces: `turns` gives the forecast of all pieces together
   Plan plan = {};
-  Pieces pieces = {};                      ///< empty where the span is not cut
+  Pieces pieces = {};                      ///< empty if the span is not cut
   std::optional<ClosedForm> form = {};     ///< of the whole span
-  double turns = 0.0;                      ///< of all pieces together, as a person counts revolutions
+  double turns = 0.0;                      ///< revolutions of all pieces together
 };
 
 }  // namespace polhode

@@ -8,8 +8,8 @@
 
 namespace polhode {
 
-/// The distance of two motions at n samples, as the accuracy is meant: the larger of |omega - omega'| relative to the
-/// largest |omega|, and the angle between the attitudes [rad]. Either pair may be null. A NaN comes through.
+/// The distance of two motions at n samples, as `accuracy` is defined. It is the larger of two: |omega - omega'|
+/// relative to the largest |omega|, and the angle between the attitudes [rad]. Either pair may be null. NaN gives NaN.
 inline double compute_distance(std::size_t n, const double* omega_a, const double* attitude_a, const double* omega_b,
                                const double* attitude_b) {
   double size = 0.0, rate_square = 0.0, attitude_square = 0.0;
@@ -40,8 +40,8 @@ inline double compute_distance(std::size_t n, const double* omega_a, const doubl
   return rates > angle || rates != rates ? rates : angle;
 }
 
-/// How far from the start the last sample lies up to which two motions are no farther apart than `most`; infinity where
-/// all are, 0 where none is.
+/// The time from the start to the last sample before two motions are farther apart than `most` [s]. It is infinite if
+/// they never are, and 0 if they are at the first sample.
 inline double find_divergence_time(std::size_t n, const double* t, double t0, const double* omega_a,
                                    const double* attitude_a, const double* omega_b, const double* attitude_b,
                                    double most) {

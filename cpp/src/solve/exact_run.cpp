@@ -12,10 +12,10 @@
 namespace polhode {
 namespace {
 
-constexpr std::size_t chunk = 100'000;   // samples between two looks at the progress callback
-constexpr double radians_per_step = 0.25;   // of events: zeros closer than that may be missed, as with any stepper
+constexpr std::size_t chunk = 100'000;   // samples between two calls of the progress callback
+constexpr double radians_per_step = 0.25;   // of events: zeros closer than this may be missed, as in any integration
 
-/// A closed form seen as a method, for the search of events: its steps have a length but no error.
+/// A closed form as a stepper, to search for events. Its steps have a length but no error.
 class ClosedFormStepper final : public ode::Stepper {
  public:
   ClosedFormStepper(const ClosedForm& form, double t0, const double* y0)
@@ -53,7 +53,7 @@ void unpack(const double* y, double* omega, double* attitude) {
 
 Motion run_with_events(const Scene& scene, const SolveOptions& options, const ClosedForm& form) {
   RunOptions without_dense = to_run_options(options, {});
-  without_dense.dense = false;   // the closed form itself is the continuous answer
+  without_dense.dense = false;   // the closed form gives dense output itself
   double y0[7];
   const double zero = 0.0;
   form.at(&zero, 1, y0, y0 + 3);
@@ -63,7 +63,7 @@ Motion run_with_events(const Scene& scene, const SolveOptions& options, const Cl
   return Motion(integrate(scene, without_dense, y0, by_rows<7>(&unpack), make));
 }
 
-/// Every sample by itself, in any order.
+/// Evaluates each sample independently, in any order.
 Motion evaluate(const Scene& scene, const SolveOptions& options, const ClosedForm& form) {
   Motion motion;
   const std::size_t n = scene.times().size();
@@ -112,13 +112,10 @@ Motion run_closed_form(const Scene& scene, const Facts& facts, const SolveOption
   motion.has_dense = options.dense;
   if (options.dense) motion.closed_form = std::make_shared<const ClosedForm>(std::move(form));
   if (motion.message.empty())
-    motion.message = "evaluated at every time by the closed form, whose rounding bounds the error";
+    motion.message = "evaluated at every time by the closed form; its rounding error is the bound";
   if (error > motion.asked && motion.status == Status::finished) {
-    motion.message.append("; float64 allows ")
-        .append(to_text(error))
-        .append(", not the ")
-        .append(to_text(motion.asked));
-    motion.message += " asked";
+    motion.message.append("; float64 allows an error of ").append(to_text(error));
+    motion.message.append(", more than the requested ").append(to_text(motion.asked));
   }
   return motion;
 }

@@ -5,7 +5,7 @@
 
 namespace polhode {
 
-/// The answer of a closed form, with the events found on it; its plan has bounded the error.
+/// Evaluates a closed form and finds events on it. `plan.predicted_error` is the bound of its error.
 Motion run_closed_form(const Scene& scene, const Facts& facts, const SolveOptions& options, ClosedForm form,
                        const Plan& plan);
 

@@ -10,7 +10,7 @@
 namespace polhode {
 namespace {
 
-/// By tolerances of a step, or steps of one length: the error is not estimated.
+/// A run by rtol and atol, or by a fixed step. Its error is not estimated.
 Motion run_by_tolerance(const Decision& decision, const SolveOptions& options) {
   const BodyMethod& method = find_body_method(decision.plan.method);
   const StepTolerances step = choose_tolerances(method.record, options);

@@ -29,7 +29,7 @@ bool has(const Scene& scene, const char* name) {
   return false;
 }
 
-/// Exact models in the order of their list; of those that hold, the one that is taken.
+/// Adds the exact models in the order of their list. Only the chosen one has a cost.
 void evaluate_exact_models(const Scene& scene, const Facts& facts, const SolveOptions& options,
                            const std::optional<ClosedForm>& form, PlanReport& report) {
   for (const ExactModel& model : exact_models()) {
@@ -39,13 +39,13 @@ void evaluate_exact_models(const Scene& scene, const Facts& facts, const SolveOp
     }
     Candidate candidate{.name = std::string(model.name), .exact = true, .why_not = model.refuse(scene, facts)};
     std::string& why_not = candidate.why_not;
-    if (why_not.empty() && form) why_not = "holds too, but " + std::string(form->model()) + " needs less";
-    if (why_not.empty()) why_not = "float64 cannot hold its start";
+    if (why_not.empty() && form) why_not = "also holds, but " + std::string(form->model()) + " is simpler";
+    if (why_not.empty()) why_not = "its start has no exact float64 representation";
     report.candidates.push_back(std::move(candidate));
   }
 }
 
-/// How far half a unit in the last place of the inputs moves a closed form at the end of its span.
+/// The change of a closed form at the end of its span when the inputs change by half a unit in the last place.
 double compute_condition(const Scene& scene, const ClosedForm& form) {
   const Scene perturbed = perturb(scene);
   const std::optional<ClosedForm> other = find_closed_form(perturbed, compute_facts(perturbed));
@@ -62,37 +62,42 @@ void explain_exact(const Scene& scene, const Facts& facts, const ClosedForm& for
   auto& reasons = report.reasons;
   const std::string model(form.model());
   if (model == "rest") {
-    reasons.push_back("It does not turn and nothing acts on it: the answer is the start.");
+    reasons.push_back("The body does not rotate and no torque acts: every sample equals the start.");
   } else if (model == "spherical") {
-    reasons.push_back("All moments are equal and nothing acts on it, so omega stays: one turn about one axis.");
+    reasons.push_back("All moments are equal and no torque acts: omega is constant.");
   } else if (model == "steady") {
     reasons.push_back(
-        "It turns about a principal axis and nothing acts on it, so omega stays, exactly, stable or not.");
+        "The body rotates about a principal axis and no torque acts: omega is constant, even if the rotation is "
+        "unstable.");
   } else if (model == "symmetric") {
     reasons.push_back(
-        "Two moments are equal and nothing acts on it: regular precession, two rotations at constant rates.");
+        "Two moments are equal and no torque acts: the motion is a regular precession, two rotations at constant "
+        "rates.");
   } else if (model == "separatrix") {
-    reasons.push_back("It starts exactly on the separatrix: one flip in all time, in hyperbolic functions.");
+    reasons.push_back(
+        "The start is exactly on the separatrix: the body flips once, described by hyperbolic functions.");
   } else if (model == "triaxial") {
-    reasons.push_back("Nothing acts on it, so every sample is a formula (theta functions), not the end of many steps.");
+    reasons.push_back("No torque acts: theta functions give each sample directly, without steps.");
   } else {
     reasons.push_back(
-        "Symmetric, held on its axis, under gravity alone: Lagrange's top, which has a formula for every start.");
+        "A symmetric body on a pivot on its axis, with gravity alone, is Lagrange's top. It has a closed form.");
   }
   if (facts.turns > 10 && model != "rest") {
     reasons.push_back(
-        format("A formula has no drift: the error is the same after %.0f turns as after one.", facts.turns));
+        format("A closed form has no drift: its error after %.0f turns is the same as after one.", facts.turns));
   }
   if (model == "triaxial" && facts.separatrix < 1e-3) {
     reasons.push_back(
-        format("It starts next to the separatrix (k'^2 = %.1e), where each flip costs a stepper digits it cannot "
-               "win back; the formula keeps them.",
+        format("The start is close to the separatrix (k'^2 = %.1e). An integration loses digits at each flip, a closed "
+               "form does not.",
                facts.separatrix));
   }
   const double condition = model == "rest" ? 0.0 : compute_condition(scene, form);
   if (condition > 20 * report.plan.predicted_error) {
     reasons.push_back(
-        format("Mind the inputs: half a unit in their last place moves the end of the span by %.0e.", condition));
+        format("The motion is sensitive: changing the inputs by half a unit in the last place changes the last sample "
+               "by %.0e.",
+               condition));
   }
 }
 
@@ -101,60 +106,58 @@ void explain_steps(const Scene& scene, const Facts& facts, const SolveOptions& o
   const Plan& plan = report.plan;
   if (facts.is_free() || options.formulation == Formulation::lagrangian) {
     if (options.formulation == Formulation::lagrangian)
-      reasons.push_back("Lagrange's equations were asked for: they are stepped.");
+      reasons.push_back("Lagrange's equations were requested, so they are integrated.");
   } else if (has(scene, "Gravity") && facts.torques.acting == 1) {
-    reasons.push_back("Gravity acts, and " + exact_models().back().refuse(scene, facts) + ": no closed form is known.");
+    reasons.push_back("Gravity acts, but no closed form is known: " + exact_models().back().refuse(scene, facts) + ".");
   } else {
-    reasons.push_back("A torque acts for which no closed form is known: it is stepped.");
+    reasons.push_back("No closed form is known with these torques, so the equations are integrated.");
   }
   if (facts.torques.acting > 0 && !facts.torques.uses_attitude) {
     reasons.push_back(
         scene.want().attitude
-            ? "The torque does not look at the attitude, so the attitude follows the rates and nothing comes back."
-            : "The torque does not look at the attitude, so the rates are solved alone.");
+            ? "No torque depends on the attitude, so the rates do not depend on it either."
+            : "No torque depends on the attitude, so the rates are integrated alone.");
   }
   const ode::MethodRecord& record = find_method(plan.method);
   if (plan.pieces.size() == 2) {
     reasons.push_back(format(
-        "Damping decays at up to %.3g /s over %.3g s. At first it spins so fast that accuracy bounds the steps, later "
-        "stability would: taylor hands the state to radau at t = %.3g s, as a loose run foresees.",
+        "Damping decays at up to %.3g /s over %.3g s. At first accuracy limits the steps, later stability does. A "
+        "pilot run placed the switch from taylor to radau at t = %.3g s.",
         facts.decay, facts.span(), plan.pieces[1].begin));
   } else if (facts.stiffness > 100) {
     reasons.push_back(
-        format("Damping decays at up to %.3g /s over %.3g s (their product is %.0e): ", facts.decay, facts.span(),
+        format("Damping decays at up to %.3g /s over %.3g s (their product is %.0e). ", facts.decay, facts.span(),
                facts.stiffness) +
         (record.implicit
-             ? "stiff, which an implicit method steps over."
-             : "explicit steps are short for stability's sake, and still cheaper than an implicit method."));
+             ? "The problem is stiff, so an implicit method takes longer steps."
+             : "Stability limits explicit steps, which still cost less than an implicit method."));
   }
   if (facts.may_spin_up) {
-    reasons.push_back("The torque may spin it up: the number of turns is a guess, and the certificate decides.");
+    reasons.push_back("The torque may spin the body up, so the number of turns is a guess.");
   }
   if (facts.separatrix < 1e-3) {
     reasons.push_back(
-        format("It starts next to the separatrix (k'^2 = %.1e): errors grow at each flip, and the certificate "
-               "will see it.",
-               facts.separatrix));
+        format("The start is close to the separatrix (k'^2 = %.1e), so errors grow at each flip.", facts.separatrix));
   }
   int others = 0;
   for (const Candidate& candidate : report.candidates)
     others += !candidate.exact && candidate.why_not.empty() && candidate.name != plan.method;
   if (options.method) {
-    reasons.push_back(plan.method + " was asked for.");
+    reasons.push_back("Method " + plan.method + " was requested.");
   } else if (others > 0 && plan.pieces.empty()) {
     reasons.push_back(format("%s is the cheapest of %d methods at this accuracy over %.3g turns.", plan.method.c_str(),
                              others + 1, facts.turns));
   }
   if (!plan.certify) {
-    reasons.push_back("Its error is only expected: no certificate was wanted.");
+    reasons.push_back("The error is expected, not bounded, because no certificate was requested.");
   } else if (find_body_method(plan.method).carries_error && plan.pieces.empty()) {
-    reasons.push_back("Its error is certified in the same run: what each step loses is carried along to the end.");
+    reasons.push_back("The error is certified in the same run, which propagates the error of each step to the end.");
   } else {
     reasons.push_back(
-        "Its error is certified by a second, coarser run with every input moved by two units in the last place.");
+        "A second, coarser run certifies the error. Each of its inputs is changed by two units in the last place.");
   }
   if (plan.predicted_error > forecast_slack * plan.accuracy) {
-    reasons.push_back(format("Rounding over so many turns is expected to leave %.0e: the result may say \"limit\".",
+    reasons.push_back(format("Rounding over so many turns may cause an error of %.0e. The result then says \"limit\".",
                              plan.predicted_error));
   }
 }
@@ -167,16 +170,16 @@ void explain_left_out(const Scene& scene, const Facts& facts, const SolveOptions
     if (!names.empty()) names += ", ";
     names += torque_name(torque);
   }
-  if (!names.empty()) left.push_back(names + ": zero wherever the body goes.");
+  if (!names.empty()) left.push_back(names + ": always zero.");
   if (scene.torque_sum().acting > facts.torques.acting) {
-    left.push_back("GravityGradient: it turns no body of three equal moments.");
+    left.push_back("GravityGradient: it is zero for a body with three equal moments.");
   }
   if (!carries_attitude(scene, facts, options)) {
-    left.push_back("The attitude: nobody asked for it and no torque looks at it.");
+    left.push_back("The attitude: it was not requested and no torque depends on it.");
   } else if (!scene.want().attitude && report.plan.method != "exact") {
-    left.push_back("Nothing: the attitude was not asked for, but a torque or an event looks at it.");
+    left.push_back("Nothing: the attitude was not requested, but a torque or an event depends on it.");
   }
-  if (!scene.want().omega) left.push_back("The rates are carried but not returned.");
+  if (!scene.want().omega) left.push_back("The rates: they are computed but not returned.");
 }
 
 }  // namespace
@@ -199,7 +202,7 @@ PlanReport explain(const Decision& decision, const SolveOptions& options) {
   } else {
     explain_steps(scene, facts, options, report);
   }
-  if (facts.only_at_end) report.reasons.push_back("Only one time is asked for: nothing is interpolated.");
+  if (facts.only_at_end) report.reasons.push_back("Only one sample time is given, so nothing is interpolated.");
   explain_left_out(scene, facts, options, report);
   return report;
 }

@@ -4,7 +4,7 @@
 
 namespace polhode {
 
-/// Puts a decision into words, with every candidate evaluated.
+/// Describes a decision in words, and evaluates every candidate.
 PlanReport explain(const Decision& decision, const SolveOptions& options);
 
 }  // namespace polhode

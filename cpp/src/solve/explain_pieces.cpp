@@ -9,7 +9,7 @@ std::string count(std::size_t n, const char* what) {
   return std::to_string(n).append(" ").append(what).append(n == 1 ? "" : "s");
 }
 
-/// A method for all pieces that no closed form takes.
+/// A method for all pieces that have no closed form.
 Candidate evaluate_for_pieces(const Scene& scene, const Facts& facts, const SolveOptions& options,
                               const ode::MethodRecord& record, const Plan& plan) {
   Candidate candidate = evaluate_method(scene, facts, options, record);
@@ -43,7 +43,7 @@ PlanReport explain_pieces(const Decision& decision, const SolveOptions& options)
     report.candidates.push_back(
         {.name = std::string(model.name),
          .exact = true,
-         .why_not = "taken in " + std::to_string(held) + " of " + count(parts.size(), "piece")});
+         .why_not = "used in " + std::to_string(held) + " of " + count(parts.size(), "piece")});
   }
   if (formulas < parts.size()) {
     for (const ode::MethodRecord& record : methods()) {
@@ -52,35 +52,35 @@ PlanReport explain_pieces(const Decision& decision, const SolveOptions& options)
     }
   }
 
-  report.reasons.push_back("Torques begin or cease to act within the span: it is cut there into " +
-                           count(parts.size(), "piece") + ", each with the torques that act in it.");
+  report.reasons.push_back("Torques start or stop within the span, which is cut there into " +
+                           count(parts.size(), "piece") + ".");
   if (formulas == parts.size()) {
-    report.reasons.push_back("Every piece has a closed form: nothing is stepped.");
+    report.reasons.push_back("Every piece has a closed form, so nothing is integrated.");
   } else if (formulas > 0) {
     report.reasons.push_back(count(formulas, "piece") +
-                             (formulas == 1 ? " has a closed form, which costs" : " have closed forms, which cost") +
-                             " the same however long they last; the others are stepped.");
+                             (formulas == 1 ? " has a closed form" : " have closed forms") +
+                             ", at a cost that does not depend on the span. The others are integrated.");
   } else if (options.method) {
-    report.reasons.push_back(report.plan.method + " was asked for, and steps every piece.");
-  } else {
-    report.reasons.push_back("No piece has a closed form: each is stepped, no step goes over a jump.");
-  }
-  report.reasons.push_back("Each piece starts where the last ended; where that is a loose run has told.");
-  if (!report.plan.certify && formulas < parts.size()) {
-    report.reasons.push_back("Its error is only expected: no certificate was wanted.");
+    report.reasons.push_back("Method " + report.plan.method + " was requested and integrates every piece.");
   } else {
     report.reasons.push_back(
-        "The error of the whole chain is bounded by a second one, with every input, the windows' ends and each "
-        "piece's start moved by units of rounding.");
+        "No piece has a closed form, so each is integrated. No step crosses a jump of the torque.");
+  }
+  report.reasons.push_back("A pilot run estimated the start states of the pieces.");
+  if (!report.plan.certify && formulas < parts.size()) {
+    report.reasons.push_back("The error is expected, not bounded, because no certificate was requested.");
+  } else {
+    report.reasons.push_back(
+        "A second run of all pieces bounds the error. Its inputs, window ends and start states are changed by units of "
+        "rounding.");
   }
   for (const AnyTorque& torque : scene.torques()) {
     if (traits(torque).vanishes) {
-      report.left_out.push_back(std::string(torque_name(torque)) +
-                                ": zero wherever the body goes.");
+      report.left_out.push_back(std::string(torque_name(torque)) + ": always zero.");
     }
   }
   if (!scene.want().attitude && report.plan.state == "omega") {
-    report.left_out.push_back("The attitude: nobody asked for it and no torque looks at it.");
+    report.left_out.push_back("The attitude: it was not requested and no torque depends on it.");
   }
   return report;
 }

@@ -4,7 +4,7 @@
 
 namespace polhode {
 
-/// The words for a decision whose span is cut at windows' ends.
+/// Describes a decision whose span is cut at the ends of windows.
 PlanReport explain_pieces(const Decision& decision, const SolveOptions& options);
 
 }  // namespace polhode

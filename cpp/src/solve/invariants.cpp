@@ -18,12 +18,12 @@ double compute_potential(const Scene& scene, double t, const double* omega, cons
   double sum = 0.0;
   const TorqueInput in{t, omega, attitude, scene.inertia_B().matrix()};
   for (const AnyTorque& torque : scene.torques()) {
-    std::visit([&](const auto& one) { sum += one.compute_potential(in); }, torque);
+    std::visit([&](const auto& acting) { sum += acting.compute_potential(in); }, torque);
   }
   return sum;
 }
 
-/// |a - b| / scale, and 0 where nothing is there to move.
+/// |difference| / scale, and 0 for no difference, whatever the scale.
 double relative(double difference, double scale) {
   return difference == 0.0 ? 0.0 : std::abs(difference) / scale;
 }

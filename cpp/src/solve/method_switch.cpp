@@ -13,17 +13,17 @@
 namespace polhode {
 namespace {
 
-constexpr double least_stiffness = 300.0;   // decay x span below which no implicit step has ever paid
-constexpr double required_gain = 0.7;       // of the cost of the better method alone
-constexpr double pilot_share = 0.2;         // of an explicit run's steps that the pilot run may take
-constexpr double start_up_steps = 30.0;     // that Radau takes until its step is as long as it will be
-constexpr int log_samples = 80, per_decade = 8;   // of time from the start: a fast transient is seen whatever the span
+constexpr double least_stiffness = 300.0;   // decay x span; below it implicit steps never paid in the measurements
+constexpr double required_gain = 0.7;       // the switch must cost less than this part of the better method alone
+constexpr double pilot_share = 0.2;         // the pilot run may take this part of the steps of an explicit run
+constexpr double start_up_steps = 30.0;     // steps of Radau until its step has grown to its final length
+constexpr int log_samples = 80, per_decade = 8;   // logarithmic in time, to resolve a fast transient in any span
 constexpr int even_samples = 24;
 
-/// The pilot run of a damped body until it is at rest; work is in radians and e-foldings of |omega|.
+/// The pilot run of a damped body until it is at rest. Work is the sum of radians and e-foldings of |omega|.
 struct DampedRun {
   std::vector<double> t, work;
-  double angle = 0.0;    ///< turned [rad]
+  double angle = 0.0;    ///< total rotation [rad]
   double steps = 0.0;    ///< of the pilot run
 };
 
@@ -51,9 +51,9 @@ std::optional<DampedRun> run_pilot(const Decision& decision, const SolveOptions&
   const double least = 1e-3 * get_accuracy(options) * std::min(start_rate, 1 / facts.after);
   double t = scene.t0(), rate = start_rate, work = 0.0;
   for (std::size_t i = 0; i < pilot.t.size() && pilot.rate[i] > least; ++i) {
-    const double turned = 0.5 * (rate + pilot.rate[i]) * (pilot.t[i] - t);
-    run.angle += turned;
-    work += turned + std::abs(math::fast_log(pilot.rate[i] / rate));
+    const double angle = 0.5 * (rate + pilot.rate[i]) * (pilot.t[i] - t);
+    run.angle += angle;
+    work += angle + std::abs(math::fast_log(pilot.rate[i] / rate));
     t = pilot.t[i], rate = pilot.rate[i];
     run.t.push_back(t), run.work.push_back(work);
   }
@@ -75,7 +75,7 @@ bool plan_damped(Decision& decision, const SolveOptions& options) {
 
   const double accuracy = get_accuracy(options), turns = run->angle / (2 * std::numbers::pi);
   const double coarse = explicitly.find_rtol(accuracy, turns), scale = implicitly.find_rtol(accuracy, turns) / coarse;
-  // Cost of a radian, or of a radian or an e-folding; a certificate takes two runs of both.
+  // Seconds for a unit of work. A certificate takes two runs.
   const auto cost_per_radian = [&](const ode::MethodRecord& record, double rtol) {
     const ode::Forecast& forecast = record.forecast;
     double seconds = 0.0;
@@ -103,7 +103,7 @@ bool plan_damped(Decision& decision, const SolveOptions& options) {
     const double total = spent + (all - work) * implicit_radian + start_up;
     if (t < end && total < best) best = total, when = t, before = spent;
   }
-  // Turns about a principal axis cost Radau's rates no steps: the pilot run has counted those that are needed.
+  // Rotation about a principal axis costs Radau no steps. The pilot run has counted the steps that are needed.
   const double counted = step * run->steps * math::fast_pow(coarse * scale / pilot_rtol, -implicitly.power);
   const double taylor_alone = spent + (end - t) * stable,
                radau_alone = std::min(all * implicit_radian + start_up, counted);

@@ -14,13 +14,13 @@ void require_positive(const char* where, const std::optional<double>& value) {
     throw InvalidInput(where, "positive and finite", to_text(*value));
 }
 
-/// Options without effect are refused, and so are those that are missing.
+/// Refuses options without effect, and missing options.
 void require_fitting(const ode::MethodRecord& record, const SolveOptions& options) {
   const std::string with = " with method '" + std::string(record.name) + "'";
   if (record.adaptive) {
     if (options.step) {
       throw InvalidInput("step", "left out" + with, to_text(*options.step),
-                         "it chooses its own steps by rtol and atol");
+                         "its step size follows from rtol and atol");
     }
     return;
   }
@@ -41,7 +41,7 @@ void require_no_steps(const SolveOptions& options) {
   }
   if (options.formulation != Formulation::euler) {
     throw InvalidInput("formulation", "left out with method 'exact'", "'lagrangian'",
-                       "a closed form integrates nothing");
+                       "a closed form has no equations to integrate");
   }
 }
 
@@ -73,7 +73,7 @@ void describe_end(const StepTolerances& step, Motion& motion) {
   if (motion.message.empty()) motion.message = "reached the last time; the error was not estimated";
   if (step.raised) {
     motion.message +=
-        "; the tolerance was raised to " + to_text(step.tolerances.rtol) + ", the least that float64 can serve";
+        "; the tolerance was raised to " + to_text(step.tolerances.rtol) + ", the smallest that float64 allows";
   }
 }
 
@@ -83,7 +83,7 @@ void check_options(const Scene& scene, const SolveOptions& options) {
   }
   if (options.accuracy && (options.rtol || options.atol)) {
     throw InvalidInput("accuracy", "left out where rtol or atol is given", to_text(*options.accuracy),
-                       "accuracy is about the answer, rtol and atol are about a step");
+                       "accuracy bounds the error of the samples, rtol and atol that of one step");
   }
   require_positive("rtol", options.rtol);
   require_positive("step", options.step);
@@ -102,7 +102,8 @@ void check_options(const Scene& scene, const SolveOptions& options) {
   const BodyMethod& method = find_body_method(name);
   require_fitting(method.record, options);
   if (options.formulation != Formulation::euler && method.of_bodies) {
-    throw InvalidInput("formulation", "'euler' with method '" + name + "'", "'lagrangian'", "it steps the body itself");
+    throw InvalidInput("formulation", "'euler' with method '" + name + "'", "'lagrangian'",
+                       "this method integrates Euler's equations only");
   }
   if (const std::string why = compute_refusal(name, scene); !why.empty()) {
     throw InvalidInput("method '" + name + "'", "used with " + std::string(method.record.needs), why);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Changes numbers by two units in the last place, up or down as a coin says.
+/// Changes numbers by two units in the last place, up or down at random.
 class Perturber {
  public:
   explicit Perturber(std::uint64_t seed = 2026) : coin_(seed) {}
@@ -37,7 +37,7 @@ class Perturber {
   math::Coin coin_;
 };
 
-/// By a rule that depends on the number alone.
+/// Changes a number by a rule that depends on the number alone.
 double perturb_alone(double x) { return Perturber(std::bit_cast<std::uint64_t>(x))(x); }
 
 template <class Torque>
@@ -57,19 +57,19 @@ Torque perturb_torque(const Torque& torque, Perturber& perturber) {
       torque);
 }
 
-/// Windows' ends by their own values, so that those of two torques at one time stay at one time.
+/// Changes each end of a window by its own value, so that equal ends of two torques stay equal.
 AnyTorque perturb_windows(const AnyTorque& torque, double first, double last, double t0) {
   const auto* during = std::get_if<torques::During>(&torque);
   if (during == nullptr) return torque;
-  const auto move = [=](double t) {
+  const auto perturb_end = [=](double t) {
     return first < t && t < last && t != t0 ? perturb_alone(t) : t;
   };
   std::vector<torques::Window> windows = during->windows();
   double before = -infinity;
   for (torques::Window& window : windows) {
-    window = {move(window.begin), move(window.end)};
+    window = {perturb_end(window.begin), perturb_end(window.end)};
     if (!(before <= window.begin && window.begin < window.end))
-      return torque;   // nothing lies between so near neighbours
+      return torque;   // the ends are too close to be changed
     before = window.end;
   }
   return torques::During(during->torque(), std::move(windows));
@@ -90,7 +90,7 @@ State perturb_state(const State& state, double units, int seed) {
 Scene perturb(const Scene& scene) {
   Perturber perturber;
   Matrix3d I = scene.inertia_B().matrix();
-  const bool cut = has_windows(scene);   // then equal moments stay equal: a piece of it may be a closed form's
+  const bool cut = has_windows(scene);   // then equal moments stay equal, because a piece may have a closed form
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j <= i; ++j)
       I(i, j) = I(j, i) = cut ? perturb_alone(I(i, j)) : perturber(I(i, j));

@@ -29,7 +29,7 @@ class PieceRunner {
     motion_.has_dense = options.dense;
   }
 
-  /// False when a piece did not reach its end.
+  /// Returns false if a piece did not reach its end.
   bool run_direction(const std::vector<Piece>& pieces, const std::vector<std::size_t>& order, const Wanted& want) {
     State start = scene_.start();
     std::size_t next = 0;
@@ -68,11 +68,11 @@ class PieceRunner {
 
  private:
   SolveOptions make_options(double last) const {
-    SolveOptions made = options_;
-    made.max_steps = options_.max_steps - motion_.stats.steps;
+    SolveOptions options = options_;
+    options.max_steps = options_.max_steps - motion_.stats.steps;
     if (options_.progress)
-      made.progress = [this, last](double reached, double) { return options_.progress(reached, last); };
-    return made;
+      options.progress = [this, last](double reached, double) { return options_.progress(reached, last); };
+    return options;
   }
 
   void add(const Motion& part) {
@@ -82,7 +82,7 @@ class PieceRunner {
       motion_.error = std::isnan(motion_.error) ? part.error : std::max(part.error, motion_.error);
   }
 
-  /// The piece's rows into their places; those that were not reached are not among them.
+  /// Copies the rows of a piece into the rows of the motion.
   void place(const Scene& part, const Motion& motion, std::span<const std::size_t> order) {
     std::size_t row = 0;
     for (std::size_t i = 0; i < order.size() && row < motion.t.size(); ++i) {
@@ -123,9 +123,9 @@ class PieceRunner {
     motion_.pieces.push_back(std::make_shared<const Motion>(std::move(motion)));
   }
 
-  /// Closed forms have no steps between which to ask.
+  /// Calls `progress` between pieces, because closed forms have no steps.
   bool wants_to_stop(double last) {
-    if (!options_.progress || (++asked_ & 15) != 0) return false;
+    if (!options_.progress || (++calls_ & 15) != 0) return false;
     const auto now = std::chrono::steady_clock::now();
     if (now - last_call_ < std::chrono::milliseconds(50)) return false;
     last_call_ = now;
@@ -142,7 +142,7 @@ class PieceRunner {
   std::vector<unsigned char> reached_;
   Motion motion_;
   int joins_ = 0;
-  unsigned asked_ = 0;
+  unsigned calls_ = 0;
   std::chrono::steady_clock::time_point last_call_ = std::chrono::steady_clock::now();
 };
 

@@ -16,10 +16,11 @@ const During* find_windows(const AnyTorque& torque) {
 
 AnyTorque drop_window(const AnyTorque& torque) {
   const auto* during = std::get_if<During>(&torque);
-  return during == nullptr ? torque : std::visit([](const auto& lasting) { return AnyTorque(lasting); }, during->torque());
+  if (during == nullptr) return torque;
+  return std::visit([](const auto& lasting) { return AnyTorque(lasting); }, during->torque());
 }
 
-/// The first and the last of the times, the start among them.
+/// The first and the last time, including the start.
 std::pair<double, double> find_span(const Scene& scene) {
   const auto [least, most] = std::minmax_element(scene.times().begin(), scene.times().end());
   return {std::min(scene.t0(), *least), std::max(scene.t0(), *most)};

@@ -7,21 +7,21 @@
 
 #include "polhode/solve/solve.hpp"
 
-// A span that is cut where torques begin or cease to act, each piece run by itself from where the last one ended.
+// A span that is cut where torques start or stop. Each piece is integrated from the end of the last.
 namespace polhode {
 
-/// A stretch of the span in which the same torques act; `end` is before `begin` where it is met backwards.
+/// A part of the span with a fixed set of torques. `end` is before `begin` in a backward run.
 struct Piece {
   double begin, end;
   std::vector<AnyTorque> torques;   ///< those that act, without their windows
-  PiecePlan plan = {};              ///< how it is integrated; without a method where nothing was planned
+  PiecePlan plan = {};              ///< its model and method; no method before planning
 };
 
-/// In the order in which they are run from the scene's start.
+/// The pieces, in the order of the run from the scene's start.
 struct Pieces {
   std::vector<Piece> backward, forward;
-  std::vector<double> method_switches = {};   ///< times at which it is cut besides the windows' ends
-  bool whole = true;                ///< no window's end lies within the span: nothing is cut
+  std::vector<double> method_switches = {};   ///< further cuts, besides the ends of windows
+  bool whole = true;                ///< no end of a window lies within the span, so nothing is cut
   std::size_t size() const { return backward.size() + forward.size(); }
   std::vector<Piece*> all();              ///< backward pieces first
   std::vector<const Piece*> all() const;
@@ -29,17 +29,17 @@ struct Pieces {
 
 bool has_windows(const Scene& scene);
 
-/// @param method_switches  other times at which to cut
+/// @param method_switches  further times at which to cut
 Pieces cut(const Scene& scene, std::vector<double> method_switches = {});
 
-/// The scene of one piece: its torques, a start and times of its own.
+/// The scene of one piece, with its own torques, start and times.
 Scene make_piece_scene(const Scene& scene, const Piece& piece, const State& start, std::vector<double> times,
                        const Wanted& want);
 
-/// The same scene without windows, where none ends within the span: each torque acts all the time or not at all.
+/// The same scene without windows. No window may begin or end within the span, so each torque acts always or never.
 Scene drop_windows(const Scene& scene);
 
-/// Whether anybody wants the attitude, or any piece's torques see it: then all pieces carry it.
+/// True if all pieces must integrate the attitude: it is requested, or a torque or an event depends on it.
 bool carries_attitude(const Scene& scene, const Pieces& pieces, const SolveOptions& options);
 
 /// "from t = 10 to 20 s"

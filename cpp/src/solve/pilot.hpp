@@ -6,7 +6,7 @@
 
 namespace polhode {
 
-/// What a low-accuracy run shows of the rotation ahead: |omega| and the angle turned, sample by sample.
+/// A low-accuracy run, which estimates |omega| and the angle of rotation at each sample.
 struct PilotRun {
   std::vector<double> t, rate;    ///< [s], [rad/s]
   std::vector<double> angle;      ///< integral of |omega| since the start by trapezoids [rad]
@@ -15,7 +15,7 @@ struct PilotRun {
 
 inline constexpr double pilot_rtol = 1e-4;   ///< the tolerance of pilot runs
 
-/// @param t0, rate0  time and |omega| of the start
+/// @param t0, rate0  time and |omega| at the start
 PilotRun measure_rotation(const Trajectory& trajectory, double t0, double rate0);
 
 }  // namespace polhode

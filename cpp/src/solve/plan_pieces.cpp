@@ -15,10 +15,10 @@
 namespace polhode {
 namespace {
 
-constexpr int rate_samples = 16;        // of |omega| in a piece, to estimate its revolutions
-constexpr long pilot_steps = 20'000;    // a piece that needs more is planned by its start
+constexpr int rate_samples = 16;        // samples of |omega| in a piece, to estimate its revolutions
+constexpr long pilot_steps = 20'000;    // for one piece; a piece that needs more is planned from its start
 
-/// Plans one piece after another as a pilot run reaches them.
+/// Plans each piece when a pilot run reaches it.
 class PiecePlanner {
  public:
   PiecePlanner(Decision& decision, const SolveOptions& options)
@@ -65,9 +65,9 @@ class PiecePlanner {
       const Scene part = make_piece_scene(scene_, *piece, scene_.start(), {piece->end}, scene_.want());
       const Facts facts = compute_facts(part);
       if (find_closed_form(part, facts)) continue;
-      throw InvalidInput("method 'exact'", "used where every piece between the windows' ends has a closed form",
-                         exact_models().back().refuse(part, facts) + ", " + describe_span(*piece),
-                         "no closed form is known for it; leave method out");
+      throw InvalidInput("method 'exact'", "used with pieces that all have a closed form",
+                         "one without, " + describe_span(*piece),
+                         exact_models().back().refuse(part, facts) + "; leave method out");
     }
   }
 
@@ -135,8 +135,9 @@ class PiecePlanner {
     return plan;
   }
 
-  /// The tolerance that the whole chain asks for: an error in the rates of one piece is an error in the phase of all
-  /// that follow, so that each counts n (1 + (n + 2 after) / secular) where one alone has n (1 + n / secular).
+  /// The tolerance for all pieces together. An error in the rates of one piece is an error in the phase of all later
+  /// pieces. A piece with n revolutions, and `after` revolutions after it, has the error
+  /// n (1 + (n + 2 after) / secular). Alone it would have n (1 + n / secular).
   void choose_tolerances() {
     double most = -1.0;
     const double accuracy = get_accuracy(options_);
@@ -151,7 +152,7 @@ class PiecePlanner {
     double after = 0.0, sum = 0.0;
     const double secular = main_->forecast.secular;
     for (std::size_t i = pieces_.size(); i-- > 0;) {
-      if (i + 1 == decision_.pieces.backward.size()) after = 0.0;   // the other way from the start
+      if (i + 1 == decision_.pieces.backward.size()) after = 0.0;   // the other direction begins at the start
       const double n = pieces_[i]->plan.turns;
       if (pieces_[i]->plan.method != "exact") sum += n * (1 + (n + 2 * after) / secular);
       after += n;
@@ -174,6 +175,7 @@ class PiecePlanner {
     return record.forecast.compute_seconds(least, facts.turns, facts.stiffness, find_seconds_per_call(scene_));
   }
 
+  /// The facts of the whole span, from those of the pieces.
   Facts sum_facts() const {
     Facts all = compute_facts(scene_);
     std::vector<AnyTorque> acting;

@@ -15,8 +15,8 @@
 namespace polhode {
 namespace {
 
-/// Rates too small to affect any sample are set to zero where a piece begins: a torque that acts anew would take its
-/// first step by their size, far below the spacing of the times.
+/// Sets rates too small to affect any sample to zero at the start of a piece. Otherwise a new torque's first step,
+/// chosen by these rates, would be far below the spacing of the times.
 std::optional<Scene> zero_negligible_rates(const Scene& piece, const Scene& whole, double rtol) {
   double span = 0.0;
   for (const double t : whole.times()) span = std::max(span, std::abs(t - whole.t0()));
@@ -45,7 +45,7 @@ Motion run_planned(const Decision& decision, const Scene& scene, const SolveOpti
       const Facts facts = compute_facts(part);
       if (const std::optional<ClosedForm> form = find_closed_form(part, facts))
         return run_closed_form(part, facts, piece_options, *form, make_exact_plan(part, *form, facts, piece_options));
-      name = choose_method(part, facts, piece_options).name;   // perturbed inputs may have lost the closed form
+      name = choose_method(part, facts, piece_options).name;   // perturbed inputs may have no closed form
     }
     const BodyMethod& method = find_body_method(name);
     const double scaled = std::max(rtol * piece.plan.rtol_scale, method.record.least_rtol);
@@ -53,7 +53,7 @@ Motion run_planned(const Decision& decision, const Scene& scene, const SolveOpti
     const Scene& start = at_rest ? *at_rest : part;
     Motion motion(
         method.integrate(start, to_run_options(piece_options, {scaled, find_atol(method.record, scene, scaled)})));
-    // Its first step was below the times' spacing.
+    // The first step was below the spacing of the times.
     const bool stuck = motion.status == Status::failed && motion.stats.steps == 0;
     if (!stuck || name == "taylor" || !compute_refusal("taylor", start).empty()) return motion;
     const double least = taylor_method.record.least_rtol;
@@ -67,7 +67,7 @@ Motion solve_exact_pieces(const Decision& decision, const SolveOptions& options)
   Motion motion = run_planned(decision, scene, options, 0.0, false);
   motion.plan = decision.plan;
   motion.asked = decision.plan.accuracy;
-  constexpr std::size_t most = 256;   // samples that are compared: the error grows along the span
+  constexpr std::size_t most = 256;   // samples to compare: the error grows along the span
   const std::size_t n = motion.t.size(), stride = std::max<std::size_t>(1, n / most);
   SceneParts parts = scene.parts();
   parts.times.clear();
@@ -90,14 +90,11 @@ Motion solve_exact_pieces(const Decision& decision, const SolveOptions& options)
   motion.error_kind = motion.error <= motion.asked ? "bounded" : "limit";
   if (motion.message.empty()) {
     motion.message = "evaluated at every time by the closed forms of " + std::to_string(decision.pieces.size()) +
-                     " pieces; what rounding at their ends does bounds the error";
+                     " pieces; a second run with perturbed inputs bounds the error";
   }
   if (motion.error > motion.asked && motion.status == Status::finished) {
-    motion.message.append("; float64 allows ")
-        .append(to_text(motion.error))
-        .append(", not the ")
-        .append(to_text(motion.asked));
-    motion.message += " asked";
+    motion.message.append("; float64 allows an error of ").append(to_text(motion.error));
+    motion.message.append(", more than the requested ").append(to_text(motion.asked));
   }
   return motion;
 }

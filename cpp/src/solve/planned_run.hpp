@@ -4,13 +4,13 @@
 
 namespace polhode {
 
-/// One run of all pieces of a decision, each by its own plan. `scene` is the decision's or one perturbed or shortened;
-/// it is cut again, and its pieces take the plans in the same order from the start.
-/// @param rtol  of the plan's method; each piece scales it
+/// Runs all pieces of a decision, each by its own plan. `scene` is the scene of the decision, or that scene with
+/// perturbed inputs or fewer times. It is cut again, and its pieces take the plans in the same order.
+/// @param rtol  the tolerance of the plan's method, which each piece scales
 Motion run_planned(const Decision& decision, const Scene& scene, const SolveOptions& options, double rtol,
                    bool perturb_joins);
 
-/// The answer by closed forms alone. A second, perturbed run measures what rounding at the joins does to it.
+/// Evaluates pieces that all have closed forms. A second, perturbed run measures the effect of rounding at the joins.
 Motion solve_exact_pieces(const Decision& decision, const SolveOptions& options);
 
 }  // namespace polhode

@@ -46,7 +46,7 @@ std::array<Real, 2> compute_sincos(Real angle) {
   return {Real(found.sin.hi) + found.sin.lo, Real(found.cos.hi) + found.cos.lo};
 }
 
-/// The series of a body's motion about one time; every method here works on coefficient n of all of them.
+/// The Taylor series of a body's motion about one time. Each function here works on coefficient n.
 class LongDoubleSeries {
  public:
   LongDoubleSeries(const Scene& scene, int order) : scene_(&scene), order_(order) {
@@ -62,12 +62,12 @@ class LongDoubleSeries {
     invert();
     for (int i = 0; i < 3; ++i) w_[index(i)][0] = scene.omega()[i];
     const Quat& q = scene.attitude();
-    const Real parts[4] = {q.x, q.y, q.z, q.w};   // unit to float64's rounding only
+    const Real parts[4] = {q.x, q.y, q.z, q.w};   // a unit quaternion up to float64 rounding
     const Real size = std::sqrt(parts[0] * parts[0] + parts[1] * parts[1] + parts[2] * parts[2] + parts[3] * parts[3]);
     for (int i = 0; i < 4; ++i) q_[index(i)][0] = parts[i] / size;
   }
 
-  /// All coefficients from those of order 0, at time t.
+  /// Computes all coefficients from those of order 0, at time t.
   void expand(Real t) {
     for (int n = 0; n < order_; ++n) {
       const auto at = index(n), next = index(n + 1);
@@ -80,7 +80,7 @@ class LongDoubleSeries {
       if (scene_->torque_sum().uses_attitude) expand_rows(n);
       orbit_ = orbits_.begin();
       for (const AnyTorque& torque : scene_->torques())
-        std::visit([&](const auto& one) { add(one, t, n, tau); }, torque);
+        std::visit([&](const auto& acting) { add(acting, t, n, tau); }, torque);
       for (int i = 0; i < 3; ++i)
         w_[index(i)][next] = (inverse_[i][0] * tau[0] + inverse_[i][1] * tau[1] + inverse_[i][2] * tau[2]) / (n + 1);
       // q' = q (w, 0) / 2
@@ -93,7 +93,7 @@ class LongDoubleSeries {
     }
   }
 
-  /// The step at which the last two terms are `tolerance` of the first, for rates and attitude each.
+  /// The step for which the last two terms are `tolerance` of the first, for the rates and for the attitude.
   Real step(Real tolerance, Real longest) const {
     Real h = longest;
     for (int m : {order_ - 1, order_}) {
@@ -126,7 +126,7 @@ class LongDoubleSeries {
   }
 
   void invert() {
-    const auto cofactor = [&](int i, int j) {   // of the transposed matrix, which is the same
+    const auto cofactor = [&](int i, int j) {   // the matrix is symmetric
       const auto a = index((i + 1) % 3), b = index((i + 2) % 3), c = index((j + 1) % 3), d = index((j + 2) % 3);
       return I_[a][c] * I_[b][d] - I_[a][d] * I_[b][c];
     };
@@ -199,7 +199,7 @@ class LongDoubleSeries {
   }
 
   void add(const torques::Custom&, Real, int, Real*) const {
-    throw InvalidInput("torques", "none of a user's own functions, which have no series", "Custom");
+    throw InvalidInput("torques", "without Custom torques, which have no series", "Custom");
   }
   void add(const torques::During&, Real, int, Real*) const {}   // pieces have none
 
@@ -216,8 +216,8 @@ class LongDoubleSeries {
   std::vector<Orbit>::iterator orbit_;
 };
 
-/// Goes from t0 through times in the order of `visit`, all on one side of it, and from piece to piece where windows
-/// end.
+/// Integrates from t0 through the times in the order of `visit`, all on one side of t0. Continues with the next piece
+/// at each end of a window.
 void follow(const Scene& scene, const ReferenceOptions& options, const std::vector<Piece>& pieces,
             const std::vector<std::size_t>& visit, Reference& found) {
   if (visit.empty()) return;

@@ -2,7 +2,7 @@
 
 #include "polhode/torque/formulas.hpp"
 
-// Euler's equations over a number type, as torque/formulas.hpp: what EulerProblem and bodies in lanes have in common.
+// Euler's equations over a number type, like torque/formulas.hpp. EulerProblem and bodies in lanes share them.
 namespace polhode {
 
 /// w' = I^-1 (tau + (I w) x w) in principal axes; difference: (I2 - I3, I3 - I1, I1 - I2).
@@ -13,7 +13,7 @@ POLHODE_INLINE void compute_rate_change(const N* difference, const N* inverse_mo
   f[2] = (difference[2] * w[0] * w[1] + tau[2]) * inverse_moment[2];
 }
 
-/// The same in any axes; I and its inverse by columns.
+/// The same in any axes, with I and its inverse by columns.
 template <class N>
 POLHODE_INLINE void compute_rate_change_skew(const N* I, const N* inverse, const N* w, const N* tau, N* f) {
   const N L[3] = {row_product(I, 0, w), row_product(I, 1, w), row_product(I, 2, w)};
@@ -40,8 +40,8 @@ POLHODE_INLINE N sum_sizes(const N* v, int n) {
   return total;
 }
 
-/// Of a step of (w, q) or w alone, 1 being just acceptable. Two blocks, since rates have a unit and a quaternion has
-/// none; sums of magnitudes carry a NaN through.
+/// The error of a step of (w, q) or w alone; up to 1 the step is accepted. Rates and quaternion are measured
+/// separately, because only rates have a unit. Sums of magnitudes are NaN if any term is.
 template <bool with_attitude, class N>
 POLHODE_INLINE N compute_error_norm(const N* error, const N* y0, const N* y1, N rtol, N atol) {
   using math::abs;
@@ -56,7 +56,7 @@ POLHODE_INLINE N compute_error_norm(const N* error, const N* y0, const N* y1, N 
   }
 }
 
-/// 1/|q|; within 1e-8 of unity its tangent is exact to rounding.
+/// 1/|q|. For |q|^2 within 1e-8 of 1 the tangent is exact to rounding.
 template <class N>
 POLHODE_INLINE N compute_unit_scale(const N* q) {
   using math::abs;

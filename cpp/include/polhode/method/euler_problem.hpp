@@ -8,12 +8,12 @@
 
 namespace polhode {
 
-/// No torque at all: the compiler sees it and leaves nothing of it.
+/// No torque. The compiler removes the empty function.
 struct NoTorque {
   void add(const TorqueInput&, double*) const {}
 };
 
-/// Euler's equations I w' = tau + (I w) x w, and q' = q (w, 0) / 2 when the attitude is carried along.
+/// Euler's equations I w' = tau + (I w) x w, and q' = q (w, 0) / 2 if the attitude is integrated.
 /// State: w_B [rad/s] and, `with_attitude`, q_WB. `diagonal`: the body axes are principal axes.
 template <class Torque, bool diagonal, bool with_attitude>
 class EulerProblem {
@@ -38,7 +38,7 @@ class EulerProblem {
     }
   }
 
-  /// omega and the unit attitude of a state; the attitude is left alone when it is not carried along.
+  /// omega and the unit attitude of a state. The attitude is not written if it is not integrated.
   static void unpack(const double* y, double* omega, double* attitude) {
     std::copy_n(y, 3, omega);
     if constexpr (with_attitude) {
@@ -70,7 +70,7 @@ class EulerProblem {
     return compute_error_norm<with_attitude>(error, y0, y1, rtol, atol);
   }
 
-  /// |q| = 1 again. The derivative of q is linear in q and the torques see only its direction, so both scale alike.
+  /// Restores |q| = 1. The derivative f is linear in q, and torques depend on the direction of q alone, so both scale.
   void restore(double* y, double* f) const {
     if constexpr (with_attitude) {
       const double s = compute_unit_scale(y + 3);

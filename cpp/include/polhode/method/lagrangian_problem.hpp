@@ -10,15 +10,15 @@
 namespace polhode {
 
 /// Lagrange's equations d/dt dT/dq' - dT/dq = Q in the textbook's z-x-z angles q = (phi, theta, psi), R_WB = Rz(phi)
-/// Rx(theta) Rz(psi): a second road to the same motion, for teaching and for tests. With w_B = E(theta, psi) q' the
-/// kinetic energy is T = w.I w / 2 and the generalised forces are Q = E^T tau_B, so Q_psi is the torque's component
-/// along body z. E is singular where sin(theta) = 0, and so are the equations.
-/// State: phi, theta, psi and their rates.
+/// Rx(theta) Rz(psi). They give the same motion by other equations, for teaching and for tests. With w_B = E(theta,
+/// psi) q' the kinetic energy is T = w.I w / 2 and the generalised forces are Q = E^T tau_B, so Q_psi is the torque's
+/// component along body z. E is singular where sin(theta) = 0, and so are the equations. State: phi, theta, psi and
+/// their rates.
 template <class Torque>
 class LagrangianProblem {
  public:
   static constexpr int dimension = 6;
-  static constexpr double least_sine = 1e-8;   ///< of theta; below it half the digits of phi' are gone
+  static constexpr double least_sine = 1e-8;   ///< of theta; below it phi' loses half its digits
 
   LagrangianProblem(const InertiaTensor& inertia_B, const Torque& torque) : I_(inertia_B.matrix()), torque_(torque) {}
 
@@ -79,7 +79,7 @@ class LagrangianProblem {
   }
 
   double error_norm(const double* error, const double* y0, const double* y1, double rtol, double atol) const {
-    // A step that leaps over theta = 0 or pi has lost what phi and psi mean: refused, whatever its error.
+    // A step across theta = 0 or pi is rejected, because phi and psi are not defined there.
     if ((math::sin(y0[1]) > 0) != (math::sin(y1[1]) > 0)) return std::numeric_limits<double>::quiet_NaN();
     const auto sum = [](const double* v) { return std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]); };
     const double e = sum(error + 3), allowed = rtol * std::max(sum(y0 + 3), sum(y1 + 3)) + atol;

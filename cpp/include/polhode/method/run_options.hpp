@@ -12,14 +12,14 @@ namespace ode {
 struct ErrorTrace;
 }
 
-/// A function of time and state whose zeros are wanted.
+/// A function of time and state whose zeros are located.
 struct SceneEvent {
   std::function<double(const State&)> function;
-  int direction = 0;       ///< +1: where it rises along the integration, -1: where it falls, 0: both
+  int direction = 0;       ///< +1: zeros where it rises along the integration, -1: where it falls, 0: both
   bool terminal = false;   ///< the run ends at its first zero
 };
 
-/// Euler's equations, or Lagrange's in the textbook's z-x-z angles (which fail where theta is 0 or pi).
+/// Euler's equations, or Lagrange's in the textbook's z-x-z angles, which fail at theta = 0 and pi.
 enum class Formulation { euler, lagrangian };
 
 /// Called about twenty times a second with the time reached and the last time; false ends the run.
@@ -33,7 +33,7 @@ struct RunOptions {
   Formulation formulation = Formulation::euler;
   std::span<const SceneEvent> events = {};      ///< owned by the caller
   Progress progress = {};
-  ode::ErrorTrace* trace = nullptr;             ///< for methods that carry their error along (BodyMethod::carries_error)
+  ode::ErrorTrace* trace = nullptr;             ///< for methods with BodyMethod::carries_error
 };
 
 }  // namespace polhode

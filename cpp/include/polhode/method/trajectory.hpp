@@ -20,22 +20,22 @@ struct MotionEvent {
   State state;
 };
 
-/// omega and the unit attitude of n states, row by row. It outlives the run where the dense output is kept.
+/// Computes omega and the unit attitude of n states, row by row. It outlives the run if dense output is kept.
 using Unpack = std::function<void(const double* rows, std::size_t n, double* omega, double* attitude)>;
 
-/// What one method makes of one scene: the samples, in the order asked for, and how the run ended.
-/// Times that were not reached are left out. `omega` is (n, 3) and `attitude` (n, 4), row by row, empty when not wanted.
+/// The result of one run: the samples, in the order of the scene's times, and how the run ended. Times that were not
+/// reached are left out. `omega` is (n, 3) and `attitude` (n, 4), row by row; they are empty if not requested.
 struct Trajectory {
   std::vector<double> t, omega, attitude;
   Status status = Status::finished;
   std::string message;
   ode::Counts stats;
-  std::string model = {};                ///< "euler" or "lagrangian" where equations are stepped
-  std::string state = {};                ///< the variables that were integrated: "omega", "omega, attitude", ...
+  std::string model = {};                ///< "euler" or "lagrangian" if equations were integrated
+  std::string state = {};                ///< the integrated variables: "omega", "omega, attitude", ...
   std::vector<MotionEvent> events;
   ode::DenseOutput dense_forward, dense_backward;
   bool has_dense = false;
-  Unpack unpack;                         ///< of the dense states
+  Unpack unpack;                         ///< for the states of dense output
   State start;
   double t_reached = 0.0;
 };

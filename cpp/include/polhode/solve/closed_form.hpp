@@ -13,7 +13,7 @@
 
 namespace polhode {
 
-/// The closed form of a scene, whichever it is; its time runs from the scene's start.
+/// The closed form of a scene: FreeMotion or HeavyTop. Its time counts from the scene's start.
 class ClosedForm {
  public:
   explicit ClosedForm(FreeMotion motion) : motion_(std::move(motion)) {}
@@ -23,30 +23,30 @@ class ClosedForm {
     std::visit([&](const auto& motion) { motion.at(t, n, omega, attitude); }, motion_);
   }
   std::string_view model() const;   ///< the name of its record
-  double rate(const double* omega) const;   ///< how fast things change where omega is so [rad/s], for steps of events
+  double rate(const double* omega) const;   ///< a rate of change [rad/s], for the steps of an event search
 
  private:
   std::variant<FreeMotion, HeavyTop> motion_;
 };
 
-/// What the list of exact models tells about each of them; the planner, the command line and the docs show it.
+/// The record of an exact model, for the planner, the command line and the docs.
 struct ExactModel {
   std::string_view name;
   std::string_view doc;
   std::string_view source;
-  /// Empty where it holds; else why not, in words for a person.
+  /// "" if the model holds for a scene, else the reason in words.
   std::string (*refuse)(const Scene& scene, const Facts& facts);
 };
 
-/// From the least model to the one that needs most. The first that holds is taken.
+/// The exact models, simplest first. The planner takes the first that holds.
 std::span<const ExactModel> exact_models();
 
-/// The closed form of a scene, where one holds.
+/// The closed form of a scene, if one holds.
 std::optional<ClosedForm> find_closed_form(const Scene& scene, const Facts& facts);
 
-/// A bound on the error of the closed form over the scene's times, against the exact motion from the same float64
-/// input: 20 units of rounding (docs/exact.md; the largest ever measured are 7), and what rounding of the times'
-/// distances from the start, of weight times arm, or of the principal axes of a full tensor does to it.
+/// A bound on the error of the closed form at the scene's times, against the exact motion of the same float64 input. It
+/// is 20 units of rounding (docs/exact.md; the largest measured error is 7). To this it adds the effect of rounding in
+/// times from the start, in weight times arm, and in the principal axes of a full tensor.
 double compute_closed_form_error(const Scene& scene, const Facts& facts, const ClosedForm& form);
 
 }  // namespace polhode

@@ -8,7 +8,7 @@
 
 namespace polhode {
 
-/// Kinetic plus potential energy [J] of n states; omega (n, 3), attitude (n, 4) or null when no torque has a potential.
+/// Kinetic plus potential energy [J] of n states: omega (n, 3), attitude (n, 4) or null if no torque has a potential.
 void compute_energy(const Scene& scene, std::size_t n, const double* t, const double* omega, const double* attitude,
                     double* energy);
 
@@ -16,10 +16,12 @@ void compute_energy(const Scene& scene, std::size_t n, const double* t, const do
 void compute_angular_momentum(const Scene& scene, std::size_t n, const double* omega, const double* attitude,
                               double* L_W);
 
-/// How far each invariant that should hold moved from its value at the start, at most, over the samples:
-/// "energy" relative to the largest kinetic plus potential energy seen, "angular_momentum" relative to its start,
-/// "vertical_momentum" (L_z) relative to the largest |L|, "jacobi" (energy - n L_z, when a potential turns with the
-/// orbit) as the energy. Invariants that do not hold, or need what was not wanted, are left out.
+/// The largest change of each invariant of the scene over the samples, from its value at the start.
+/// - "energy": relative to the largest kinetic plus the largest potential energy.
+/// - "angular_momentum": relative to |L| at the start.
+/// - "vertical_momentum": L_z, relative to the largest |L|.
+/// - "jacobi": energy - n L_z, for a potential that rotates with the orbit; relative like the energy.
+/// Quantities that the scene does not conserve are left out, and those that need a state that was not requested.
 std::map<std::string, double> compute_drift(const Scene& scene, const Motion& motion);
 
 }  // namespace polhode

@@ -1,4 +1,4 @@
 #pragma once
 
-// The old place; it goes with version 0.3.
+// The old path; version 0.3 removes it.
 #include "polhode/method/lagrangian_problem.hpp"

@@ -1,5 +1,5 @@
 #pragma once
 
-// The old place; it goes with version 0.3.
+// The old path; version 0.3 removes it.
 #include "polhode/method/methods.hpp"
 #include "polhode/solve/plan.hpp"

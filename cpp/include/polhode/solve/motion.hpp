@@ -12,47 +12,47 @@ namespace polhode {
 
 class ClosedForm;
 
-/// One piece of a span that is cut where torques begin or cease to act, or where the method is switched.
+/// One piece of a span that is cut where torques start or stop, or where the method is switched.
 struct PiecePlan {
   double begin = 0.0, end = 0.0;       ///< [s], begin < end
-  std::vector<std::string> torques = {};   ///< the names of those that act
+  std::vector<std::string> torques = {};   ///< the names of the acting torques
   std::string model = {};              ///< a name of exact_models(), or "euler"
   std::string method = {};             ///< "exact", or a name of ph.methods()
   double turns = 0.0;                  ///< expected revolutions
-  double predicted_seconds = 0.0;      ///< with every run of the certificate
-  double rtol_scale = 1.0;             ///< of its tolerance, to that of the plan's method
+  double predicted_seconds = 0.0;      ///< including every run of the certificate
+  double rtol_scale = 1.0;             ///< its tolerance over that of the plan's method
 };
 
-/// Which model and method were taken. It is decided before the run and not changed afterwards.
+/// The model and the method of a run. They are decided before the run and do not change afterwards.
 struct Plan {
-  std::string model;      ///< a name of exact_models(), "euler", "lagrangian", or "pieces": see there
-  std::string method;     ///< "exact", or a name of ph.methods(): of pieces, the one that has most to do
+  std::string model;      ///< a name of exact_models(), "euler", "lagrangian" or "pieces"
+  std::string method;     ///< "exact" or a name of methods(); for pieces, the costliest method
   std::string state;      ///< the variables that are integrated: "omega", "omega, attitude", ...
-  double accuracy = std::numeric_limits<double>::quiet_NaN();   ///< that was planned for; NaN: tolerances were given
-  bool certify = true;    ///< the error is to be bounded, not only expected
-  double rtol = 0.0;      ///< planned for the run that is returned; 0 where there are no steps
+  double accuracy = std::numeric_limits<double>::quiet_NaN();   ///< of the plan; NaN if tolerances were given
+  bool certify = true;    ///< the error is bounded, not only expected
+  double rtol = 0.0;      ///< of the run that is returned; 0 without steps
   double predicted_error = std::numeric_limits<double>::quiet_NaN();
   double predicted_seconds = std::numeric_limits<double>::quiet_NaN();
-  std::vector<PiecePlan> pieces = {};   ///< in the order of time; empty where the span is not cut
+  std::vector<PiecePlan> pieces = {};   ///< in the order of time; empty if the span is not cut
 };
 
-/// The answer: where the body points and how fast it spins at the times asked for, with its plan and its error.
+/// The solution of a scene: attitude and angular velocity at its sample times, the plan, and the error.
 struct Motion : Trajectory {
-  int runs = 1;                          ///< two or more where the error was certified
+  int runs = 1;                          ///< two or more if the error was certified
   Plan plan;
-  double rtol_used = 0.0;                ///< of the run that is returned, where an accuracy was asked; else 0
-  double error = std::numeric_limits<double>::quiet_NaN();   ///< of all samples; NaN: not estimated
+  double rtol_used = 0.0;                ///< of the run that is returned, if an accuracy was requested; else 0
+  double error = std::numeric_limits<double>::quiet_NaN();   ///< of all samples; NaN if not estimated
   std::string error_kind =
-      "not estimated";                   ///< "bounded" | "expected" | "limit" (more than was asked) | "not estimated"
-  double asked = 0.0;                    ///< the accuracy, or the relative tolerance, that was asked for
-  std::shared_ptr<const ClosedForm> closed_form = nullptr;   ///< in place of dense output, where there is one
-  std::vector<std::shared_ptr<const Motion>> pieces = {};    ///< in place of dense output, where the span is cut
-  double t_begin = 0.0;                  ///< of a closed form's span, or a piece's
+      "not estimated";                   ///< "bounded" | "expected" | "limit" (above the accuracy) | "not estimated"
+  double asked = 0.0;                    ///< the requested accuracy, or the requested relative tolerance
+  std::shared_ptr<const ClosedForm> closed_form = nullptr;   ///< replaces dense output if there is one
+  std::vector<std::shared_ptr<const Motion>> pieces = {};    ///< replace dense output if the span is cut
+  double t_begin = 0.0;                  ///< start of the span of a closed form or a piece
 
   Motion() = default;
   explicit Motion(Trajectory trajectory) : Trajectory(std::move(trajectory)) {}
 
-  /// The state at any time within the span, from the continuous extension. @throws InvalidInput without dense=true.
+  /// The state at any time within the span, from dense output. @throws InvalidInput without dense=true.
   State at(double time) const;
 };
 

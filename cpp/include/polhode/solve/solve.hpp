@@ -10,16 +10,16 @@
 
 namespace polhode {
 
-/// How much slower than forecast each method or exact model is on this machine, by name; what is not there counts as 1.
+/// The time of each method or exact model on this machine over its forecast, by name. A missing name counts as 1.
 using CostFactors = std::map<std::string, double, std::less<>>;
 
 struct SolveOptions {
   std::optional<double> accuracy = {};    ///< of every sample, 0 < accuracy <= 1; excludes rtol and atol
-  std::optional<std::string> method = {}; ///< "exact" or a name of methods(); without it the plan's
-  bool certify = true;                    ///< bound the error; else it is only expected
+  std::optional<std::string> method = {}; ///< "exact" or a name of methods(); the plan chooses if left out
+  bool certify = true;                    ///< bound the error, which is otherwise only expected
   std::optional<double> rtol = {};        ///< relative tolerance of a step
   std::optional<double> atol = {};        ///< absolute tolerance of a step, in rad/s and in quaternion components
-  std::optional<double> step = {};        ///< [s], for fixed-step methods alone
+  std::optional<double> step = {};        ///< [s], for fixed-step methods only
   long max_steps = 10'000'000;
   bool dense = false;                     ///< keep the continuous extension, for motion.at(t)
   Formulation formulation = Formulation::euler;
@@ -29,10 +29,11 @@ struct SolveOptions {
 };
 
 /// Computes the rotational motion of a scene at its sample times.
-/// @throws InvalidInput for options that contradict each other; what a torque throws comes through.
+/// @throws InvalidInput for options that contradict each other. Exceptions of a torque pass through.
 Motion solve(const Scene& scene, const SolveOptions& options = {});
 
-/// False when the run did not reach its end, or an invariant that should hold drifted by more than was asked.
+/// False if the run did not reach its end, or its error exceeds the requested accuracy. If the error is not estimated,
+/// the drift of each invariant is compared with the requested tolerance.
 bool succeeded(const Scene& scene, const Motion& motion);
 
 }  // namespace polhode

@@ -15,7 +15,7 @@ namespace {
 
 using math::DD;
 
-/// Components in the body of a unit quaternion's rows of R: R^T e_x, R^T e_y or R^T e_z.
+/// R^T v for a unit quaternion: a vector of space axes in body axes.
 Vector3d to_body(const double* q, const Vector3d& v_W) { return rotate({-q[0], -q[1], -q[2], q[3]}, v_W); }
 
 }  // namespace
@@ -24,12 +24,12 @@ std::string compute_series_refusal(const Scene& scene) {
   const torques::GravityGradient* first = nullptr;
   for (const AnyTorque& torque : scene.torques()) {
     if (std::holds_alternative<torques::Custom>(torque)) {
-      return "a Custom torque, whose derivatives are not known: dop853 and rk45 take it";
+      return "a Custom torque, which has no Taylor series (dop853 and rk45 integrate it)";
     }
     if (const auto* gradient = std::get_if<torques::GravityGradient>(&torque)) {
       if (first != nullptr &&
           (gradient->mean_motion() != first->mean_motion() || gradient->phase() != first->phase())) {
-        return "gravity gradients of two orbits: dop853 and rk45 take them";
+        return "gravity gradients of two orbits (dop853 and rk45 integrate them)";
       }
       first = gradient;
     }
@@ -78,7 +78,7 @@ BodySeries::BodySeries(const Scene& scene, bool attitude) {
     // u' = b w2 u, v' = -b w2 v, w2' = c (v - u)(v + u): a = c / b
     balance_ = terms_.product[2] / terms_.product[0];
     kept_[0] = u * v, kept_[1] = DD(balance_) * (u * u + v * v) + w * w;
-    // Squares of 1e-160 and 1e160 rad/s have no room; such rates go without.
+    // Squares of 1e-160 and 1e160 rad/s leave the range of float64: no correction for such rates.
     const double size = std::abs(kept_[1].hi);
     free_ = size > 1e-240 && size < 1e240;
   }
@@ -136,7 +136,7 @@ void BodySeries::add_torques(const Scene& scene) {
       orbit_rate_ = gradient->mean_motion(), orbit_phase_ = gradient->phase();
     }
   }
-  // Gravity pulls with -moment x (R^T e_z), a space torque with R^T tau: linear in one vector each.
+  // Gravity's torque is -moment x (R^T e_z), a space torque is R^T tau. Each is linear in one vector.
   moment_P_ = R_PB * moment;
   if (moment_P_ != Vector3d::Zero()) {
     space_[terms_.fixed_vectors] = {0, 0, 1};
@@ -149,7 +149,7 @@ void BodySeries::add_torques(const Scene& scene) {
     ++terms_.fixed_vectors;
   }
   if (gradients_ > 0) {
-    if (terms_.fixed_vectors == 1) terms_.fixed_vectors = 2;   // beside an orbit the kernels know none or two
+    if (terms_.fixed_vectors == 1) terms_.fixed_vectors = 2;   // with an orbit there are kernels for none or two
     terms_.gradient = true;
     terms_.orbit_rate = orbit_rate_;
     const double strength = 3.0 * gradients_ * orbit_rate_ * orbit_rate_;
@@ -190,27 +190,27 @@ void BodySeries::unpack(const double* rows, std::size_t n, double* omega, double
 BodySeries BodySeries::perturbed(double part) const {
   BodySeries other = *this;
   bool up = false;
-  const auto move = [&](double& x, double size) {
+  const auto change = [&](double& x, double size) {
     up = !up;
     x += up ? part * size : -part * size;
   };
   SeriesTerms& terms = other.terms_;
   const bool rounded = rotated_ && R_BP_.cwiseAbs().maxCoeff() < 1.0;
   for (int i = 0; i < 3; ++i) {
-    move(terms.product[i], rounded ? std::max(std::abs(terms.product[i]), I_.maxCoeff() / I_[i]) : terms.product[i]);
+    change(terms.product[i], rounded ? std::max(std::abs(terms.product[i]), I_.maxCoeff() / I_[i]) : terms.product[i]);
   }
-  const auto move_column = [&](double* column) {
-    for (int i = 0; i < 3; ++i) move(column[i], column[i]);
+  const auto change_column = [&](double* column) {
+    for (int i = 0; i < 3; ++i) change(column[i], column[i]);
     up = !up;
   };
-  move_column(terms.torque);
-  for (auto& column : terms.damping) move_column(column);
+  change_column(terms.torque);
+  for (auto& column : terms.damping) change_column(column);
   for (auto& vector : terms.pull)
-    for (auto& column : vector) move_column(column);
-  for (auto& column : terms.tidal) move_column(column);
-  move(terms.orbit_rate, terms.orbit_rate);
-  move(other.orbit_rate_, other.orbit_rate_);
-  move(other.orbit_phase_, other.orbit_phase_);
+    for (auto& column : vector) change_column(column);
+  for (auto& column : terms.tidal) change_column(column);
+  change(terms.orbit_rate, terms.orbit_rate);
+  change(other.orbit_rate_, other.orbit_rate_);
+  change(other.orbit_phase_, other.orbit_phase_);
   return other;
 }
 
@@ -236,7 +236,7 @@ void BodySeries::compute_series(DD t, double unit, const double* y, const double
     }
   }
   if (terms_.gradient) {
-    // n t without its rounding: the angle's own error would grow with the number of orbits.
+    // n t in double-double, because the error of a rounded angle would grow with the number of orbits.
     const DD product = math::two_prod(orbit_rate_, t.hi), angle = math::two_sum(product.hi, orbit_phase_);
     const double low = angle.lo + product.lo + orbit_rate_ * t.lo;
     const auto [s0, c0] = math::sincos(angle.hi);
@@ -263,20 +263,20 @@ double BodySeries::compute_time_scale(DD, const double* y) const {
 
 void BodySeries::start_carry(double* carry) const { std::copy_n(start_carry_, 8, carry); }
 
-/// A free body keeps u v and a (u^2 + v^2) + w2^2, which are its energy and |L|^2 in other words. One Newton step back
-/// to them, in directions that leave to u and v their relative accuracy, from residuals without rounding.
+/// A free body conserves u v and a (u^2 + v^2) + w2^2, which are combinations of its energy and |L|^2. One Newton step
+/// restores them, with residuals in double-double. Its directions preserve the relative accuracy of u and v.
 void BodySeries::correct_rates(double* y, double* carry) const {
   const DD u(y[0], carry[0]), v(y[1], carry[1]), w(y[2], carry[2]);
   const double uu = y[0] * y[0], vv = y[1] * y[1], ww = y[2] * y[2], uv = y[0] * y[1], sum = uu + vv;
   const double split = sum > 0.0 ? (uu - vv) / sum : 0.0;
-  double turn = 0.0;   // u and v by this part of each
+  double turn = 0.0;   // relative change of u and v
   if (std::abs(uv) > 1e-250) {
     turn = -0.5 * (u * v - kept_[0]).hi / uv;
     if (!(std::abs(turn) < 0.1)) return;
   }
   const double lack = (DD(balance_) * (u * u + v * v) + w * w - kept_[1]).hi + 2.0 * balance_ * sum * turn;
   const double slope = 2.0 * (balance_ * (uu - vv) * split + ww);
-  // Where the energy has its extreme for this u v it tells nothing of the rest.
+  // No step where the energy is extreme for this u v, because the slope vanishes.
   const double step = slope > 1e-3 * (balance_ * sum + ww) ? -lack / slope : 0.0;
   const double apart = step * split;
   const double change[3] = {y[0] * (turn + apart), y[1] * (turn - apart), y[2] * step};
@@ -289,13 +289,13 @@ void BodySeries::correct_rates(double* y, double* carry) const {
 void BodySeries::correct(DD t, long step, double* y, double* carry) const {
   if (free_) correct_rates(y, carry);
   if (attitude_ || vertical_) keep_unit(y, carry);
-  // What a few steps leave is small, and the way back costs a fifth of a step.
+  // The drift over a few steps is small, and the correction costs a fifth of a step.
   if (invariants_.any() && step % 8 == 7) invariants_.restore(t, y, carry);
 }
 
 void BodySeries::keep_unit(double* y, double* carry) {
-  // |q| = 1, or the vertical's. The carry keeps no more than rounding: it is not turned along with q, and what is
-  // larger would grow.
+  // Restores |q| = 1, or the length of the vertical. The carry must stay as small as rounding, because it does not
+  // rotate with q, and a larger one would grow.
   double norm = 0.0, cross = 0.0;
   for (int i = 4; i < 8; ++i) norm += y[i] * y[i], cross += y[i] * carry[i];
   const double lack = 0.5 * (1.0 - norm) - cross;

@@ -14,39 +14,39 @@ namespace polhode {
 
 struct SeriesStart;
 
-/// Why a scene's motion has no Taylor recurrences, or "" when it has.
+/// The reason why a scene has no Taylor recurrences, or "".
 std::string compute_series_refusal(const Scene& scene);
 
-/// A body and its torques as a ode::SeriesProblem, in its principal axes P. State: the rate variables (r0, r1, r2, 0)
-/// and, as the scene needs, the quaternion q_WP, a vector fixed in space seen from the body, or nothing.
+/// A body and its torques as an ode::SeriesProblem in principal axes P. The state is the rate variables (r0, r1, r2, 0)
+/// and, if the scene needs it, the quaternion q_WP, or the components in P of a vector fixed in space.
 class BodySeries {
  public:
   static constexpr int dimension = 8;
   static constexpr int blocks = 2;
   static constexpr int heads[blocks] = {3, 1};
 
-  /// @param attitude  whether the quaternion is wanted even if no torque sees it
+  /// @param attitude  integrate the quaternion even if no torque depends on it
   BodySeries(const Scene& scene, bool attitude);
 
   bool has_attitude() const { return attitude_; }
   const SeriesTerms& terms() const { return terms_; }
   const double* start() const { return start_; }
-  /// A fixed vector in space axes, as terms() numbers them.
+  /// A fixed vector in space axes, numbered as in terms().
   const Vector3d& fixed_vector(int i) const { return space_[i]; }
   double orbit_phase() const { return orbit_phase_; }
-  /// A free body in separatrix variables keeps u v and balance (u^2 + v^2) + w2^2.
+  /// True for a free body in separatrix variables, which conserves u v and balance (u^2 + v^2) + w2^2.
   bool keeps_balance() const { return free_; }
   double balance() const { return balance_; }
   const math::DD& kept(int i) const { return kept_[i]; }
-  std::string describe_state() const;   ///< what is carried, for the plan
+  std::string describe_state() const;   ///< the integrated variables, for the plan
 
-  /// w_B and, where it is carried, q_WB, of n states.
+  /// w_B and, if it is integrated, q_WB of n states.
   void unpack(const double* rows, std::size_t n, double* omega, double* attitude) const;
 
-  /// All constants changed by this part of each, up or down by a fixed rule; those of a full tensor, whose principal axes
-  /// are rounded, by this part of the largest moment.
+  /// A copy with all constants changed by this part of each, up or down by a fixed rule. The constants of a full tensor
+  /// change by this part of the largest moment, because its principal axes are rounded.
   BodySeries perturbed(double part) const;
-  /// Of a state and a small error of it: |w|, the error of w, and that of the attitude as an angle.
+  /// For a state and its small error: |w|, the error of w, and the error of the attitude as an angle.
   void measure_error(const double* y, const double* error, double* out) const;
 
   void compute_series(math::DD t, double unit, const double* y, const double* carry, int order, double* rows) const;
@@ -56,7 +56,7 @@ class BodySeries {
     const auto largest = [](double a, double b, double c) {
       return std::max(std::max(std::abs(a), std::abs(b)), std::abs(c));
     };
-    // A sum as well, since a comparison lets what is not a number pass.
+    // The sum is NaN if a component is, which comparisons may hide.
     sizes[0] = largest(w[0], w[1], w[2]) + 0.0 * (w[0] + w[1] + w[2]);
     sizes[1] = std::max(largest(row[4], row[5], row[6]), std::abs(row[7])) + 0.0 * (row[4] + row[5] + row[6] + row[7]);
   }
@@ -68,7 +68,7 @@ class BodySeries {
   void choose_variables(const Vector3d& omega_P);
   void add_torques(const Scene& scene);
   void find_invariants(const Scene& scene);
-  void set_column(double* column, const Vector3d& torque_P) const;   ///< torque over inertia, in the rate variables
+  void set_column(double* column, const Vector3d& torque_P) const;   ///< adds torque / inertia
   void correct_rates(double* y, double* carry) const;
   static void keep_unit(double* y, double* carry);
   void compute_rates(const double* r, double* omega_P) const {
@@ -83,14 +83,14 @@ class BodySeries {
   bool rotated_ = false, attitude_ = true;
   Vector3d I_ = Vector3d::Zero();
   double k_ = 0.0;
-  math::DD half_over_k_;                   ///< 1 / 2k without its rounding; 0: plain rates
-  bool free_ = false;                      ///< no torque, and separatrix variables: `kept_` holds
+  math::DD half_over_k_;                   ///< 1 / 2k in double-double; 0: plain rates
+  bool free_ = false;                      ///< no torque and separatrix variables: `kept_` is conserved
   double balance_ = 0.0;
   math::DD kept_[2];
   SeriesTerms terms_;
   Vector3d moment_P_ = Vector3d::Zero();   ///< weight times arm
   int gradients_ = 0;
-  bool vertical_ = false;                  ///< carried beside the rates, without the attitude
+  bool vertical_ = false;                  ///< the vertical is integrated in place of the attitude
   SeriesInvariants invariants_;
   double start_[8] = {}, start_carry_[8] = {};
   Vector3d space_[2] = {Vector3d::Zero(), Vector3d::Zero()};   ///< the fixed vectors, space axes

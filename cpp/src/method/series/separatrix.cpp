@@ -8,13 +8,13 @@ namespace {
 
 using math::DD;
 
-/// How k, which tells how the separatrix lies, may differ from 1 where the motion does not stay near it.
+/// Up to this ratio of k to 1 the variables suit every motion.
 constexpr double widest_k = 8.0;
 
 }  // namespace
 
 Separatrix::Separatrix(const Vector3d& I_P) {
-  // Moments of 1e-120 and 1e120 kg m^2 must not underflow in products of two.
+  // Scaled, so that products of two moments of 1e-120 or 1e120 kg m^2 do not leave the range of float64.
   const double scale = math::power_of_two_below(I_P[2]);
   const DD I1 = I_P[0] / scale, I2 = I_P[1] / scale, I3 = I_P[2] / scale;
   const DD lower = I2 - I1, upper = I3 - I2;
@@ -26,7 +26,7 @@ Separatrix::Separatrix(const Vector3d& I_P) {
 
 bool Separatrix::suits(const Vector3d& w) const {
   if (k_.hi > 1.0 / widest_k && k_.hi < widest_k) return true;
-  // 1 there where |w3| or |k w1| is the larger by far.
+  // |u v| is near max(w3^2, (k w1)^2) if one of the two is much larger.
   double r[3], carry[3];
   from_rates(w.data(), r, carry);
   const double near = std::min(k_.hi, 1.0 / k_.hi);

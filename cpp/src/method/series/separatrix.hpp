@@ -5,16 +5,16 @@
 
 namespace polhode {
 
-/// The rates of a body with principal moments I1 < I2 < I3 in variables that its separatrix is written in:
-/// u = w3 - k w1, v = w3 + k w1 and w2, k^2 = I1 (I2 - I1) / (I3 (I3 - I2)). On the separatrix u or v is zero, and near
-/// it each keeps its relative accuracy through every flip, where w1 and w3 shrink together: without torque
-/// u' = rate w2 u, v' = -rate w2 v, w2' = middle (v - u)(v + u), rate^2 = (I2 - I1)(I3 - I2) / (I1 I3).
+/// Separatrix variables for the rates of a body with principal moments I1 < I2 < I3. They are u = w3 - k w1, v = w3 + k
+/// w1 and w2, with k^2 = I1 (I2 - I1) / (I3 (I3 - I2)). On the separatrix u or v is zero. Near it, each keeps its
+/// relative accuracy through every flip, where w1 and w3 are small together. Without torque u' = rate w2 u, v' = -rate
+/// w2 v, w2' = middle (v - u)(v + u), rate^2 = (I2 - I1)(I3 - I2) / (I1 I3).
 class Separatrix {
  public:
   explicit Separatrix(const Vector3d& I_P);
 
-  /// Whether these variables serve a motion through w better than the plain rates: far from the separatrix they mix
-  /// rates of two sizes where k is far from 1.
+  /// True if these variables suit a motion through w better than the plain rates. They do not if w is far from the
+  /// separatrix and k far from 1, because they then mix rates of different sizes.
   bool suits(const Vector3d& w_P) const;
 
   const math::DD& k() const { return k_; }
@@ -22,9 +22,9 @@ class Separatrix {
   const math::DD& middle() const { return middle_; }
   const math::DD& half_over_k() const { return half_over_k_; }   ///< w1 = (v - u) / 2k
 
-  /// (u, v, w2) of rates, and what rounding took from them.
+  /// (u, v, w2) of rates, and their rounding errors.
   void from_rates(const double* w_P, double* r, double* carry) const;
-  /// The same of any vector, with k rounded: of a torque over the moments.
+  /// The same for any vector, such as a torque over the moments, with k rounded.
   void from_vector(const double* a, double* r) const {
     r[0] = a[2] - k_.hi * a[0], r[1] = a[2] + k_.hi * a[0], r[2] = a[1];
   }

@@ -9,11 +9,11 @@ namespace polhode {
 
 using math::DD;
 
-/// The two values of a state, and their gradients by the rates.
+/// The two invariants of a state, and their gradients by the rates.
 struct SeriesInvariants::Values {
   DD kept[2];
   double slope[2][3];
-  double moving;   ///< twice the kinetic energy in the frame where the first is an energy
+  double moving;   ///< twice the kinetic energy in the frame in which the first invariant is the energy
 };
 
 SeriesInvariants::SeriesInvariants(const Scene& scene, const SeriesTerms& terms, const Vector3d& I_P,
@@ -29,7 +29,7 @@ SeriesInvariants::SeriesInvariants(const Scene& scene, const SeriesTerms& terms,
   first_ = (sum.has_potential && sum.keeps_energy) || jacobi;
   second_ = sum.keeps_vertical && sum.pattern_rate == 0.0;
   if (jacobi) orbit_rate_ = terms.orbit_rate;
-  // In units of its own, by powers of two: squares of 1e160 rad/s have no room.
+  // Scaled by powers of two, because squares of 1e160 rad/s overflow.
   const double light = 1.0 / math::power_of_two_below(I_P.maxCoeff());
   const double fall = std::sqrt(light * moment_P.cwiseAbs().maxCoeff());
   const double rate = std::max({scene.omega().cwiseAbs().maxCoeff(), fall, std::abs(orbit_rate_)});
@@ -79,9 +79,9 @@ SeriesInvariants::Values SeriesInvariants::compute(DD t, const double* y, const 
       const DD xx = q[0] * q[0], yy = q[1] * q[1], zz = q[2] * q[2], xy = q[0] * q[1], xz = q[0] * q[2],
                yz = q[1] * q[2];
       const DD xw = q[0] * q[3], yw = q[1] * q[3], zw = q[2] * q[3];
-      const DD one(1.0);
-      const DD u[3] = {c * (one - (yy + zz) * scale) + s * ((xy + zw) * scale),
-                       c * ((xy - zw) * scale) + s * (one - (xx + zz) * scale),
+      const DD unity(1.0);
+      const DD u[3] = {c * (unity - (yy + zz) * scale) + s * ((xy + zw) * scale),
+                       c * ((xy - zw) * scale) + s * (unity - (xx + zz) * scale),
                        (c * (xz + yw) + s * (yz - xw)) * scale};
       for (int i = 0; i < 3; ++i) values.kept[0] = values.kept[0] + u[i] * u[i] * DD(I_[i]) * DD(tidal_);
     }
@@ -119,7 +119,7 @@ void SeriesInvariants::restore(DD t, double* y, double* carry) const {
   };
   const double aa = product(slope[0], slope[0]), ab = product(slope[0], slope[1]), bb = product(slope[1], slope[1]);
   const double da = (kept_[0] - now.kept[0]).hi, db = (kept_[1] - now.kept[1]).hi;
-  // A body that hardly moves shows what its energy lacks in its attitude, not in its rates.
+  // For a body nearly at rest the error of the energy is in its attitude, not in its rates.
   const bool first = first_ && now.moving > 0.05 * exchanged_ && aa > 0.0, second = second_ && bb > 0.0;
   double along = 0.0, across = 0.0;
   if (const double det = aa * bb - ab * ab; first && second && det > 1e-3 * aa * bb) {

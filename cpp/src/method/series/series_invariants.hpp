@@ -6,28 +6,28 @@
 
 namespace polhode {
 
-/// What a driven body keeps, and the way back to it from a state that a series has carried off by rounding and by what
-/// its tolerance leaves: the energy, or under gravity's gradient the energy less n L_z (Jacobi's integral), and L_z
-/// where no torque acts about the vertical. A symmetric top's p_psi needs no help: its derivative is exactly zero.
+/// The invariants of a driven body, and a projection of the state on them. They are the energy, or Jacobi's integral
+/// (energy less n L_z) under gravity's gradient, and L_z if no torque acts about the vertical. The p_psi of a symmetric
+/// top needs no projection, because its derivative is exactly zero.
 ///
-/// One Newton step of the rate variables towards the values at the start, from residuals in double-double. Its metric
-/// leaves to u and v their relative accuracy, and untouched what stays by itself. Projection on invariants: Hairer,
+/// The projection is one Newton step of the rate variables towards the values at the start, with residuals in
+/// double-double. Its metric preserves the relative accuracy of u and v, and does not change constant rates. Hairer,
 /// Lubich & Wanner 2006, Geometric Numerical Integration, IV.4.
 class SeriesInvariants {
  public:
-  /// What a carried vector of four or three numbers is.
+  /// The vector that is integrated beside the rates.
   enum class Sees { nothing, vertical, attitude };
 
-  SeriesInvariants() = default;   ///< keeps nothing
-  /// @param I_P, moment_P  principal moments; weight times arm, all bodies' weights together
+  SeriesInvariants() = default;   ///< no invariants
+  /// @param I_P, moment_P  principal moments; the sum of weight times arm
   /// @param half_over_k    w1 = (v - u) / 2k of separatrix variables
   SeriesInvariants(const Scene& scene, const SeriesTerms& terms, const Vector3d& I_P, const Vector3d& moment_P,
                    int gradients, double orbit_phase, const math::DD& half_over_k, Sees sees);
 
-  /// The values that are to be kept are those of this state.
+  /// Sets the values to restore from this state.
   void start(double t0, const double* y, const double* carry);
   bool any() const { return first_ || second_; }
-  /// Moves the rates of a state at time t.
+  /// Corrects the rates of a state at time t.
   void restore(math::DD t, double* y, double* carry) const;
 
  private:
@@ -35,11 +35,11 @@ class SeriesInvariants {
   Values compute(math::DD t, const double* y, const double* carry) const;
 
   bool first_ = false, second_ = false;   ///< energy or Jacobi's integral; L_z
-  bool separatrix_ = false, alone_[3] = {};   ///< a rate that nothing changes
+  bool separatrix_ = false, alone_[3] = {};   ///< a rate with zero derivative
   Sees sees_ = Sees::nothing;
-  /// In units of the body's own inertia and rate.
+  // In units of the body's own inertia and rate.
   double I_[3] = {}, moment_[3] = {}, tidal_ = 0.0, orbit_rate_ = 0.0, orbit_phase_ = 0.0;
-  double slow_ = 1.0, orbit_ = 0.0;       ///< rates times this are near 1; orbit_rate_ among them
+  double slow_ = 1.0, orbit_ = 0.0;       ///< rates times slow_ are near 1; orbit_rate_ times slow_
   double exchanged_ = 0.0;                ///< size of the potential energy
   math::DD half_over_k_, kept_[2];
 };

@@ -10,25 +10,24 @@
 
 namespace polhode {
 
-/// A fixed step of a body. L, not omega, is what is carried: going through omega each step would bias |L| by rounding.
+/// A fixed step of a body. The state is L, because a conversion to omega in each step would bias |L| by rounding.
 ///
-/// `Step` is the method, made from a PrincipalBody and the run's start; it has
-///   bool advance(double h, const double* kick, double* L, double* q)
-/// for one step of L_P and q_WP, false where it finds no solution, and
-///   static constexpr bool kick_within   its torque acts inside the step, as h tau in `kick`
-///   static constexpr int interior       shorter steps that the polynomial between the steps is drawn through
-/// A Step that carries numbers of its own beside L has their count `carried`, `start(w, own)` and `kick(kick, own)`;
-/// they stand behind L. One with `ascending` wants the moments of a triaxial body in that order. Without kick_within
-/// the torque acts between the parts of a step, by `kicks` and `drifts` where Step has them, else half of it before and
-/// half after (Strang 1968, SIAM J. Numer. Anal. 5, 506).
+/// `Step` is the method, made from a PrincipalBody and the scene. It has bool advance(double h, const double* kick,
+/// double* L, double* q) for one step of L_P and q_WP, which returns false if it finds no solution, and static
+/// constexpr bool kick_within   the torque acts inside the step, as h tau in `kick` static constexpr int interior
+/// the number of shorter steps for the polynomial between the steps A Step with numbers of its own has their count
+/// `carried`, `start(w, own)` and `kick(kick, own)`. They are stored behind L. A Step with `ascending` needs the
+/// moments of a triaxial body in ascending order. Without kick_within the torque acts between the parts of a step, by
+/// `kicks` and `drifts` if Step has them. Otherwise half of it acts before the step and half after (Strang 1968, SIAM
+/// J. Numer. Anal. 5, 506).
 template <class Step>
 class BodyStepper final : public ode::FixedStepper {
  public:
   static constexpr int N = 7;                            ///< (w_B, q_WB)
-  static constexpr int nodes = 4 + Step::interior;       ///< of the polynomial: each end twice, and the shorter steps
+  static constexpr int nodes = 4 + Step::interior;       ///< of the polynomial: each end twice, and the interior nodes
   static constexpr int segment_size = nodes * N;
   static constexpr bool carries = requires { Step::carried; };
-  static constexpr int momenta = [] {                    ///< numbers in L: its own three, and those behind it
+  static constexpr int momenta = [] {                    ///< numbers in L: its three components, and those behind it
     if constexpr (carries) return 3 + Step::carried;
     return 3;
   }();
@@ -49,12 +48,12 @@ class BodyStepper final : public ode::FixedStepper {
   }
 
   const double* y() const override {
-    if (counts_.steps != 0) body_.leave(L_, q_, y_);   // the start stays as it was given, bit for bit
+    if (counts_.steps != 0) body_.leave(L_, q_, y_);   // the start is returned as given
     return y_;
   }
 
   void interpolate(double t, double* out) override {
-    // At the ends of a step, up to the rounding of its time, the polynomial is not needed.
+    // At the end of a step, up to the rounding of its time, the state itself is returned.
     const double rounding = 4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(t_), std::abs(t_old_));
     if (std::abs(t - t_) <= rounding) return body_.leave(L_, q_, out);
     evaluate_segment(segment(), fraction(t), out);
@@ -140,27 +139,27 @@ class BodyStepper final : public ode::FixedStepper {
     return ode::StepResult::accepted;
   }
 
-  bool advance_body(Step& one, double t, double h, double* L, double* q) {
+  bool advance_body(Step& step, double t, double h, double* L, double* q) {
     constexpr double none[3] = {0, 0, 0};
     const double scaled = body_.to_scaled_time(h);
     bool solved = true;
     if (!body_.driven()) {
-      solved = one.advance(scaled, none, L, q);
+      solved = step.advance(scaled, none, L, q);
     } else if constexpr (Step::kick_within) {
       double kick[3];
       compute_kick(t, scaled, L, q, kick);
-      solved = one.advance(scaled, kick, L, q);
+      solved = step.advance(scaled, kick, L, q);
     } else if constexpr (requires { Step::kicks; }) {
       double at = 0.0;
       for (std::size_t k = 0; k < std::size(Step::kicks); ++k) {
         apply_kick(t + at * h, Step::kicks[k] * scaled, L, q);
         if (k == std::size(Step::drifts)) break;
-        solved = solved && one.advance(Step::drifts[k] * scaled, none, L, q);
+        solved = solved && step.advance(Step::drifts[k] * scaled, none, L, q);
         at = k + 1 == std::size(Step::drifts) ? 1.0 : at + Step::drifts[k];
       }
     } else {
       apply_kick(t, 0.5 * scaled, L, q);
-      solved = one.advance(scaled, none, L, q);
+      solved = step.advance(scaled, none, L, q);
       apply_kick(t + h, 0.5 * scaled, L, q);
     }
     return solved;
@@ -173,8 +172,8 @@ class BodyStepper final : public ode::FixedStepper {
     if constexpr (carries) step_.kick(kick, L + 3);
   }
 
-  /// What the torque alone does to L in the (scaled) time h at the time t: h tau, or where the torque sees the rates
-  /// its own midpoint rule, without which half kicks would be of order 1.
+  /// The change of L by the torque alone, over the scaled time h at time t. It is h tau, or the midpoint rule for a
+  /// torque that depends on the rates, because half kicks would otherwise be of order 1.
   void compute_kick(double t, double h, const double* L, const double* q, double* kick) {
     double tau[3];
     body_.compute_torque(t, L, q, tau);
@@ -194,7 +193,7 @@ class BodyStepper final : public ode::FixedStepper {
   double L_[momenta], q_[4], L_old_[momenta] = {}, q_old_[4] = {}, segment_[segment_size] = {};
 };
 
-/// The run of a fixed-step method on a scene.
+/// Integrates a scene by a fixed-step method.
 template <class Step>
 Trajectory integrate_with(const Scene& scene, const RunOptions& options) {
   using Pack = EulerProblem<NoTorque, true, true>;

@@ -3,7 +3,8 @@
 namespace polhode {
 namespace {
 
-/// The turn h w + h^2/2 a + h^3/12 a x w, a = w' at the start, with L kept in space: in the body it turns backwards.
+/// The rotation vector h w + h^2/2 a + h^3/12 a x w, with a = w' at the start. L is constant in space, so in the body
+/// it rotates backwards.
 class Buss {
  public:
   static constexpr bool kick_within = false;
@@ -39,8 +40,8 @@ const BodyMethod buss_method{
         .cheap = true,
         .keeps = "|L|, L",
         .doc =
-            "Buss's augmented second-order step: L in space is kept, the energy grows until the body turns about its "
-            "least axis.",
+            "Buss's augmented second-order step, with L constant in space. The energy grows until the body rotates "
+            "about its axis of least moment.",
         .source = "Buss 2000, J. Comput. Phys. 164, 377; JSBSim eBuss2",
     },
     &integrate_with<Buss>,

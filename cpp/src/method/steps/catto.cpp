@@ -44,8 +44,8 @@ const BodyMethod catto_method{
         .implicit = true,
         .cheap = true,
         .keeps = "nothing",
-        .doc = "Catto's implicit gyroscopic step, one Newton step of implicit Euler: never bursts, takes energy and "
-               "|L| away.",
+        .doc = "Catto's implicit gyroscopic step, one Newton step of implicit Euler. It never diverges, but loses "
+               "energy and |L|.",
         .source =
             "Catto 2015, GDC, Numerical Methods; Bullet computeGyroscopicImpulseImplicit_Body; MuJoCo implicitfast",
     },

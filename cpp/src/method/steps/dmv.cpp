@@ -3,8 +3,9 @@
 namespace polhode {
 namespace {
 
-/// The moments J that make the discrete Moser-Veselov step, of order 2 with J = I, one of order 4, 6 or 8: 1/J = s/I +
-/// d, s and d series in C = h^2 |L|^2 / 2 and H = h^2 L.w / 2. Hairer & Vilmart 2006, J. Phys. A 39, 13225, theorem 3.
+/// The modified moments J with which the discrete Moser-Veselov step has order 4, 6 or 8; with J = I it has order 2.
+/// 1/J = s/I + d, where s and d are series in C = h^2 |L|^2 / 2 and H = h^2 L.w / 2. Hairer & Vilmart 2006, J. Phys. A
+/// 39, 13225, theorem 3.
 template <int order>
 void preprocess(const double* I, double h, const double* L, double* J) {
   if constexpr (order == 2) {
@@ -39,7 +40,8 @@ void preprocess(const double* I, double h, const double* L, double* J) {
   for (int i = 0; i < 3; ++i) J[i] = 1 / (s / I[i] + d);
 }
 
-/// J x + x x (J x) = (h/2) L (1 + |x|^2), the body turns by (x, 1) / norm, L turns with it. Moser & Veselov 1991.
+/// Solves J x + x x (J x) = (h/2) L (1 + |x|^2). The body rotates by the quaternion (x, 1) / norm, which also
+/// transforms L to the new body axes. Moser & Veselov 1991.
 template <int order>
 class Dmv {
  public:
@@ -50,7 +52,7 @@ class Dmv {
 
   bool advance(double h, const double*, double* L, double* q) {
     if (h != h_ || body_->driven())
-      preprocess<order>(body_->I, h, L, J_);   // its two arguments are kept by a free body
+      preprocess<order>(body_->I, h, L, J_);   // a free body conserves both arguments
     h_ = h;
     const double g[3] = {(J_[1] - J_[2]) / J_[0], (J_[2] - J_[0]) / J_[1], (J_[0] - J_[1]) / J_[2]};
     const double u[3] = {0.5 * h * L[0] / J_[0], 0.5 * h * L[1] / J_[1], 0.5 * h * L[2] / J_[2]};
@@ -70,7 +72,7 @@ class Dmv {
       if (change <= 1e-16 * size || (change < 1e-12 * size && change >= last)) break;
       last = change;
     }
-    // L -= 4 / (h A) x x (J x), the turned L exactly.
+    // L -= 4 / (h A) x x (J x) is exactly the rotated L.
     const double M[3] = {J_[0] * x[0], J_[1] * x[1], J_[2] * x[2]}, p[4] = {x[0], x[1], x[2], 1.0};
     A = 1.0 + x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
     double c[3];
@@ -97,16 +99,17 @@ constexpr std::string_view hairer = "Hairer & Vilmart 2006, J. Phys. A 39, 13225
 }  // namespace
 
 const BodyMethod dmv2_method{
-    record_of("dmv2", 2, "The discrete Moser-Veselov step: keeps all a free body keeps; its phase drifts.", moser),
+    record_of("dmv2", 2, "The discrete Moser-Veselov step. It conserves energy and L of a free body; its phase drifts.",
+              moser),
     &integrate_with<Dmv<2>>};
 const BodyMethod dmv4_method{
-    record_of("dmv4", 4, "Moser-Veselov with moments prepared for order 4 of a free body.", hairer),
+    record_of("dmv4", 4, "Moser-Veselov with modified moments, of order 4 for a free body.", hairer),
     &integrate_with<Dmv<4>>};
 const BodyMethod dmv6_method{
-    record_of("dmv6", 6, "Moser-Veselov with moments prepared for order 6 of a free body.", hairer),
+    record_of("dmv6", 6, "Moser-Veselov with modified moments, of order 6 for a free body.", hairer),
     &integrate_with<Dmv<6>>};
 const BodyMethod dmv8_method{
-    record_of("dmv8", 8, "Moser-Veselov with moments prepared for order 8 of a free body: the best cheap free step.",
+    record_of("dmv8", 8, "Moser-Veselov with modified moments, of order 8 for a free body: the best cheap free step.",
               hairer),
     &integrate_with<Dmv<8>>};
 

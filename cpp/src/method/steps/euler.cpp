@@ -34,7 +34,7 @@ const BodyMethod euler_method{
         .adaptive = false,
         .cheap = true,
         .keeps = "nothing",
-        .doc = "Explicit Euler, the attitude by the rotation of the old rates: energy grows until it bursts.",
+        .doc = "Explicit Euler, with the attitude rotated by the old rates. The energy grows until the run diverges.",
         .source = "Euler 1768, Institutionum calculi integralis 1, cap. VII",
     },
     &integrate_with<Euler>,

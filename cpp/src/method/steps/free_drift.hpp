@@ -12,13 +12,13 @@
 
 namespace polhode {
 
-/// The exact motion of a free triaxial body over a short time, to rounding: its Taylor series, as far as it counts. The
-/// rates are carried in the variables that serve them (series/separatrix.hpp), with what rounding takes from them.
+/// The motion of a free triaxial body over a short time, exact to rounding, by its Taylor series. The state has the
+/// rates in plain or separatrix variables (series/separatrix.hpp), with their rounding errors.
 class FreeDrift {
  public:
-  static constexpr int numbers = 10;   ///< of a state: rate variables, their rounding, the quaternion's rounding
+  static constexpr int numbers = 10;   ///< of a state: rate variables, their rounding errors, those of the quaternion
 
-  /// @param I  principal moments, ascending  @param w  rates that the motion starts from
+  /// @param I  principal moments, ascending  @param w  rates at the start
   FreeDrift(const Vector3d& I, const Vector3d& w) : separatrix_(I) {
     using math::DD;
     DD product[3] = {separatrix_.rate(), -separatrix_.rate(), separatrix_.middle()};
@@ -44,7 +44,7 @@ class FreeDrift {
     }
   }
 
-  /// The rates change by `a` at once.
+  /// Adds `a` to the rates.
   void kick(const double* a, double* state) const {
     double r[3];
     if (terms_.variables == RateVariables::separatrix) {
@@ -63,11 +63,12 @@ class FreeDrift {
     }
   }
 
-  /// False, and nothing has changed, where the time is too long for a few series.
+  /// Returns false, without a change, if the time is too long for a few series.
   bool advance(double h, double* state, double* q) const {
     double w[3];
     to_rates(state, w);
-    // The poles of Jacobi's functions are K'/rate and more away, K' > pi/2; the quaternion besides turns by |w| h / 2.
+    // The poles of Jacobi's functions are at least K'/rate away, with K' > pi/2. The quaternion also rotates by |w| h /
+    // 2.
     const double first = square_[0] * w[0] * w[0], third = square_[2] * w[2] * w[2];
     const double rate = std::sqrt(square_[1] * w[1] * w[1] + std::max(first, third));
     const double radii = std::abs(h) * rate * (2 / std::numbers::pi);
@@ -84,7 +85,7 @@ class FreeDrift {
   static constexpr int least = 4, most = 24;
   static constexpr double most_parts = 8.0;
 
-  /// By order n, for a remainder of 2^-64: of the radius of convergence 2^(-60/n), and x with x^n / n! = 2^-64.
+  /// For a remainder of 2^-64, by order n: the part of the radius of convergence, and x with x^n / n! = 2^-64.
   struct Enough {
     double radii[most + 1], turn[most + 1];
     Enough() {
@@ -115,7 +116,7 @@ class FreeDrift {
       add(change[4 + i], q[i], state[6 + i]);
       norm += q[i] * q[i], cross += q[i] * state[6 + i];
     }
-    const double lack = 0.5 * (1.0 - norm) - cross;   // |q| = 1
+    const double lack = 0.5 * (1.0 - norm) - cross;   // restores |q| = 1
     for (int i = 0; i < 4; ++i) add(state[6 + i] + lack * q[i], q[i], state[6 + i]);
   }
 

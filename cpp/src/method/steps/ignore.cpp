@@ -3,7 +3,7 @@
 namespace polhode {
 namespace {
 
-/// The term L x w is left out: without a torque w_B stays as it is, in body and so in space axes.
+/// Leaves out the term L x w, so that without a torque omega is constant in body axes and in space axes.
 class Ignore {
  public:
   static constexpr bool kick_within = true;
@@ -32,7 +32,7 @@ const BodyMethod ignore_method{
         .adaptive = false,
         .cheap = true,
         .keeps = "energy, |L|",
-        .doc = "No gyroscopic term at all, as many engines do by default: the wrong equations, at any step.",
+        .doc = "No gyroscopic term, as in many engines by default. It solves the wrong equations at any step size.",
         .source = "Bullet, Box2D, Jolt and others with the term switched off; Catto 2015, GDC, Numerical Methods",
     },
     &integrate_with<Ignore>,

@@ -3,7 +3,7 @@
 namespace polhode {
 namespace {
 
-/// L + h (L x w), brought back to the length of L: energy settles at L^2 / (2 I2), whatever it was.
+/// L + h (L x w), scaled to the length of L. The energy tends to L^2 / (2 I2) from any start.
 class Jolt {
  public:
   static constexpr bool kick_within = true;
@@ -38,7 +38,7 @@ const BodyMethod jolt_method{
         .adaptive = false,
         .cheap = true,
         .keeps = "|L|",
-        .doc = "The explicit gyroscopic step with |L| clamped; it ends turning about the intermediate axis.",
+        .doc = "The explicit gyroscopic step with |L| restored. The body ends up rotating about its intermediate axis.",
         .source = "Jolt Physics, MotionProperties::ApplyGyroscopicForceInternal; avian, pull request 738",
     },
     &integrate_with<Jolt>,

@@ -6,7 +6,7 @@
 namespace polhode {
 namespace {
 
-/// weight times arm of a gravity that acts along the axis of symmetry; 0 without a torque, NaN with any other.
+/// weight times arm of gravity with its arm along the axis of symmetry; 0 without a torque, NaN with any other torque.
 double find_weight_arm(const Scene& scene) {
   if (scene.torques().empty()) return 0.0;
   const auto* gravity = std::get_if<torques::Gravity>(&scene.torques().front());
@@ -14,15 +14,15 @@ double find_weight_arm(const Scene& scene) {
   return gravity->weight() * gravity->arm()[2];
 }
 
-/// Stoermer-Verlet in the textbook's z-x-z angles of a symmetric body: phi and psi are cyclic, so theta moves in an
-/// effective potential. sin(theta) stands below each fraction.
+/// Stoermer-Verlet in the textbook's z-x-z angles of a symmetric body. phi and psi are cyclic, so theta moves in an
+/// effective potential. The equations divide by sin(theta).
 class Leapfrog {
  public:
-  static constexpr bool kick_within = true;    // its one torque is within F; BodyStepper's kick stays unused
+  static constexpr bool kick_within = true;    // force() includes the torque; BodyStepper's kick is not used
   static constexpr int interior = 0;
 
   Leapfrog(const PrincipalBody& body, const Scene& scene) : body_(&body) {
-    // The door knows that it fits: find_weight_arm is a number here. Scaled by the same powers of two as the moments.
+    // refuse() has checked the scene, so find_weight_arm is not NaN. Scaled by the same powers of two as the moments.
     const double e = body.I[2] / scene.inertia_B().matrix()(2, 2), unit = body.to_scaled_time(1.0);
     M_ = find_weight_arm(scene) * e / unit / unit;
   }
@@ -75,8 +75,8 @@ class Leapfrog {
 
 std::string refuse_leapfrog(const Scene& scene) {
   const Matrix3d& I = scene.inertia_B().matrix();
-  if (!scene.inertia_B().is_diagonal() || I(0, 0) != I(1, 1)) return "another body";
-  if (std::isnan(find_weight_arm(scene))) return "another torque";
+  if (!scene.inertia_B().is_diagonal() || I(0, 0) != I(1, 1)) return "a body without I1 = I2 about body z";
+  if (std::isnan(find_weight_arm(scene))) return "a torque other than gravity along body z";
   const double s =
       math::hypot(scene.attitude().x, scene.attitude().y) * math::hypot(scene.attitude().z, scene.attitude().w);
   return s > 0.5e-8 ? "" : "a start at theta = 0 or pi";
@@ -92,10 +92,9 @@ const BodyMethod leapfrog_method{
         .adaptive = false,
         .cheap = true,
         .keeps = "L_z",
-        .needs = "I1 = I2 about body z, no torque but gravity along it, and theta away from 0 and pi",
-        .doc = "Leapfrog in the textbook's z-x-z angles: p_phi and p_psi are kept, the energy's error stays bounded, "
-               "until "
-               "theta nears 0 or pi.",
+        .needs = "I1 = I2 about body z, gravity along body z as the only torque, and theta away from 0 and pi",
+        .doc = "Leapfrog in the textbook's z-x-z angles. It conserves p_phi and p_psi, and its energy error stays "
+               "bounded away from theta = 0 and pi.",
         .source = "Goldstein, Classical Mechanics, sec. 5.7; Hairer, Lubich & Wanner 2003, Acta Numerica 12, 399",
     },
     &integrate_with<Leapfrog>,

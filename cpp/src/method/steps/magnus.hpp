@@ -4,12 +4,12 @@
 
 namespace polhode {
 
-/// The rotation vector, in body axes, of the turn that the rates w(s) = c0 + c1 s + c2 s^2 + c3 s^3, 0 <= s <= s1, make
-/// in a step of length h: Magnus' expansion to order 6 on Gauss's points. Blanes, Casas & Ros 2000, BIT 40, 434, (3.7)
-/// to (3.9); rates in body axes multiply from the right, so each commutator changes its sign. `beyond`, where it is not
-/// null: what it adds to order 4, which tells how far to trust it.
+/// The rotation vector, in body axes, for the rates w(s) = c0 + c1 s + c2 s^2 + c3 s^3, 0 <= s <= s1, over a step of
+/// length h. It is Magnus' expansion to order 6 on Gauss's points: Blanes, Casas & Ros 2000, BIT 40, 434, (3.7) to
+/// (3.9). Rates in body axes multiply from the right, so each commutator changes its sign.
+/// @param beyond  if not null, the difference from order 4, an estimate of the error
 inline void compute_turn(const double* c, double h, double s1, double* turn, double* beyond = nullptr) {
-  // The points lie at m and m -+ d, d^2 = 3/20 s1^2: differences of a cubic are its derivatives at m.
+  // The points lie at m and m -+ d, d^2 = 3/20 s1^2. Differences of a cubic give its derivatives at m.
   constexpr double root15 = 3.8729833462074168852;
   const double m = 0.5 * s1, d = s1 * (root15 / 10), dd = d * d, width = h * s1;
   double a1[3], a2[3], a3[3], c1[3], c2[3], left[3], right[3];

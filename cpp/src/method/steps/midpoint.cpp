@@ -5,8 +5,8 @@
 namespace polhode {
 namespace {
 
-/// The implicit midpoint rule in L: I x + x x (I x) = (h/2) L by Newton, the body turns by (x, 1) / norm, and
-/// L -= (4/h) x x (I x), which is the turned L exactly: energy and L in space are kept.
+/// The implicit midpoint rule in L. Newton's method solves I x + x x (I x) = (h/2) L, and the body rotates by the
+/// quaternion (x, 1) / norm. L -= (4/h) x x (I x) is exactly the rotated L, so energy and L in space are conserved.
 class Midpoint {
  public:
   static constexpr bool kick_within = false;
@@ -32,10 +32,10 @@ class Midpoint {
       cross(x, M, g);
       const Vector3d change = J.inverse() * Vector3d{M[0] + g[0] - b[0], M[1] + g[1] - b[1], M[2] + g[2] - b[2]};
       for (int i = 0; i < 3; ++i) x[i] -= change[i];
-      const double moved = std::abs(change[0]) + std::abs(change[1]) + std::abs(change[2]);
-      if (!std::isfinite(moved))
-        return !std::isfinite(L[0] + L[1] + L[2]);   // a torque that was no number, or no solution
-      if (moved <= 1e-9 * size) break;   // Newton squares it: what is left is below rounding
+      const double size_of_change = std::abs(change[0]) + std::abs(change[1]) + std::abs(change[2]);
+      if (!std::isfinite(size_of_change))
+        return !std::isfinite(L[0] + L[1] + L[2]);   // true: the torque is not finite; false: no solution
+      if (size_of_change <= 1e-9 * size) break;      // converges quadratically: the next change is below rounding
     }
     const double M[3] = {I[0] * x[0], I[1] * x[1], I[2] * x[2]}, p[4] = {x[0], x[1], x[2], 1.0};
     double g[3];
@@ -60,7 +60,8 @@ const BodyMethod midpoint_method{
         .adaptive = false,
         .implicit = true,
         .keeps = "energy, |L|, L",
-        .doc = "The implicit midpoint rule in the angular momentum: keeps what a free body keeps, its phase drifts.",
+        .doc = "The implicit midpoint rule in the angular momentum. It conserves energy and L of a free body; its "
+               "phase drifts.",
         .source =
             "Austin, Krishnaprasad & Wang 1993, J. Comput. Phys. 107, 105; Lewis & Simo 1994, J. Nonlinear Sci. 4, 253",
     },

@@ -9,11 +9,11 @@
 
 namespace polhode {
 
-/// A body in principal axes P and in units of its own: the largest moment and a step's length lie in [1, 2), both
-/// scaled by powers of two, so that scales change no bit and no formula runs out of range.
+/// A body in principal axes P and in scaled units: the largest moment and the step lie in [1, 2). The scales are powers
+/// of two, so that they change no bit and no formula overflows.
 class PrincipalBody {
  public:
-  /// @param ascending  the principal axes in the order of their moments, where these differ
+  /// @param ascending  order the principal axes by their moments, if these differ
   PrincipalBody(const Scene& scene, double step, bool ascending = false)
       : torques_{scene.torques()}, I_B_(scene.inertia_B().matrix()), diagonal_(scene.inertia_B().is_diagonal()),
         driven_(!scene.torques().empty()), uses_rates_(scene.torque_sum().uses_rates) {
@@ -21,7 +21,7 @@ class PrincipalBody {
     const bool as_given = diagonal_ && !(ascending && inertia.moments()[0] < inertia.moments()[1] &&
                                          inertia.moments()[1] < inertia.moments()[2]);
     R_BP_ = as_given ? Matrix3d(Matrix3d::Identity()) : inertia.axes();
-    turned_ = R_BP_ != Matrix3d::Identity();
+    rotated_ = R_BP_ != Matrix3d::Identity();
     q_BP_ = to_quat(R_BP_);
     const Vector3d moments = as_given ? Vector3d(I_B_.diagonal()) : inertia.moments();
     const int e = std::ilogb(moments.maxCoeff()), f = std::ilogb(step);
@@ -42,7 +42,7 @@ class PrincipalBody {
     for (int i = 0; i < 3; ++i) w[i] = (R_BP_(0, i) * y[0] + R_BP_(1, i) * y[1] + R_BP_(2, i) * y[2]) * rate_;
   }
 
-  /// (w_B, q_WB) of the scene as L_P, scaled, and q_WP.
+  /// Converts (w_B, q_WB) of the scene to L_P, scaled, and q_WP.
   void enter(const double* y, double* L, double* q) const {
     double w[3];
     compute_rates(y, w);
@@ -54,7 +54,7 @@ class PrincipalBody {
   void leave(const double* L, const double* q, double* y) const {
     double w[3];
     for (int i = 0; i < 3; ++i) w[i] = L[i] / I[i] * time_;
-    if (!turned_) {
+    if (!rotated_) {
       for (int i = 0; i < 3; ++i) y[i] = w[i];
       for (int i = 0; i < 4; ++i) y[3 + i] = q[i];
       return;
@@ -70,8 +70,9 @@ class PrincipalBody {
     leave(L, q, y);
     torques_.add(TorqueInput{t, y, y + 3, I_B_, diagonal_}, tau_B);
     for (int i = 0; i < 3; ++i) {
-      const double one = !turned_ ? tau_B[i] : R_BP_(0, i) * tau_B[0] + R_BP_(1, i) * tau_B[1] + R_BP_(2, i) * tau_B[2];
-      tau[i] = one * mass_ * rate_ * rate_;
+      const double tau_P =
+          !rotated_ ? tau_B[i] : R_BP_(0, i) * tau_B[0] + R_BP_(1, i) * tau_B[1] + R_BP_(2, i) * tau_B[2];
+      tau[i] = tau_P * mass_ * rate_ * rate_;
     }
   }
 
@@ -94,7 +95,7 @@ class PrincipalBody {
   SeveralTorques torques_;
   Matrix3d I_B_, R_BP_;
   Quat q_BP_;
-  bool diagonal_, driven_, uses_rates_, turned_ = false;
+  bool diagonal_, driven_, uses_rates_, rotated_ = false;
   double mass_ = 1.0, time_ = 1.0, rate_ = 1.0;
 };
 
@@ -105,7 +106,7 @@ inline void cross(const double* a, const double* b, double* c) {
   c[0] = x, c[1] = y, c[2] = z;
 }
 
-/// q = q p, then |q| = 1 again.
+/// q = q p, normalised.
 inline void turn_by(const double* p, double* q) {
   const double x = q[3] * p[0] + q[0] * p[3] + q[1] * p[2] - q[2] * p[1];
   const double y = q[3] * p[1] - q[0] * p[2] + q[1] * p[3] + q[2] * p[0];
@@ -147,7 +148,7 @@ inline void turn_by_vector(const double* r, double* q) {
   turn_by(p, q);
 }
 
-/// v = R(p)^T v for a unit quaternion p: what stands still in space, seen by a body that turned by p.
+/// v = R(p)^T v for a unit quaternion p: a vector fixed in space, in the axes of a body that has rotated by p.
 inline void turn_back(const double* p, double* v) {
   double t[3], u[3];
   cross(v, p, t);

@@ -17,9 +17,8 @@ using ode::StepResult;
 
 double sum3(const double* v) { return std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]); }
 
-/// Radau IIA of order 5 for the rate variables r, its Newton steps in systems of three equations; the attitude follows
-/// from the collocation polynomial r(s) by Magnus' expansion, at the end of a step, at its stages and between them
-/// alike.
+/// Radau IIA of order 5 for the rate variables r, with Newton steps in systems of three equations. The attitude follows
+/// from the collocation polynomial r(s) by Magnus' expansion: at the end of a step, at its stages and between them.
 class RadauStepper final : public ode::Stepper {
  public:
   static constexpr int N = radau::Body::N;
@@ -33,8 +32,8 @@ class RadauStepper final : public ode::Stepper {
         with_attitude_(with_attitude),
         coupled_(scene.torque_sum().uses_attitude),
         atol_(tolerances.atol) {
-    // The estimate is of order 3, the solution of 5: tolerances are moved so that errors go as what was asked, as in
-    // RADAU5 (Hairer & Wanner 1996, sec. IV.8).
+    // The estimate has order 3, the solution order 5. The tolerance is changed so that errors are proportional to the
+    // given tolerance, as in RADAU5 (Hairer & Wanner 1996, sec. IV.8).
     rtol_ = 0.1 * math::fast_pow(tolerances.rtol, 2.0 / 3);
     newton_tolerance_ = std::max(10 * std::numeric_limits<double>::epsilon() / rtol_, std::min(0.03, std::sqrt(rtol_)));
     std::copy_n(y0, N, y_);
@@ -122,7 +121,7 @@ class RadauStepper final : public ode::Stepper {
     ++counts_.derivatives;
   }
 
-  /// The polynomial of the rates from that of the rate variables.
+  /// Converts the polynomial of the rate variables to that of the rates.
   static void to_rates(double half_over_k, const double* c, double* w) {
     for (int k = 0; k < 12; k += 3) radau::Body::to_rates(half_over_k, c + k, w + k);
   }
@@ -143,7 +142,7 @@ class RadauStepper final : public ode::Stepper {
     for (int k = 0; k < 3; ++k)
       for (int i = 0; i < 3; ++i)
         W[k][i] = T_inverse[k][0] * Z[0][i] + T_inverse[k][1] * Z[1][i] + T_inverse[k][2] * Z[2][i];
-    // What the rounding of r' leaves in an iteration, as its linear systems spread it: no further one gets below.
+    // The effect of rounding in r' on an iteration, through the linear systems. No iteration gets below it.
     double rounding[3], noise[3];
     for (int i = 0; i < 3; ++i) {
       const double sum = std::abs(J_[i][0] * y_[0]) + std::abs(J_[i][1] * y_[1]) + std::abs(J_[i][2] * y_[2]);
@@ -204,7 +203,7 @@ class RadauStepper final : public ode::Stepper {
     return Newton::diverged;
   }
 
-  /// Where the last step's polynomial would lead.
+  /// Extrapolates the polynomial of the last step.
   void guess(double h, double (&Z)[3][3]) const {
     const double reach = counts_.steps == 0 ? 0.0 : h / segment_[0];
     const double* c = segment_ + 2;
@@ -230,19 +229,19 @@ class RadauStepper final : public ode::Stepper {
     }
   }
 
-  /// An error of the rate variables in units of what is allowed, for a step that changes them by `change`.
+  /// An error of the rate variables relative to the tolerance, for a step that changes them by `change`.
   double measure(const double* error, const double* change) const {
     const double end[3] = {std::abs(y_[0] + change[0]), std::abs(y_[1] + change[1]), std::abs(y_[2] + change[2])};
     if (!body_.relative()) return ratio(sum3(error), std::max(size_[2], sum3(end)));
     const double u = ratio(error[0], std::max(size_[0], end[0])), v = ratio(error[1], std::max(size_[1], end[1]));
-    // As plain rates are measured by their sum: max(|u|, |v|) is |w3| + k |w1|. What is no number must not hide in it.
+    // max(|u|, |v|) is |w3| + k |w1|, as plain rates are measured by their sum. A NaN in u or v must survive.
     return (u > v || u != u ? u : v) + ratio(error[2], std::max(size_[2], std::max(end[0], end[1]) + end[2]));
   }
   double ratio(double error, double size) const {
     return error == 0.0 ? 0.0 : std::abs(error) / (rtol_ * size + atol_);
   }
 
-  /// The error of the embedded formula in units of what is allowed, of the rates and of the turn.
+  /// The error of the embedded formula relative to the tolerance, the larger of rates and attitude.
   double estimate(double h, const double (&Z)[3][3], const double* c, bool again) {
     using namespace radau;
     double ZE[3], b[3], e[3];
@@ -262,7 +261,7 @@ class RadauStepper final : public ode::Stepper {
       rates = measure(e, Z[2]);
     }
     if (!with_attitude_) return rates;
-    // The same formula for the integral of w(s), of which it sees the cubic term alone: sum of E_i node_i^4 / 4.
+    // The same formula for the integral of w(s). Only the cubic term contributes: sum of E_i node_i^4 / 4.
     constexpr auto fourth = [](double x) { return x * x * x * x; };
     constexpr double weight = (error[0] * fourth(node[0]) + error[1] * fourth(node[1]) + error[2]) / 4 / mu_real;
     double w[12], turn[3], beyond[3];
@@ -293,7 +292,7 @@ class RadauStepper final : public ode::Stepper {
 Trajectory integrate_radau(const Scene& scene, const RunOptions& options) {
   const bool with_attitude =
       scene.want().attitude || scene.torque_sum().uses_attitude || !options.events.empty();
-  const auto body = std::make_shared<const radau::Body>(scene);   // the motion's dense output needs it to be read
+  const auto body = std::make_shared<const radau::Body>(scene);   // dense output needs it to unpack states
   const Unpack unpack = by_rows<radau::Body::N>(
       [body](const double* y, double* omega, double* attitude) { body->unpack(y, omega, attitude); });
   Trajectory trajectory = integrate(scene, options, body->start(), unpack, [&](const double* y, double t_end) {
@@ -315,8 +314,8 @@ const BodyMethod radau_method{
         .implicit = true,
         .keeps = "nothing",
         .doc =
-            "Radau IIA of order 5 for the rates, the attitude by Magnus' expansion: for stiff damping, where explicit "
-            "steps are bound by stability.",
+            "Radau IIA of order 5 for the rates, with the attitude by Magnus' expansion. For stiff damping, where "
+            "stability limits explicit steps.",
         .source = "Hairer & Wanner 1996, Solving ODEs II, sec. IV.8; Blanes, Casas & Ros 2000, BIT 40, 434",
         .forecast = {.error_per_turn = 0.5,
                      .floor_per_turn = 1e-15,

@@ -11,9 +11,9 @@
 
 namespace polhode::radau {
 
-/// Euler's equations as `radau` steps them. State: the rates in body axes and q_WB, or of a triaxial body, where they
-/// serve it, (u, v, w2) of series/separatrix.hpp and q_WP: then the free motion acts on them directly, so that u and v
-/// keep their own digits.
+/// Euler's equations for `radau`. The state is the rates in body axes and q_WB. For a triaxial body it may be (u, v,
+/// w2) of series/separatrix.hpp and q_WP. The free motion then acts on u and v directly, and each keeps its relative
+/// accuracy.
 class Body {
  public:
   static constexpr int N = 7;
@@ -46,17 +46,17 @@ class Body {
       if (const auto* damping = std::get_if<torques::Damping>(&torque)) {
         add_damping(R_BP.transpose() * damping->matrix() * R_BP);
       } else {
-        linear_ = linear_ && !std::visit([](const auto& one) { return one.traits().uses_rates; }, torque);
+        linear_ = linear_ && !std::visit([](const auto& acting) { return acting.traits().uses_rates; }, torque);
       }
     }
   }
 
   const double* start() const { return start_; }
-  const double* start_carry() const { return start_carry_; }   ///< what rounding took from the rate variables
-  bool relative() const { return separatrix_.has_value(); }    ///< u and v are to be right by their own size
+  const double* start_carry() const { return start_carry_; }   ///< rounding errors of the rate variables
+  bool relative() const { return separatrix_.has_value(); }    ///< u and v need accuracy relative to their own size
   double half_over_k() const { return separatrix_ ? separatrix_->half_over_k().hi : 0.0; }   ///< 0: plain rates
 
-  /// w of rate variables.
+  /// Rates from rate variables.
   static void to_rates(double half_over_k, const double* r, double* w) {
     if (half_over_k == 0.0) {
       std::copy_n(r, 3, w);
@@ -90,8 +90,10 @@ class Body {
     if (!all_.torques.empty()) add_torques(t, y, f);
   }
 
-  /// Its derivative by the rate variables, f = f(t, y) and `change` a small change of them; Newton only needs it
-  /// nearly. The count of right-hand sides it took.
+  /// The derivative of f by the rate variables, approximate, as Newton's method allows.
+  /// @param f       the derivative at (t, y)
+  /// @param change  a small change of the rate variables
+  /// @return the number of right-hand sides evaluated
   int compute_jacobian(double t, const double* y, const double* f, double change, double (&J)[3][3]) const {
     if (separatrix_ && linear_) {
       const double rate = separatrix_->rate().hi, twice = 2 * separatrix_->middle().hi;
@@ -112,7 +114,7 @@ class Body {
     return 3;
   }
 
-  /// How large u and v count in a step of length h: by themselves, or by what a torque makes of them meanwhile.
+  /// The sizes by which errors of u and v are measured in a step of length h: their own, or the change by a torque.
   void compute_sizes(double h, const double* y, const double* f, double* size) const {
     if (!separatrix_) {
       size[0] = size[1] = size[2] = std::abs(y[0]) + std::abs(y[1]) + std::abs(y[2]);
@@ -137,7 +139,7 @@ class Body {
     for (int i = 0; i < 3; ++i) w_B[i] = R_BP_(i, 0) * w[0] + R_BP_(i, 1) * w[1] + R_BP_(i, 2) * w[2];
   }
 
-  /// w' = -C_P w / I: columns for the rates, then for (u, v, w2), of which each rate is a sum.
+  /// w' = -C_P w / I, converted from the rates to (u, v, w2).
   void add_damping(const Matrix3d& C_P) {
     double column[3][3];
     for (int j = 0; j < 3; ++j) {
@@ -175,7 +177,7 @@ class Body {
   double I_[3];
   Quat q_PB_ = {};
   std::optional<Separatrix> separatrix_;
-  double damping_[3][3] = {};   ///< of (u, v, w2), nearly: the slow direction of a stiff one is not for rounding
+  double damping_[3][3] = {};   ///< of (u, v, w2), approximate
   SeveralTorques all_;
   Plain plain_;
   double start_[N], start_carry_[3] = {};

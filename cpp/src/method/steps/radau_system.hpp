@@ -4,13 +4,14 @@
 
 namespace polhode::radau {
 
-/// Radau IIA of order 5: Hairer & Wanner 1996, Solving ODEs II, sec. IV.5 and IV.8. Nodes, and the weights of the
-/// embedded formula of order 3 (8.19).
+/// Radau IIA of order 5: Hairer & Wanner 1996, Solving ODEs II, sec. IV.5 and IV.8. These are its nodes, and the
+/// weights of the embedded formula of order 3 (8.19).
 inline constexpr double root6 = 2.4494897427831780982;
 inline constexpr double node[3] = {(4 - root6) / 10, (4 + root6) / 10, 1.0};
 inline constexpr double error[3] = {(-13 - 7 * root6) / 3, (-13 + 7 * root6) / 3, -1.0 / 3};
 
-/// The inverse of the Runge-Kutta matrix has one real eigenvalue and a pair: T brings it to blocks (8.5), (8.6).
+/// The inverse of the Runge-Kutta matrix has one real eigenvalue and a complex pair. T makes it block diagonal (8.5),
+/// (8.6).
 inline constexpr double mu_real = 3.6378342527444957322;
 inline constexpr double mu_re = 2.6810828736277521339, mu_im = -3.0504301992474105694;
 inline constexpr double T[3][3] = {{0.09443876248897524149, -0.14125529502095420843, 0.03002919410514742449},
@@ -69,7 +70,7 @@ class Systems {
     for (int i = 0; i < 3; ++i) x[i] = complex_[i][0] * b[0] + complex_[i][1] * b[1] + complex_[i][2] * b[2];
   }
 
-  /// How large the solution may be for right-hand sides of these sizes.
+  /// The largest possible sizes of the solution for right-hand sides of these sizes.
   void spread(const double* size, double* x) const {
     for (int i = 0; i < 3; ++i) {
       x[i] = std::abs(real_[i][0]) * size[0] + std::abs(real_[i][1]) * size[1] + std::abs(real_[i][2]) * size[2];

@@ -3,7 +3,7 @@
 namespace polhode {
 namespace {
 
-/// L += h (L x w) with the old w, then the attitude with the new one: the order in which engines update.
+/// L += h (L x w) with the old w, then the attitude with the new w, in the order of most engines.
 class SemiEuler {
  public:
   static constexpr bool kick_within = true;
@@ -34,7 +34,8 @@ const BodyMethod semi_euler_method{
         .adaptive = false,
         .cheap = true,
         .keeps = "nothing",
-        .doc = "Semi-implicit Euler, rates first and the attitude with the new ones: energy grows until it bursts.",
+        .doc = "Semi-implicit Euler: the rates first, then the attitude with the new rates. The energy grows until "
+               "the run diverges.",
         .source = "MuJoCo's integrator 'Euler'; Todorov, Erez & Tassa 2012, IROS, 5026",
     },
     &integrate_with<SemiEuler>,

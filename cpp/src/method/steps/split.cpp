@@ -5,7 +5,7 @@
 namespace polhode {
 namespace {
 
-/// Five exact turns about the principal axes: 1, 2 by half a step, 3 by a whole one, 2, 1 by half a step.
+/// Five exact rotations about the principal axes: 1 and 2 by half a step, 3 by a whole step, 2 and 1 by half a step.
 class Split {
  public:
   static constexpr bool kick_within = false;
@@ -23,7 +23,7 @@ class Split {
   }
 
  private:
-  /// The flow of L_i^2 / (2 I_i): L turns by -a about axis i, the body by a = h L_i / I_i.
+  /// The flow of L_i^2 / (2 I_i): the body rotates about axis i by a = h L_i / I_i, and L by -a.
   void turn(int i, double h, double* L, double* q) const {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     const auto [s, c] = math::sincos(0.5 * h * (L[i] / body_->I[i]));
@@ -48,7 +48,8 @@ const BodyMethod split_method{
         .adaptive = false,
         .cheap = true,
         .keeps = "|L|, L",
-        .doc = "Three-rotation splitting: symplectic, L in space is kept, the energy's error stays bounded.",
+        .doc = "Three-rotation splitting. It is symplectic, L in space is conserved, and the energy error stays "
+               "bounded.",
         .source = "Reich 1994, Physica D 76, 375; Dullweber, Leimkuhler & McLachlan 1997, J. Chem. Phys. 107, 5840",
     },
     &integrate_with<Split>,

@@ -8,16 +8,16 @@
 namespace polhode {
 namespace {
 
-/// The exact motion of the free body over each part of a step: of a triaxial one by its series, or where that would be
-/// long, and of others, as a turn p of the body, and L_B = R(p)^T L_B.
+/// The exact motion of the free body over each part of a step. A triaxial body uses its Taylor series. Other bodies,
+/// and long steps, use a rotation p of the body, with L_B = R(p)^T L_B.
 class ExactDrift {
  public:
   static constexpr bool kick_within = false;
   static constexpr bool ascending = true;
   static constexpr int carried = FreeDrift::numbers;
   static constexpr int interior = 2;
-  /// SRKN6b of Blanes & Moan 2002, table 3: of order 4 where three kicks round a drift commute to nothing, as they do
-  /// when the torque does not see the rates and the energy of the drift is quadratic in L.
+  /// SRKN6b of Blanes & Moan 2002, table 3. It has order 4 if the commutator of a drift with three kicks vanishes. That
+  /// holds for a torque that does not depend on the rates and a drift energy quadratic in L.
   static constexpr double a1 = 0.245298957184271, a2 = 0.604872665711080, a3 = 0.5 - (a1 + a2);
   static constexpr double b1 = 0.0829844064174052, b2 = 0.396309801498368, b3 = -0.0390563049223486,
                           b4 = 1.0 - 2 * (b1 + b2 + b3);
@@ -48,7 +48,7 @@ class ExactDrift {
   }
 
   bool advance(double h, const double*, double* L, double* q) {
-    if (!std::isfinite(L[0] + L[1] + L[2])) return true;   // told by the stepper
+    if (!std::isfinite(L[0] + L[1] + L[2])) return true;   // BodyStepper reports it
     double p[4], w[3];
     if (series_ && series_->advance(h, L + 3, q)) {
       series_->to_rates(L + 3, w);
@@ -71,7 +71,7 @@ class ExactDrift {
   }
 
  private:
-  /// Regular precession: a turn about L by |L| h / I1, then about the axis by (1 - I3/I1) w3 h.
+  /// Regular precession: a rotation about L by |L| h / I1, then about the axis by (1 - I3/I1) w3 h.
   void turn_symmetric(double h, const double* L, double* p) const {
     const double across = I_[(axis_ + 1) % 3];
     double r[3], spin[4] = {0, 0, 0, 1};
@@ -90,7 +90,7 @@ class ExactDrift {
 };
 
 std::string refuse_symplectic(const Scene& scene) {
-  return scene.torque_sum().uses_rates ? "a torque that sees the rates" : "";
+  return scene.torque_sum().uses_rates ? "a torque that depends on the rates" : "";
 }
 
 }  // namespace
@@ -102,10 +102,9 @@ const BodyMethod symplectic_method{
         .dense_order = 4,
         .adaptive = false,
         .keeps = "energy, |L|, L",
-        .needs = "torques that do not see the rates",
-        .doc = "Splitting into the exact free motion and kicks by the torque, at a fixed step: a symplectic map, so "
-               "that the "
-               "energy's error stays bounded.",
+        .needs = "torques that do not depend on the rates",
+        .doc = "Splitting into the exact free motion and kicks by the torque, at a fixed step. The map is symplectic, "
+               "so the energy error stays bounded.",
         .source = "Blanes & Moan 2002, J. Comput. Appl. Math. 142, 313 (SRKN6b)",
     },
     &integrate_with<ExactDrift>,

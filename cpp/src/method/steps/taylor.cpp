@@ -10,18 +10,17 @@ namespace polhode {
 namespace {
 
 Trajectory integrate_taylor(const Scene& scene, const RunOptions& options) {
-  // Shared with the motion, whose dense output needs it to be read.
+  // Shared with the trajectory, because dense output needs it to unpack states.
   const auto series = std::make_shared<const BodySeries>(scene, scene.want().attitude || !options.events.empty());
   const Unpack unpack = [series](const double* rows, std::size_t n, double* omega, double* attitude) {
     series->unpack(rows, n, omega, attitude);
   };
+  using Tracked = ode::TrackedTaylor<BodySeries>;
   std::optional<BodySeries> perturbed;
-  if (options.trace != nullptr)
-    perturbed = series->perturbed(ode::TrackedTaylor<BodySeries>::compute_perturbation(*options.trace));
+  if (options.trace != nullptr) perturbed = series->perturbed(Tracked::compute_perturbation(*options.trace));
   const auto make = [&](const double* y, double t_end) -> std::unique_ptr<ode::Stepper> {
     if (perturbed) {
-      return std::make_unique<ode::TrackedTaylor<BodySeries>>(*series, *perturbed, scene.t0(), y, t_end,
-                                                              options.tolerances, *options.trace);
+      return std::make_unique<Tracked>(*series, *perturbed, scene.t0(), y, t_end, options.tolerances, *options.trace);
     }
     return std::make_unique<ode::Taylor::Stepper<BodySeries>>(*series, scene.t0(), y, t_end, options.tolerances);
   };

@@ -1,4 +1,4 @@
-// Built with the flags of avx512 (cpp/CMakeLists.txt) where the compiler has them, else empty.
+// Compiled with AVX-512 flags (cpp/CMakeLists.txt) if the compiler has them, else empty.
 #include "method/series/lanes/levels.hpp"
 
 #if defined(__AVX512DQ__)

@@ -54,11 +54,11 @@ class Products {
  private:
   static constexpr int right(int p) { return p < rights ? p : rights - 1; }
 
-  /// As many products at once as the registers hold.
+  /// Sums as many products at once as the registers hold.
   template <int begin>
   POLHODE_INLINE void sum_groups(int n, Octet (&out)[count], Octet (&next)[count]) const {
     constexpr int end = begin + octets_at_once < count ? begin + octets_at_once : count;
-    // Nothing here waits for row n - 1, the last but one: it comes at the end.
+    // Row n - 1 comes last, so that nothing here waits for it.
     if (n > 2) {
       Octet above[end - begin];   // right_{n + 1 - i}
       for (int p = begin; p < end; ++p) {
@@ -93,7 +93,7 @@ POLHODE_INLINE Quad broadcast(Quad a) {
   return permute<i, i, i, i>(a);
 }
 
-/// m[0] a_0 + m[1] a_1 + m[2] a_2 + rest, in two halves that do not wait for one another.
+/// m[0] a_0 + m[1] a_1 + m[2] a_2 + rest, in two independent halves.
 POLHODE_INLINE Quad apply(const Quad (&m)[3], Quad a, Quad rest) {
   return madd(broadcast<0>(a), m[0], rest) + madd(broadcast<2>(a), m[2], broadcast<1>(a) * m[1]);
 }
@@ -103,12 +103,11 @@ POLHODE_INLINE Quad front(Quad v) { return permute<1, 2, 0, 3>(v); }
 POLHODE_INLINE Quad back(Quad v) { return permute<2, 0, 1, 3>(v); }
 POLHODE_INLINE Quad negative(Quad v) { return v ^ all4(-0.0); }
 
-/// The recurrences of Euler's equations, a body's quaternion and what its torques see. Separatrix variables or plain
-/// ones; `attitude`: the second half of y is the quaternion, else a fixed vector if there is one, else nothing.
+/// The recurrences of Euler's equations, the quaternion, and the vectors in the torques, in separatrix or plain
+/// variables. With `attitude` the second half of y is the quaternion. Otherwise it is a fixed vector, if there is one.
 ///
-/// A coefficient's way to the next is kept short, since each waits for the one before: the newest terms of every
-/// product are linear in the newest coefficients, with constant factors that are multiplied out while they are on their
-/// way.
+/// Each coefficient waits for the one before, so the path between them is kept short. The newest terms of every product
+/// are linear in the newest coefficients, and their constant factors are multiplied out in advance.
 template <bool separatrix, bool attitude, int fixed, bool gradient>
 class Expansion {
   static constexpr int vectors = fixed + (gradient ? 2 : 0), kept = vectors > 0 ? vectors : 1;
@@ -122,7 +121,7 @@ class Expansion {
   POLHODE_INLINE Expansion(const SeriesTerms& c, const SeriesStart& start, Rows& products, double* rows)
       : rows_(rows), damped_(c.damped) {
     const Quad H = all4(start.unit), HH = H * H;
-    unscale_ = join(all4(1.0 / start.unit), all4(1.0));   // rates leave in their own unit
+    unscale_ = join(all4(1.0 / start.unit), all4(1.0));   // rates are returned in their own unit
     product_ = load4(c.product), product_low_ = load4(c.product_low), to_rates_ = load4(c.to_rates);
     orbit_ = all4(c.orbit_rate) * H;
     for (int j = 0; j < 3; ++j) damping_[j] = load4(c.damping[j]) * H;
@@ -172,8 +171,8 @@ class Expansion {
     advance<false>(n, products, older);
   }
 
-  /// Row n + 1 from the rows before. `early`: what the first coefficients lose to a rounded constant is lost at every
-  /// step alike, and adds up: there the constants keep their low parts.
+  /// Row n + 1 from the rows before. With `early` the constants keep their low parts, because the rounding of a
+  /// constant in the first coefficients gives the same error in each step, which accumulates.
   template <bool early>
   POLHODE_INLINE void advance(int n, Rows& products, const Octet (&older)[count]) {
     const Quad inverse = all4(reciprocals.of[n + 1]);
@@ -249,7 +248,7 @@ class Expansion {
     }
   }
 
-  /// Keeps row n in the forms that the products want.
+  /// Stores row n in the forms that the products need.
   POLHODE_INLINE void put(int n, Rows& products) {
     if constexpr (!attitude && fixed == 1) q_ = v_[0];
     store8(rows_ + W * n, join(r_, q_) * unscale_);
@@ -291,7 +290,7 @@ class Expansion {
 template <bool separatrix, bool attitude, int fixed, bool gradient>
 void expand(const SeriesTerms& terms, const SeriesStart& start, int order, double* rows) {
   using This = Expansion<separatrix, attitude, fixed, gradient>;
-  typename This::Rows products;   // apart from the newest coefficients, which should stay in registers
+  typename This::Rows products;   // in memory, while the newest coefficients stay in registers
   This expansion(terms, start, products, rows);
   expansion.template advance_pair<true>(0, products);
   expansion.template advance_pair<true>(2, products);
