@@ -134,7 +134,7 @@ Custom make_custom(const py::object& function, bool uses_time, bool uses_attitud
     Custom::Potential compiled_potential = nullptr;
     if (!potential.is_none()) {
       if (!is_compiled(potential)) {
-        throw InvalidInput("Custom.potential", "compiled where the function is", std::string(py::repr(potential)));
+        throw InvalidInput("Custom.potential", "compiled if the function is", std::string(py::repr(potential)));
       }
       compiled_potential = reinterpret_cast<Custom::Potential>(find_address(potential));
     }
@@ -151,7 +151,7 @@ Custom make_custom(const py::object& function, bool uses_time, bool uses_attitud
   }
   if (!data.is_none()) {
     throw InvalidInput("Custom.data", "left out for a Python callable", std::string(py::repr(data)),
-                       "only a compiled function is handed a pointer");
+                       "only a compiled function receives the pointer");
   }
   void* pointer = owner.get();
   return Custom(&call_python, pointer, claims, potential.is_none() ? nullptr : &call_python_potential,

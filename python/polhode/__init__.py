@@ -1,4 +1,4 @@
-"""Rigid bodies that turn: where does the body point, and how fast does it spin, at time t?"""
+"""Rotational motion of rigid bodies: attitude and angular velocity as functions of time."""
 
 import importlib as _importlib
 from typing import TYPE_CHECKING as _TYPE_CHECKING
@@ -44,7 +44,7 @@ if _TYPE_CHECKING:
 
 __all__ = sorted(name for name in globals() if not name.startswith("_")) + ["__version__"]
 
-# imported when first asked for, to keep `import polhode` quick
+# imported at first use, to keep `import polhode` fast
 _LATE = ("atlas", "charts", "recipe", "report", "schema")
 
 

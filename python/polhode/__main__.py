@@ -1,4 +1,4 @@
-"""`python -m polhode` is the command `polhode`."""
+"""`python -m polhode` runs the command `polhode`."""
 
 from .cli import main
 

@@ -1,4 +1,4 @@
-"""How this polhode was built, where C++ projects find it, and the processor it runs on."""
+"""The build of polhode, the folder for CMake, and the model of the processor."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Jacobi's elliptic functions on the complementary pair (m, m1), m = k^2 and m1 = 1 - m.
 
-Near m = 1 the difference 1 - m has no digits left in floating point, so the pair is asked for: the smaller of the two
-is taken as exact. Leave m1 out where m itself is what you know.
+Near m = 1 the difference 1 - m loses its digits in floating point, so functions take both numbers. The smaller of the
+two is taken as exact. Leave m1 out if you know m itself.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def _pair(m: npt.ArrayLike, m1: npt.ArrayLike | None) -> tuple[npt.ArrayLike, np
 
 
 def jacobi(u: npt.ArrayLike, m: npt.ArrayLike, m1: npt.ArrayLike | None = None) -> tuple[Any, Any, Any]:
-    """Jacobi's sn, cn and dn.
+    """Return Jacobi's elliptic functions sn, cn and dn.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def jacobi(u: npt.ArrayLike, m: npt.ArrayLike, m1: npt.ArrayLike | None = None) 
 
 
 def K(m: npt.ArrayLike, m1: npt.ArrayLike | None = None) -> Any:
-    """Complete elliptic integral of the first kind; infinite for m1 = 0.
+    """Return the complete elliptic integral of the first kind; infinite for m1 = 0.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def K(m: npt.ArrayLike, m1: npt.ArrayLike | None = None) -> Any:
 
 
 def nome(m: npt.ArrayLike, m1: npt.ArrayLike | None = None) -> Any:
-    """Nome q = exp(-pi K(m1) / K(m)).
+    """Return the nome q = exp(-pi K(m1) / K(m)).
 
     Parameters
     ----------

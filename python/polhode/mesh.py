@@ -1,6 +1,6 @@
-"""Triangles from files: STL by itself, OBJ, PLY and glTF through trimesh (the `mesh` extra).
+"""Triangles from mesh files: STL directly; OBJ, PLY and glTF by trimesh (the `mesh` extra).
 
-What a file claims is compared with its size before anything is read from it.
+The counts in a file are compared with its size before anything is read.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ FORMATS = (".stl", ".obj", ".ply", ".gltf", ".glb")
 
 
 def read(path: str | os.PathLike[str]) -> tuple[Vertices, Faces]:
-    """Read the triangles of a mesh file; several objects of one file, each in its place, become one.
+    """Read the triangles of a mesh file; several objects of one file are joined in their places.
 
     Parameters
     ----------
@@ -37,14 +37,14 @@ def read(path: str | os.PathLike[str]) -> tuple[Vertices, Faces]:
     Returns
     -------
     vertices : ndarray, shape (n, 3)
-        In the file's unit. As they stand there: an STL file has three for each face.
+        In the file's unit and order. An STL file has three vertices for each face.
     faces : ndarray, shape (m, 3)
-        Vertices of each triangle.
+        Indices of the vertices of each triangle.
 
     Raises
     ------
     InvalidInput
-        A file that cannot be read, is cut short, or claims more than it holds.
+        For a file that cannot be read, is truncated, or claims more data than it has.
     """
     file = pathlib.Path(path)
     kind = file.suffix.lower()
@@ -64,7 +64,7 @@ def read(path: str | os.PathLike[str]) -> tuple[Vertices, Faces]:
 
 
 def report(vertices: npt.ArrayLike, faces: npt.ArrayLike) -> dict[str, Any]:
-    """Check that triangles are the surface of a body, and tell what it is made of.
+    """Check that triangles are the surface of a body, and count its surfaces.
 
     Parameters
     ----------
@@ -74,10 +74,11 @@ def report(vertices: npt.ArrayLike, faces: npt.ArrayLike) -> dict[str, Any]:
     Returns
     -------
     dict
-        faces; components: surfaces that share no edge, cavities with them; cavities: wound inward inside another;
-        embedded: wound outward inside a solid, counted twice; unjudged: not asked whether they lie inside others, where
-        there are too many; degenerate: faces with two corners at one place, which count for nothing; merged: closed
-        only with vertices at one place taken as one; inside_out; low and high: the box round the faces, shape (3,).
+        "faces"; "components": surfaces that share no edge, including cavities; "cavities": surfaces wound inward inside
+        another; "embedded": surfaces wound outward inside a solid, which count twice; "unjudged": surfaces whose
+        nesting was not checked, because there are too many; "degenerate": faces with two equal corners, which are
+        ignored; "merged": True if the surface is closed only with equal vertices merged; "inside_out"; "low" and "high": corners
+        of the bounding box, shape (3,).
 
     Raises
     ------
@@ -88,7 +89,7 @@ def report(vertices: npt.ArrayLike, faces: npt.ArrayLike) -> dict[str, Any]:
 
 
 class _Wrong(Exception):
-    """What is wrong with a file, without its name."""
+    """An error in a file, without the file's name."""
 
 
 # ---- STL
@@ -100,7 +101,7 @@ def _stl(data: bytes) -> tuple[Vertices, Faces]:
 
 
 def _is_ascii(data: bytes) -> bool:
-    """Binary files, too, may begin with "solid": their length is right, or they hold bytes that no text has."""
+    """Return True for an ASCII file. Binary files may begin with "solid", too."""
     if not data.lstrip()[:5].lower() == b"solid":
         return False
     if len(data) >= 84 and len(data) == 84 + 50 * struct.unpack_from("<I", data, 80)[0]:
@@ -155,7 +156,7 @@ def _by_trimesh(file: pathlib.Path, data: bytes) -> tuple[Vertices, Faces]:
 
 
 def _join(scene: Any) -> tuple[Vertices, Faces]:
-    """All objects of a scene, each in its place; a mirrored one keeps its outside."""
+    """Join all objects of a scene in their places; a mirrored object keeps its outside."""
     vertices, faces, count = [np.empty((0, 3))], [np.empty((0, 3), np.int64)], 0
     for node in sorted(scene.graph.nodes_geometry):
         transform, name = scene.graph[node]
@@ -185,7 +186,7 @@ def _require_ply_claims(data: bytes) -> None:
 
 
 def _require_gltf_claims(kind: str, data: bytes) -> None:
-    """What is made from a count alone, without bytes that would bear it out."""
+    """Refuse counts in a glTF file that its bytes do not support."""
     if kind == ".glb":
         if len(data) < 20 or data[:4] != b"glTF":
             raise _Wrong("must begin with a glTF header (cut short?)")
@@ -205,7 +206,7 @@ HARMLESS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_")
 
 
 def _require_gltf_sense(content: dict[str, Any], size: int) -> None:
-    """Refuse what trimesh would leave out without a word, and what is made from a count alone."""
+    """Refuse parts that trimesh would skip silently, and counts without data."""
     for accessor in content.get("accessors", []):
         if "sparse" in accessor:
             raise _Wrong("has sparse accessors, which are not read")

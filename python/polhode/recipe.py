@@ -1,4 +1,4 @@
-"""Recipes: many bodies drawn from a seed rather than written down."""
+"""Recipes: many bodies drawn at random from a seed."""
 
 from ._scene.recipe import Draw, Recipe, load_recipe, recipe_model
 

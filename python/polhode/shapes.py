@@ -1,7 +1,8 @@
 """Bodies of uniform density: `polhode.shapes.box(mass, half_sides)` and so on, each a `MassProperties`.
 
-Full heights, symmetry axis z, centre at the origin unless the shape says otherwise. The functions, their signatures and
-their docstrings are made from the core's list of shapes.
+Heights are full heights. The symmetry axis is z. The centre of mass is at the origin unless the shape says otherwise.
+
+The functions, their signatures and docstrings are made from the list of shapes of the core.
 """
 
 from __future__ import annotations
@@ -57,19 +58,19 @@ def _make(name: str, doc: str, parameters: _Parameters) -> Callable[..., MassPro
 
 
 def volume(shape: str, /, *sizes: Any, **named: Any) -> float:
-    """Volume of a shape [m^3], for its mass by a density: `box(2700 * volume("box", sides), sides)`.
+    """Return the volume of a shape [m^3], for its mass by a density: `box(2700 * volume("box", sides), sides)`.
 
     Parameters
     ----------
     shape : str
-        Its name.
+        The name of the shape.
     *sizes, **named
-        As the shape takes them after its mass.
+        The parameters of the shape after its mass.
 
     Raises
     ------
     InvalidInput
-        A shape that is thin or unknown, and what the shape refuses.
+        For a thin or unknown shape, and for parameters that the shape refuses.
     """
     for name, _, parameters in _core.shape_records():
         if name == shape:
@@ -79,7 +80,7 @@ def volume(shape: str, /, *sizes: Any, **named: Any) -> float:
 
 
 def table() -> str:
-    """The shapes as a Markdown table: name, parameters, and what each is."""
+    """Return the shapes as a Markdown table with name, parameters and description."""
     rows = ["| shape | parameters | body |", "|---|---|---|"]
     for name, doc, parameters in _core.shape_records():
         meanings = "; ".join(f"`{p}`: {meaning}" for p, _, meaning in parameters[1:])

@@ -1,4 +1,4 @@
-"""Torques: what turns a body besides itself. Each class comes from one record of the compiled list."""
+"""Torques on a body. Each class is made from a record of the list of torques of the core."""
 
 from __future__ import annotations
 
@@ -14,5 +14,5 @@ for _name in __all__[:-1]:
 
 
 def records() -> list[dict[str, Any]]:
-    """Return what the list of torques tells: name, scene-file key, doc, source and parameters of each."""
+    """Return the records of all torques: name, scene-file key, doc, source and parameters."""
     return list(_core.torque_records())

@@ -25,7 +25,7 @@ double check_body(const FreeMotionBatch& b, std::size_t body) {
   const double largest = std::max({I[0], I[1], I[2]}), smallest = std::min({I[0], I[1], I[2]});
   if (!(smallest > 0.0)) {
     throw InvalidInput(row_name("inertia", body), "positive about every axis", to_text(smallest),
-                       "a rod or a point has no moment about some axis, and its spin there no meaning");
+                       "a rod or a point has a zero moment, so its rate about that axis is undefined");
   }
   const double deficit = 2.0 * largest - (I[0] + I[1] + I[2]);
   if (deficit > InertiaTensor::tolerance * largest) {
@@ -48,7 +48,7 @@ void check_times(const double* t, std::size_t n, double reach, double speed, std
     longest = std::abs(t[i]) > longest && !std::isinf(t[i]) ? std::abs(t[i]) : longest;
   if (longest * speed > 1e25) {
     throw InvalidInput(row_name("t", body), "such that |omega t| <= 1e25 rad", to_text(longest) + " s",
-                       "beyond that no digit worth having is left of the phase");
+                       "beyond this the phase has no reliable digits");
   }
 }
 

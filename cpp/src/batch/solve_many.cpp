@@ -75,7 +75,7 @@ std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeS
       work();
     } catch (const InvalidInput& error) {
       stopped = true;
-      throw InvalidInput("body " + std::to_string(body), "one that solve() takes", error.what());
+      throw InvalidInput("body " + std::to_string(body), "a scene that solve() accepts", error.what());
     } catch (...) {
       stopped = true;
       throw;

@@ -52,7 +52,7 @@ FreeMotion::FreeMotion(const InertiaTensor& inertia, const Vector3d& omega, cons
   if (!omega.allFinite()) throw InvalidInput("omega", "finite", vector_text(omega));
   if (!inertia.is_positive_definite()) {
     throw InvalidInput("inertia", "positive about every axis", "principal moments " + vector_text(inertia.moments()),
-                       "a rod or a point has no moment about some axis, and its spin there no meaning");
+                       "a rod or a point has a zero moment, so its rate about that axis is undefined");
   }
   const bool exact_axes = inertia.is_diagonal();
   if (exact_axes) {
@@ -162,7 +162,7 @@ double FreeMotion::checked_time(double t) const {
   if (std::isnan(t) || std::isinf(t)) throw InvalidInput("t", "finite", to_text(t));
   if (form_ != Form::rest && !(std::abs(scaled) <= longest_)) {
     throw InvalidInput("t", "such that |omega t| <= 1e25 rad", to_text(t) + " s",
-                       "beyond that no digit worth having is left of the phase");
+                       "beyond this the phase has no reliable digits");
   }
   return scaled;
 }

@@ -47,7 +47,7 @@ TopSymmetry symmetry_of(const Vector3d& moments) {
   const double gap = std::min({std::abs(m[0] - m[1]), std::abs(m[1] - m[2]), std::abs(m[2] - m[0])});
   throw InvalidInput("inertia", "that of a symmetric top, two moments equal", text(moments),
                      "the nearest two differ by " + to_text(gap / moments.maxCoeff()) +
-                         " of the largest: set them equal if they are meant to be, else solve the scene step by step");
+                         " of the largest: set them equal if they should be, else integrate with polhode.solve");
 }
 
 /// The same for a full tensor. With two equal moments A, I = A + (C - A) n n^T. The column with the largest diagonal

@@ -151,7 +151,7 @@ MeshReport check_mesh(const Mesh& mesh) {
   if (faults.any()) refuse(faults, corners, mesh);
   report.degenerate = faults.degenerate;
   const std::vector<Surface> surfaces = inertia::measure(corners, mesh, roots);
-  if (surfaces.empty()) throw InvalidInput("faces", "round a positive volume", "faces of no area alone");
+  if (surfaces.empty()) throw InvalidInput("faces", "round a positive volume", "only faces without area");
   report.components = surfaces.size();
   double volume = 0;
   report.low = surfaces[0].low, report.high = surfaces[0].high;

@@ -11,7 +11,7 @@ Scene::Scene(SceneParts parts) {
   if (!(moments.minCoeff() > 0.0)) {
     throw InvalidInput("scene.inertia", "a tensor with three positive principal moments",
                        "a least moment of " + to_text(moments.minCoeff()),
-                       "a rod or a point has no spin about its axis: its rate there is not determined");
+                       "a rod or a point has a zero moment, so its rate about that axis is undefined");
   }
   for (int i = 0; i < 3; ++i) {
     if (!std::isfinite(parts.omega[i])) throw InvalidInput("scene.omega", "finite", to_text(parts.omega[i]));
@@ -19,7 +19,7 @@ Scene::Scene(SceneParts parts) {
   parts.attitude = make_attitude(parts.attitude);
   if (!std::isfinite(parts.t0)) throw InvalidInput("scene.t0", "finite", to_text(parts.t0));
   if (parts.times.empty()) {
-    throw InvalidInput("scene.times", "at least one time", "none", "say when the answer is wanted");
+    throw InvalidInput("scene.times", "at least one time", "none", "give the times of the samples");
   }
   for (std::size_t i = 0; i < parts.times.size(); ++i) {
     if (!std::isfinite(parts.times[i])) {

@@ -20,7 +20,7 @@ std::vector<Window> arrange(std::vector<Window> windows) {
     const bool known = !std::isnan(window.begin) && !std::isnan(window.end);
     throw InvalidInput("During.windows", "pairs of a begin and a later end", show(window),
                        !known                 ? ""
-                       : window.begin == window.end ? "an empty window: nothing ever acts in it"
+                       : window.begin == window.end ? "the window is empty"
                                               : "begin and end are swapped");
   }
   std::sort(windows.begin(), windows.end(), [](const Window& a, const Window& b) { return a.begin < b.begin; });
@@ -28,7 +28,7 @@ std::vector<Window> arrange(std::vector<Window> windows) {
   for (const Window& window : windows) {
     if (!merged.empty() && window.begin < merged.back().end) {
       throw InvalidInput("During.windows", "apart from each other", show(merged.back()) + " and " + show(window),
-                         "what acts twice at once is two torques");
+                         "give two torques if both should act at once");
     }
     if (!merged.empty() && window.begin == merged.back().end) {
       merged.back().end = window.end;

@@ -1,4 +1,4 @@
-"""What `Rotation` computes with NumPy, on arguments checked here: means, alignments, modified Rodrigues parameters."""
+"""The parts of `Rotation` in NumPy: means, alignments, and modified Rodrigues parameters."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def mean(quat: FloatArray, weights: ArrayLike | None) -> FloatArray:
 
 
 def shortest(u: FloatArray, v: FloatArray) -> FloatArray:
-    """Return the quaternion of the smallest rotation that takes the unit vector u to v; of half turns, any."""
+    """Return the quaternion of the smallest rotation that takes unit vector u to v, or of some half turn."""
     apart, together = v - u, v + u
     # u x v without cancellation, whether v is next to u or to -u.
     axis = np.cross(u, apart if u @ v > 0 else together)
@@ -89,7 +89,7 @@ def shortest(u: FloatArray, v: FloatArray) -> FloatArray:
 
 
 def align(a: ArrayLike, b: ArrayLike, weights: ArrayLike | None) -> tuple[FloatArray, float]:
-    """Return the quaternion that takes vectors b to vectors a best, and what remains; see `Rotation.align_vectors`."""
+    """Return the quaternion that best takes vectors b to a, and the residual; see `Rotation.align_vectors`."""
     target, source = (np.atleast_2d(to_vectors(value, name)) for name, value in (("a", a), ("b", b)))
     if target.ndim > 2 or target.shape != source.shape or len(target) == 0:
         raise InvalidInput("a, b: must be one vector each, or equally many of shape (n, 3), got shapes "
@@ -106,7 +106,7 @@ def align(a: ArrayLike, b: ArrayLike, weights: ArrayLike | None) -> tuple[FloatA
 
 
 def _scaled(rows: FloatArray) -> FloatArray:
-    """Rows relative to the largest entry of all: only directions count, and nothing overflows."""
+    """Scale rows by the largest entry, so that nothing overflows."""
     return rows / (np.abs(rows).max() or 1.0)
 
 
@@ -121,7 +121,7 @@ def _align_all(a: FloatArray, b: FloatArray, weights: FloatArray) -> FloatArray:
 
 
 def _align_exactly(a: FloatArray, b: FloatArray, weights: FloatArray, exact: Any) -> FloatArray:
-    """One pair to the direction of each other, the remaining turn about it as the others ask for."""
+    """Align one pair exactly; the other pairs determine the rotation about it."""
     first = int(np.flatnonzero(exact)[0])
     if not (a[first].any() and b[first].any()):
         raise InvalidInput(f"a, b: must not be zero where the alignment is exact, got it at {first}")

@@ -1,4 +1,4 @@
-"""Angular velocity from the rates of Euler angles, and back."""
+"""Conversion between angular velocity and the rates of Euler angles."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ FloatArray = NDArray[np.float64]
 
 
 def body_rates(sequence: str, angles: ArrayLike, angle_rates: ArrayLike) -> FloatArray:
-    """Angular velocity in body axes of Euler angles and their rates.
+    """Return the angular velocity in body axes from Euler angles and their rates.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def body_rates(sequence: str, angles: ArrayLike, angle_rates: ArrayLike) -> Floa
 
 
 def euler_rates(sequence: str, angles: ArrayLike, omega: ArrayLike) -> FloatArray:
-    """Rates of Euler angles of an angular velocity in body axes; the inverse of `body_rates`.
+    """Return the rates of Euler angles from an angular velocity in body axes, the inverse of `body_rates`.
 
     Parameters
     ----------

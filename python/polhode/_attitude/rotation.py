@@ -38,7 +38,7 @@ class Rotation:
     """
 
     __slots__ = ("_quat",)
-    __array_ufunc__ = None  # an array times a rotation is for the rotation to refuse
+    __array_ufunc__ = None  # so that Rotation refuses an array times a rotation
     _quat: FloatArray
 
     def __init__(self, quat: Any, *, scalar_first: bool = False) -> None:
@@ -93,7 +93,7 @@ class Rotation:
 
     @staticmethod
     def from_rotvec(rotvec: ArrayLike, degrees: bool = False) -> Rotation:
-        """From rotation vectors: the turn by |v| about v.
+        """From rotation vectors: the rotation by the angle |v| about v.
 
         Parameters
         ----------

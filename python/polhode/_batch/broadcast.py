@@ -1,4 +1,4 @@
-"""Arrays of bodies and of times: checked, broadcast, and brought back to the caller's shape."""
+"""Checks and broadcasting of arrays of bodies and of times."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ WIDTHS = {"omega": 3, "attitude": 4}
 
 
 def to_rows(value: Any, name: str, width: int | None) -> Array:
-    """Return a float64 array whose last axis has the width asked for; NaN and inf may pass."""
+    """Return a float64 array whose last axis has this width; NaN and inf pass."""
     array = to_numbers(value.as_quat() if hasattr(value, "as_quat") else value, name)
     if width is not None and (array.ndim == 0 or array.shape[-1] != width):
         raise InvalidInput(f"{name}: must be an array of shape (..., {width}), got shape {array.shape}")
@@ -27,7 +27,7 @@ def to_rows(value: Any, name: str, width: int | None) -> Array:
 
 
 def check_want(want: str | Sequence[str]) -> tuple[str, ...]:
-    """Return the names of what is wanted, in the caller's order."""
+    """Return the requested names, in the caller's order."""
     names = (want,) if isinstance(want, str) else tuple(want)
     if not names or any(name not in WIDTHS for name in names) or len(set(names)) != len(names):
         raise InvalidInput(f"want: must be one or both of 'omega' and 'attitude', got {want!r}")
@@ -48,14 +48,14 @@ def _require_memory(shape: tuple[int, ...], names: tuple[str, ...]) -> None:
 
 
 def _axes(shape: tuple[int, ...], loops: Sequence[tuple[int, ...]]) -> tuple[list[int], list[int]]:
-    """Which axes of the result belong to bodies (some parameter varies along them) and which to times alone."""
+    """Return the axes of the result along which parameters vary, and the axes of times alone."""
     padded = [(1,) * (len(shape) - len(loop)) + loop for loop in loops]
     bodies = [k for k in range(len(shape)) if any(loop[k] != 1 for loop in padded)]
     return bodies, [k for k in range(len(shape)) if k not in bodies]
 
 
 def check_out(out: Any, names: tuple[str, ...], shape: tuple[int, ...]) -> dict[str, Any]:
-    """Return the caller's arrays by name; none when `out` is not given."""
+    """Return the caller's arrays by name; none if `out` is not given."""
     if out is None:
         return {}
     given = (out,) if isinstance(out, np.ndarray) else tuple(out)
@@ -84,7 +84,7 @@ def _evaluate_one(
     want: str | Sequence[str],
     kernel: Callable[..., int],
 ) -> Any:
-    """One body at all the times: nothing to broadcast, and a short call for short arrays."""
+    """Evaluate one body at all times, without the cost of broadcasting."""
     _require_memory(t.shape, names)
     results: dict[str, Any] = {}
     for name in names:
@@ -109,7 +109,7 @@ def evaluate(
     want: str | Sequence[str],
     kernel: Callable[..., int],
 ) -> Any:
-    """Broadcasts, calls kernel(*flat parameters, t, omega, attitude) and brings the results to the caller's shape.
+    """Broadcast, call kernel(*flat parameters, t, omega, attitude), and return results in the caller's shape.
 
     `parameters` are (array, how many of its last axes belong to one body).
     """
@@ -170,7 +170,7 @@ def evaluate(
 
 
 def check_threads(threads: int | None) -> int:
-    """Return how many threads may work; 0 stands for as many as the machine has."""
+    """Return the number of threads; 0 means all of the machine."""
     if threads is None:
         return 0
     if isinstance(threads, bool) or not isinstance(threads, (int, np.integer)) or threads < 1:

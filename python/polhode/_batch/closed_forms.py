@@ -1,4 +1,4 @@
-"""Many bodies, many times: closed forms on arrays that broadcast."""
+"""Closed forms for many bodies and many times, on arrays that broadcast."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .broadcast import Array, check_out, check_threads, check_want, evaluate, to
 
 
 def _product(p: Array, q: Array) -> Array:
-    """Hamilton's product of arrays of quaternions, which need not be unit to the last bit."""
+    """Return Hamilton's product of arrays of quaternions."""
     x, y, z, w = np.moveaxis(p, -1, 0)
     a, b, c, d = np.moveaxis(q, -1, 0)
     return np.stack([w * a + x * d + y * c - z * b, w * b - x * c + y * d + z * a,
@@ -32,7 +32,7 @@ def free_motion(
     want: str | Sequence[str] = ("omega", "attitude"),
     threads: int | None = None,
 ) -> Any:
-    """Torque-free motion of many bodies at many times; everything broadcasts as in a NumPy gufunc.
+    """Compute the torque-free motion of many bodies at many times; all arguments broadcast.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def heavy_top(
     want: str | Sequence[str] = ("omega", "attitude"),
     threads: int | None = None,
 ) -> Any:
-    """Lagrange's tops, many at many times; everything broadcasts as in a NumPy gufunc.
+    """Compute the motion of many of Lagrange's tops at many times; all arguments broadcast.
 
     Parameters
     ----------
@@ -187,7 +187,7 @@ def _rotated(
     want: str | Sequence[str],
     motion: Callable[[Array, Array, tuple[str, ...]], Any],
 ) -> Any:
-    """A motion known in axes P, for a body whose own axes B are others."""
+    """Convert a motion from principal axes P to the body axes B."""
     names = check_want(want)
     found = motion(omega @ R_BP, _product(attitude, q_BP), names)
     back: dict[str, Callable[[Array], Array]] = {

@@ -1,4 +1,4 @@
-"""Many driven bodies, or many starts of one, in one call."""
+"""Many scenes, or one scene from many starts, in one call."""
 
 from __future__ import annotations
 
@@ -18,25 +18,26 @@ from .broadcast import WIDTHS, check_threads
 
 @dataclass(frozen=True, eq=False)
 class Motions:
-    """The answers of `solve_many`, body by body.
+    """The result of `solve_many`, body by body.
 
     Attributes
     ----------
     omega : ndarray, shape (bodies, times, 3), or None
-        Angular velocity in body axes [rad/s]; NaN where a body did not come so far.
+        Angular velocity in body axes [rad/s]; NaN at times that a body did not reach.
     attitude : ndarray, shape (bodies, times, 4), or None
-        Unit quaternions (x, y, z, w), body to space; NaN where a body did not come so far.
+        Unit quaternions (x, y, z, w), body to space; NaN at times that a body did not reach.
     status, message, method : tuple of str
-        Of each body, as `Motion` has them.
+        As in `Motion`, for each body.
     t_reached : ndarray, shape (bodies,)
-        How far each came [s].
+        The last time that each body reached [s].
     error : ndarray, shape (bodies,)
-        NaN: not estimated.
+        The error of each body, as in `Motion`; NaN if not estimated.
     steps : ndarray of int, shape (bodies,)
+        The number of steps of each body.
     success : ndarray of bool, shape (bodies,)
-        Arrived, and no invariant that should hold moved by more than was asked.
+        True if a body reached its end with the requested accuracy, as in `Motion.success`.
     lanes : ndarray of bool, shape (bodies,)
-        Stepped side by side with others in the lanes of registers; else by itself, as `solve` does.
+        True if a body was integrated in SIMD lanes together with others, False if by `solve`.
     """
 
     omega: Floats | None
@@ -81,36 +82,36 @@ def solve_many(
 ) -> Motions:
     """Solve many scenes, or one scene from many starts.
 
-    With ``rtol`` or ``atol`` and ``method="rk45"``, which is the default then, or ``"taylor"``, eight bodies are
-    stepped side by side in the lanes of registers, each with its own time, step and error: rk45 to the bits that
-    `solve` has, taylor to the same tolerance but not to the same bits. Everything else, and a body with a torque of its
-    user's own (`Custom`), is done as `solve` does it.
+    With ``rtol`` or ``atol``, the methods ``"rk45"`` (the default then) and ``"taylor"`` integrate eight bodies at once
+    in SIMD lanes. Each body has its own time, step and error. rk45 gives the same bits as `solve`. taylor meets the
+    same tolerance, with other bits. All other options, and bodies with a `Custom` torque, use `solve`.
 
     Parameters
     ----------
     scenes : Scene, or iterable of Scene
-        One for each body, with equally many times and the same `want`; or one for all, whose starts follow.
+        One scene for each body, with equally many times and the same `want`. Or one scene for all bodies, whose starts
+        are given below.
     inertia : array_like, shape (bodies, 3), optional
-        With one scene: principal moments in the body axes in place of its own [kg m^2].
+        With one scene: principal moments about the body axes, instead of the scene's [kg m^2].
     omega : array_like, shape (bodies, 3), optional
         With one scene: the starts' angular velocities in body axes [rad/s].
     attitude : array_like, shape (bodies, 4), or Rotation, optional
         With one scene: the starts' attitudes (x, y, z, w). Shapes (3,) and (4,) hold for all bodies.
     accuracy, method, rtol, atol, step, max_steps
-        As in `solve`, of each body.
+        As in `solve`, for each body.
     threads : int, optional
-        How many; as many as the machine has unless given. The answers are the same, bit for bit, and so they
-        are whatever other bodies there are.
+        The number of threads; by default all of the machine. The result of a body has the same bits for any number of
+        threads and with any other bodies.
 
     Returns
     -------
     Motions
-        A body whose run fails does so alone: its status says why, and what it did not reach is NaN.
+        A failed body does not affect the others. Its status gives the reason, and the samples it did not reach are NaN.
 
     Raises
     ------
     InvalidInput
-        With the number of the body, for what `solve` refuses.
+        For everything that `solve` refuses, with the number of the body.
     """
     starts: tuple[Floats | None, Floats | None, Floats | None] = (None, None, None)
     if isinstance(scenes, Scene):

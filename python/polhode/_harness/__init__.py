@@ -1,1 +1,1 @@
-"""What measurements stand on: processes that may crash, what is true of a scene, and the machine."""
+"""Basis of measurements: worker processes, the truth of a scene, and the machine."""

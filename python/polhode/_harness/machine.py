@@ -1,4 +1,4 @@
-"""The machine that a measurement ran on."""
+"""The machine of a measurement."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .._build import processor
 
 
 def machine() -> dict[str, Any]:
-    """Return what the times depend on."""
+    """Return the properties of the machine on which times depend."""
     return {"processor": processor(), "cores": os.cpu_count(), "system": platform.platform(),
             "python": platform.python_version()}
 

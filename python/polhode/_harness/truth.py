@@ -1,4 +1,4 @@
-"""What is true on a scene, how well that is known, and how far an answer is from it."""
+"""The truth of a scene, its uncertainty, and the errors of a result."""
 
 from __future__ import annotations
 

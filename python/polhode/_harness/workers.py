@@ -1,4 +1,4 @@
-"""Work in processes that may crash, hang or be too slow: that is told, and what gave the work goes on.
+"""Worker processes that may crash, hang or be too slow without ending the caller.
 
 A module with a function `make_handler()` can be a worker's: what that returns takes a message and yields its answers.
 They come back as ("answer", content), the last followed by ("end", why they broke off or ""). Messages are pickled.

@@ -1,1 +1,1 @@
-"""Pictures: how they look, numbers in words, and motions drawn."""
+"""Pictures: their style, numbers as text, and pictures of motions."""

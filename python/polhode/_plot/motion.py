@@ -1,4 +1,4 @@
-"""A motion as a picture: polhode, herpolhode or the path of the axis, z-x-z angles, and what should not have moved."""
+"""Pictures of a motion: polhode, herpolhode, path of the axis, z-x-z angles, and drift of invariants."""
 
 from __future__ import annotations
 
@@ -232,7 +232,7 @@ def _invariants(figure: Any, cell: Any, motion: Motion, curve: Curve) -> None:
         axes.set_yscale("log")
         axes.set_ylim(1e-17, 100 * max(1e-15, max(float(v.max()) for v in series.values())))
         worst = max(float(v.max()) for v in series.values())
-        axes.set_title(f"what should hold moved by {to_error(worst)}")
+        axes.set_title(f"invariants drifted by {to_error(worst)}")
         axes.set_ylabel("relative, from the start")
         axes.legend(frameon=False, fontsize=8.5, loc="upper left", markerscale=3)
         return

@@ -1,4 +1,4 @@
-"""How the charts look, in one place: colours that stay apart for every eye, labels at the curves, quiet axes."""
+"""Style of all charts: colours that colour-blind readers can tell apart, labels at the curves, quiet axes."""
 
 from __future__ import annotations
 

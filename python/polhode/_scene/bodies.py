@@ -1,4 +1,4 @@
-"""Bodies in scene files: moments, a matrix, a shape, a mesh, or parts of these, each in its place."""
+"""Bodies in scene files: moments, a matrix, a shape, a mesh, or several parts."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def _check_part(part: Any) -> None:
 
 @cache
 def part_model() -> Any:
-    """Return the pydantic model of one of a body's parts; what it does not know is a parameter of the shape."""
+    """Return the pydantic model of a part of a body; unknown keys are parameters of the shape."""
     kind = kinds()
     vector: Any = kind.vector
     rows: Any = list[vector]
@@ -68,7 +68,7 @@ def part_model() -> Any:
 
 @cache
 def body_model() -> Any:
-    """Return the pydantic model of a [body] table; what it does not know is a parameter of the shape."""
+    """Return the pydantic model of a [body] table; unknown keys are parameters of the shape."""
     kind = kinds()
     part: Any = part_model()
     parts: Any = list[part]
@@ -84,7 +84,7 @@ def _solid() -> dict[str, Any]:
 
 
 def attitude_of(start: Any) -> Any:
-    """Return the attitude that a table gives as quaternion or angles, or else none at all."""
+    """Return the attitude of a table, given as a quaternion or angles, or None."""
     if start.euler is None:
         return (0.0, 0.0, 0.0, 1.0) if start.attitude is None else start.attitude
     degrees = start.euler.angles is None
@@ -93,7 +93,7 @@ def attitude_of(start: Any) -> Any:
 
 
 def place_meshes(table: Any, folder: pathlib.Path) -> None:
-    """Let the mesh files of a [body] table, as it was read, be seen from the folder of its file."""
+    """Resolve mesh paths relative to the scene file."""
     if not isinstance(table, dict):
         return
     if isinstance(table.get("mesh"), str):
@@ -104,7 +104,7 @@ def place_meshes(table: Any, folder: pathlib.Path) -> None:
 
 
 def is_solid(body: Any) -> bool:
-    """Whether a [body] table tells of a body, not of its inertia alone."""
+    """Return True if a [body] table describes a whole body, not only its inertia."""
     return body.moments is None and body.matrix is None
 
 
@@ -130,7 +130,7 @@ def body_properties(body: Any) -> _core.MassProperties:
 
 
 def _made(entry: Any, where: str) -> _core.MassProperties:
-    """The body of one shape, mesh or set of points, in its own axes."""
+    """Return the body of a shape, a mesh or points, in its own axes."""
     if entry.shape is not None:
         return _shape(entry, where)
     if entry.mesh is not None:

@@ -1,4 +1,4 @@
-"""Scene files: read, checked against one schema that is made from the compiled lists, and made into scenes."""
+"""Scene files: reading, the check against their schema, and conversion to scenes."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def scene_model() -> Any:
 
 
 def _torque_models() -> list[Any]:
-    """Return the models of all torques that can stand in a file, told apart by their kind."""
+    """Return the models of all torques of scene files, distinguished by `kind`."""
     kind = kinds()
     models = []
     for record in torques.records():
@@ -67,7 +67,7 @@ def _torque_models() -> list[Any]:
 
 
 def find_scene(source: str | os.PathLike[str]) -> pathlib.Path:
-    """Return the path of a scene file: a path as it is, or the name of one installed with polhode."""
+    """Return the path of a scene file, given as a path or as the name of a scene of polhode."""
     path = pathlib.Path(source)
     if path.is_file():
         return path
@@ -79,7 +79,7 @@ def find_scene(source: str | os.PathLike[str]) -> pathlib.Path:
 
 
 def read_toml(path: pathlib.Path) -> dict[str, Any]:
-    """Return the content of a TOML file, or say in one line what is wrong with it."""
+    """Return the content of a TOML file; raise InvalidInput with one line if it has an error."""
     try:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
@@ -131,7 +131,7 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
 
 
 def load_body(source: str | os.PathLike[str]) -> Any:
-    """Return the checked [body] table of a scene file, or of a file that holds nothing else."""
+    """Return the checked [body] table of a scene file, or of a file with that table alone."""
     path = find_scene(source)
     data = read_toml(path)
     if not isinstance(data.get("body"), dict):

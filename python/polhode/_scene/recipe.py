@@ -1,4 +1,4 @@
-"""Recipes: many bodies drawn from a seed rather than written down."""
+"""Recipes: many bodies drawn at random from a seed."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Floats = npt.NDArray[np.float64]
 
 
 class Draw(NamedTuple):
-    """What a recipe draws: one free body a row, asked for one state at a time of its own."""
+    """The bodies of a recipe: one free body and one time for each row."""
 
     half_sides: Floats   # (count, 3) [m]
     moments: Floats      # (count, 3), in body axes, unsorted [kg m^2]
@@ -30,14 +30,14 @@ class Draw(NamedTuple):
 
 @dataclass(frozen=True)
 class Recipe:
-    """Many free boxes: what their sizes, rates and times are drawn from.
+    """Many free boxes, with the distributions of their sizes, rates and times.
 
     Attributes
     ----------
     half_sides, times : (low, high)
-        Of uniform distributions [m], [s].
+        Bounds of uniform distributions [m], [s].
     omega : (mean, deviation)
-        Of a normal distribution, each component by itself [rad/s].
+        A normal distribution of each component [rad/s].
     """
 
     name: str
@@ -50,7 +50,7 @@ class Recipe:
     times: tuple[float, float]
 
     def draw(self, count: int | None = None) -> Draw:
-        """Draw the bodies, the same ones each time; `count` asks for another number, and then they are other bodies.
+        """Draw the bodies, the same each time; another `count` gives other bodies.
 
         ``numpy.random.default_rng(seed)`` gives whole arrays in this order: half sides, omega, t.
         """
@@ -103,12 +103,12 @@ def recipe_model() -> Any:
 
 
 def load_recipe(source: str | os.PathLike[str]) -> Recipe:
-    """Read a recipe from a TOML file, or one of polhode's own by its name, such as "S8".
+    """Read a recipe from a TOML file, or a recipe of polhode by its name, such as "S8".
 
     Raises
     ------
     InvalidInput
-        For a file that is not there or not TOML, and for a key that is unknown, missing or wrong, with its name.
+        For a file that is missing or not TOML, and for a key that is unknown, missing or wrong, with its name.
     """
     path = pathlib.Path(source)
     folder = scene_folder() / "recipes"

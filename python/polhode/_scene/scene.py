@@ -1,4 +1,4 @@
-"""Scenes: a body, its start, its torques, and what is wanted."""
+"""Scenes: a body, its start, its torques, and the requested samples."""
 
 from __future__ import annotations
 
@@ -16,32 +16,32 @@ if TYPE_CHECKING:
 
 
 class Scene(_core.Scene):
-    """A body, its start, its torques, and the times at which the answer is wanted.
+    """A body, its start, its torques, and the sample times.
 
     Parameters
     ----------
     inertia : InertiaTensor, or array_like of shape (3,) or (3, 3)
-        About the centre of mass, or about the pivot of a body held at one; three numbers are principal moments in the
-        body axes, unsorted is fine [kg m^2].
+        About the centre of mass, or about the pivot of a body with one [kg m^2]. Three numbers are principal moments
+        about the body axes, in any order.
     omega : array_like, shape (3,)
         Angular velocity in body axes at `t0` [rad/s].
     attitude : array_like, shape (4,), or Rotation
         Unit quaternion (x, y, z, w) that takes body to space components, at `t0`. Default: the identity.
     torques : iterable of torques, optional
-        See `polhode.torques`; several add up.
+        See `polhode.torques`. Several torques add up.
     times : array_like, shape (n,)
-        Where the answer is wanted, in any order, before or after `t0` [s].
+        Sample times [s], in any order, before or after `t0`.
     want : iterable of {"omega", "attitude"}
-        What is to be returned. The attitude is not computed when neither the caller nor a torque needs it.
+        The quantities to return. The attitude is computed only if the caller or a torque needs it.
     t0 : float
-        Time of the start [s].
+        Start time [s].
     name : str
-        For tables and charts.
+        Name in tables and charts.
 
     Raises
     ------
     InvalidInput
-        Naming what is wrong.
+        For bad input, with the parameter and the requirement.
     """
 
     __slots__ = ()
@@ -64,12 +64,12 @@ class Scene(_core.Scene):
 
     @classmethod
     def load(cls, source: str | os.PathLike[str]) -> Scene:
-        """Read a scene from a TOML file, or one of polhode's own by its name, such as "S1".
+        """Read a scene from a TOML file, or a scene of polhode by its name, such as "S1".
 
         Raises
         ------
         InvalidInput
-            For a file that is not there or not TOML, and for a key that is unknown, missing or wrong, with its name.
+            For a file that is missing or not TOML, and for a key that is unknown, missing or wrong, with its name.
         """
         from .files import load_scene
 

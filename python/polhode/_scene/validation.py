@@ -1,4 +1,4 @@
-"""What a table of a file may hold: types of keys, checks over several keys, and what is said of a wrong one."""
+"""Types and checks of tables in files, and messages for wrong keys."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from .._core import InvalidInput
 
 
 def _pydantic() -> Any:
-    """Return pydantic, whose import takes longer than all of polhode's: only files need it."""
+    """Import pydantic, which is slow to import and needed for files only."""
     import pydantic
 
     return pydantic
 
 
 class Kinds(NamedTuple):
-    """What a key may hold: a finite number, or so many of them."""
+    """Types of keys: a finite number, or a fixed count of numbers."""
 
     number: Any
     pair: Any
@@ -31,7 +31,7 @@ class Kinds(NamedTuple):
 
 
 def kinds() -> Kinds:
-    """Return the types of what scene files hold; strict, so that neither True nor "1" is a number."""
+    """Return the types of scene files, strict: neither True nor "1" is a number."""
     field = _pydantic().Field
     number: Any = Annotated[float, field(allow_inf_nan=False)]
 
@@ -44,7 +44,7 @@ def kinds() -> Kinds:
 
 
 def model(name: str, check: Callable[[Any], None] | None = None, extra: str = "forbid", /, **fields: Any) -> Any:
-    """Make the model of one table, with a check over its keys together."""
+    """Make the model of one table, with a check of its keys together."""
     p = _pydantic()
 
     def checked(table: Any) -> Any:
@@ -57,7 +57,7 @@ def model(name: str, check: Callable[[Any], None] | None = None, extra: str = "f
 
 
 def one_of(table: Any, *choices: str) -> None:
-    """Raise ValueError unless one of these keys is given, and one alone."""
+    """Raise ValueError unless exactly one of these keys is given."""
     given = [name for name in choices if getattr(table, name) is not None]
     if len(given) != 1:
         raise ValueError(f"give one of {', '.join(choices)}; got {' and '.join(given) or 'none of them'}")
@@ -72,7 +72,7 @@ def euler_model() -> Any:
 
 
 def _keys(schema: Any) -> set[str]:
-    """Return every key that stands anywhere in a JSON Schema."""
+    """Return all keys of a JSON Schema."""
     if isinstance(schema, list):
         return set().union(*map(_keys, schema))
     if not isinstance(schema, dict):
@@ -81,7 +81,7 @@ def _keys(schema: Any) -> set[str]:
 
 
 def _explain(table: Any, error: Any) -> str:
-    """One line for one finding of pydantic: the key, and what is wrong with it."""
+    """Return one line for one error of pydantic: the key, and what is wrong with it."""
     where = ".".join(str(part) for part in error["loc"]) or "the file"
     if error["type"] == "missing":
         return f"{where}: missing"
@@ -102,7 +102,7 @@ def _explain(table: Any, error: Any) -> str:
 
 
 def validate(table: Any, data: dict[str, Any], where: str) -> Any:
-    """Check data against the model of a table; up to three wrong keys are named in one line."""
+    """Check data against the model of a table; one line names up to three wrong keys."""
     try:
         return table.model_validate(data)
     except _pydantic().ValidationError as error:

@@ -1,1 +1,1 @@
-"""Plans, the motions they lead to, and what methods cost."""
+"""Plans, motions, and the costs of methods."""

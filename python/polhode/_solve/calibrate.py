@@ -1,4 +1,4 @@
-"""Measure how fast this machine is, beside the one that the forecasts were made on."""
+"""Measure the speed of this machine relative to the machine of the forecasts."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MOST_SECONDS = 15.0   # of all measurements together
 
 
 def _seconds(run: Callable[[], Any], most: float) -> float:
-    """The least CPU time of a few runs."""
+    """Return the least CPU time of a few runs."""
     best, spent, runs = math.inf, 0.0, 0
     while runs < 3 or (spent < most and runs < 30):
         start = time.thread_time()
@@ -30,7 +30,7 @@ def _seconds(run: Callable[[], Any], most: float) -> float:
 
 
 def _scenes() -> list[Any]:
-    """One scene an exact model, and three that are stepped."""
+    """Return one scene for each exact model, and three that are integrated."""
     def even(span: float, count: int) -> list[float]:
         return [span * i / (count - 1) for i in range(count)]
 
@@ -50,12 +50,12 @@ def _scenes() -> list[Any]:
 
 
 def measure(progress: Callable[[int, int], object] | None = None) -> dict[str, float]:
-    """Measure every exact model and every method that plans choose from.
+    """Measure every exact model and every method that a plan can choose.
 
     Returns
     -------
     dict
-        By name, the measured seconds over the forecast ones.
+        By name, the measured time over the forecast time.
     """
     shipped = _core.CostFactors({})
     jobs: list[tuple[str, Any, float]] = []
@@ -78,12 +78,12 @@ def measure(progress: Callable[[int, int], object] | None = None) -> dict[str, f
 
 
 def calibrate(progress: Callable[[int, int], object] | None = None) -> dict[str, float]:
-    """Measure this machine and keep the result for the plans to come, in the file that `cache_file` names.
+    """Measure this machine and save the result in `cache_file()` for later plans.
 
     Returns
     -------
     dict
-        For each exact model and method, its time by the shipped forecast's.
+        For each exact model and method, its time over the shipped forecast.
     """
     found = measure(progress)
     keep(found)

@@ -1,4 +1,4 @@
-"""What methods cost on this machine: as shipped, or as `calibrate` measured it and kept it in the user's cache."""
+"""Costs of the methods on this machine: as shipped, or as measured by `calibrate` and saved in the user's cache."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .._build import processor
 
 
 def cache_file() -> pathlib.Path:
-    """Return where the measured costs are kept: $POLHODE_CACHE, or the user's cache folder."""
+    """Return the file of the measured costs, in $POLHODE_CACHE or the user's cache folder."""
     folder = os.environ.get("POLHODE_CACHE")
     if folder:
         return pathlib.Path(folder) / "costs.json"
@@ -34,7 +34,7 @@ def _machine() -> str:
 
 
 def _read() -> tuple[dict[str, float], str]:
-    """Return the factors and a sentence on where they are from; never fails."""
+    """Return the factors and a sentence about their origin; never fails."""
     shipped = "as shipped, not measured on this machine"
     file = cache_file()
     try:
@@ -64,17 +64,17 @@ def _load() -> tuple[_core.CostFactors, str]:
 
 
 def factors() -> _core.CostFactors:
-    """Return the factors in use, as the core takes them."""
+    """Return the factors in use, for the core."""
     return _load()[0]
 
 
 def describe() -> str:
-    """Return where the costs in use are from, in a sentence."""
+    """Return the origin of the costs in use, as a sentence."""
     return _load()[1]
 
 
 def keep(found: dict[str, float]) -> None:
-    """Write measured factors to `cache_file()`, whole or not at all, for this process too."""
+    """Write measured factors to `cache_file()` atomically, and use them in this process."""
     file = cache_file()
     content = {"polhode": _core.__version__, "machine": _machine(), "date": time.strftime("%Y-%m-%d"), "factors": found}
     file.parent.mkdir(parents=True, exist_ok=True)

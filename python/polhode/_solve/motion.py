@@ -1,4 +1,4 @@
-"""The answer of a solve: attitude and rates, and the invariants that prove them."""
+"""The result of `solve`: attitude and angular velocity, their error, and the invariants."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Floats = npt.NDArray[np.float64]
 
 
 class EventHit(NamedTuple):
-    """One zero of an event's function."""
+    """A zero of the function of an event."""
 
     event: int
     t: float
@@ -29,7 +29,7 @@ class EventHit(NamedTuple):
     attitude: Floats
 
 
-# How each part of the core's answer is shown.
+# How each part of the core's answer is converted.
 _PARTS: dict[str, Callable[[Any], Any]] = {
     **dict.fromkeys(("t", "omega", "attitude", "status", "stats", "error", "error_kind", "asked"), lambda part: part),
     "plan": lambda part: part, "events": lambda part: tuple(EventHit(*hit) for hit in part),
@@ -37,7 +37,7 @@ _PARTS: dict[str, Callable[[Any], Any]] = {
 
 
 class Motion:
-    """Where the body points and how fast it spins, at the times asked for, in the order asked for.
+    """The attitude and the angular velocity of a body at the sample times, in the order of the times.
 
     Attributes
     ----------
@@ -45,23 +45,24 @@ class Motion:
     t : ndarray, shape (n,)
         The times that were reached [s].
     omega : ndarray, shape (n, 3), or None
-        Angular velocity in body axes [rad/s]; None when not wanted.
+        Angular velocity in body axes [rad/s]; None if not requested.
     attitude : ndarray, shape (n, 4), or None
-        Unit quaternions (x, y, z, w), body to space; None when not wanted.
+        Unit quaternions (x, y, z, w), body to space; None if not requested.
     status : {"finished", "event", "max_steps", "stopped", "failed"}
     message : str
     stats : dict
-        steps, rejected, derivatives, events, runs, seconds: what it cost; seconds are wall time in the compiled core.
+        What the solution cost: "steps", "rejected" (steps), "derivatives", "events" (calls), "runs" (two or more if the
+        error was certified), and "seconds" (wall time in the compiled core). Counts are sums over all runs.
     events : tuple of EventHit
-        Every zero that was found, in the order of the integration.
+        All zeros of the events, in the order of the integration.
     plan : Plan
     error : float
-        Of all samples, as the accuracy is meant; NaN where it is not estimated.
+        The error of all samples, as `accuracy` is defined in `solve`; NaN if not estimated.
     error_kind : {"bounded", "expected", "limit", "not estimated"}
-        "bounded": by the rounding of a closed form, or by a certificate; "expected": no certificate was made; "limit":
-        more than was asked, since float64 allows no less.
+        "bounded": a certificate, or the rounding of a closed form, bounds the error. "expected": no certificate was
+        requested. "limit": the error exceeds the accuracy, because float64 allows no smaller one.
     asked : float
-        The accuracy, or the relative tolerance, that was asked for.
+        The requested accuracy, or the requested relative tolerance.
     """
 
     t: Floats
@@ -81,7 +82,7 @@ class Motion:
         self._options = wishes or {}
 
     def __getattr__(self, name: str) -> Any:
-        # Each part crosses from the compiled core when it is first asked for.
+        # Each part is copied from the compiled core at first use.
         if name not in _PARTS or self.__dict__.get("_answer") is None:
             raise AttributeError(f"'Motion' object has no attribute {name!r}")
         part = getattr(self._answer, name)
@@ -94,7 +95,7 @@ class Motion:
     def _need(self, *names: str) -> None:
         for name in names:
             if getattr(self, name) is None:
-                raise _core.InvalidInput(f"motion: this needs the {name}: solve a scene whose want holds it")
+                raise _core.InvalidInput(f"motion: must have {name}; solve a scene whose want includes it")
 
     @property
     def rotation(self) -> Rotation:
@@ -118,10 +119,11 @@ class Motion:
 
     @property
     def drift(self) -> dict[str, float]:
-        """How far each invariant that should hold moved over the samples, relative.
+        """The largest relative change of each invariant over the samples.
 
-        "energy", "angular_momentum" (free bodies), "vertical_momentum" (under gravity), "jacobi" (gravity gradient:
-        energy less mean motion times L_z). What does not hold, or cannot be seen in what was wanted, is not there.
+        The keys are "energy", "angular_momentum" (free bodies), "vertical_momentum" (under gravity) and "jacobi"
+        (gravity gradient: energy less mean motion times L_z). Quantities that the scene does not conserve are left out,
+        and those that need a state that was not requested.
         """
         kept = self.__dict__.get("_drift")
         if kept is None:
@@ -133,14 +135,14 @@ class Motion:
         if not moved:
             return ""
         name = max(moved, key=lambda key: moved[key])
-        return f"{name} moved by {moved[name]:.2g} (relative), more than the {self.asked:.2g} asked"
+        return f"{name} drifted by {moved[name]:.2g} (relative), more than the requested {self.asked:.2g}"
 
     @property
     def success(self) -> bool:
-        """Whether the end was reached and the accuracy with it.
+        """True if the run reached its end with the requested accuracy.
 
-        Where the error is not estimated (``rtol`` alone, or a fixed step): whether no invariant that should hold moved
-        by more than was asked.
+        If the error is not estimated (``rtol`` or a fixed step), the drift of each invariant is compared with the
+        requested tolerance instead.
         """
         if self.status not in ("finished", "event"):
             return False
@@ -148,7 +150,7 @@ class Motion:
 
     @property
     def message(self) -> str:
-        """What happened, in a sentence."""
+        """How the run ended and what is known of the error."""
         kept: str | None = self.__dict__.get("_message")
         if kept is None:
             assert self._answer is not None
@@ -157,7 +159,7 @@ class Motion:
         return kept
 
     def __call__(self, t: npt.ArrayLike) -> tuple[Floats, Floats]:
-        """Return omega (..., 3) and attitude (..., 4) at any times within the span, from the continuous extension.
+        """Return omega (..., 3) and attitude (..., 4) at any times within the span, from dense output.
 
         Raises
         ------
@@ -165,28 +167,28 @@ class Motion:
             Without ``dense=True`` in `solve`, or for a time outside the span that was reached.
         """
         if self._answer is None or not self._answer.has_dense:
-            raise _core.InvalidInput("motion(t): must be solved with dense=True, which keeps the continuous extension")
+            raise _core.InvalidInput("motion(t): must be solved with dense=True")
         omega, attitude = self._answer(t)
         return omega, attitude
 
     def plot(self, *parts: str) -> Figure:
-        """Draw the motion: polhode, herpolhode or the path of the axis, z-x-z angles, and what should not have moved.
+        """Draw the motion: polhode, herpolhode, path of the axis, z-x-z angles, and drift of the invariants.
 
         Parameters
         ----------
         *parts : {"polhode", "herpolhode", "axis", "angles", "invariants"}
-            What is drawn; without any, what suits the scene. Where the samples are too far apart for a line, curves
-            come from the continuous extension, or from solving the scene again.
+            The parts to draw; all parts that suit the scene if none is given. If the samples are too far apart for a
+            line, curves use dense output, or a second solution of the scene.
 
         Returns
         -------
         matplotlib.figure.Figure
-            Shown by notebooks; ``.savefig(path)`` writes it.
+            Notebooks show it; ``.savefig(path)`` writes it.
 
         Raises
         ------
         InvalidInput
-            For another part, for one whose omega or attitude was not wanted, and without matplotlib.
+            For an unknown part, for one whose omega or attitude was not requested, and without matplotlib.
         """
         from .._plot.motion import plot
 
@@ -205,4 +207,4 @@ class Motion:
     def __getstate__(self) -> dict[str, Any]:
         for name in (*_PARTS, "message"):
             getattr(self, name)
-        return {**self.__dict__, "_answer": None}   # the continuous extension stays behind: solve again for it
+        return {**self.__dict__, "_answer": None}   # dense output is not pickled

@@ -1,4 +1,4 @@
-"""Plans: the least model and the cheapest method that reach an accuracy, and why."""
+"""Plans: the simplest model and the cheapest method that reach an accuracy."""
 
 from __future__ import annotations
 
@@ -12,59 +12,59 @@ from . import costs
 
 
 class Candidate(NamedTuple):
-    """An exact model or a method, and what is expected of it."""
+    """An exact model or a method, with its expected error and time."""
 
     name: str
     exact: bool
-    why_not: str                # empty where it could do it
-    predicted_error: float      # what it would claim
-    predicted_seconds: float    # with every run of the certificate
+    why_not: str                # the reason why it cannot be used; empty if it can
+    predicted_error: float      # the error it would claim
+    predicted_seconds: float    # including every run of the certificate
     rtol: float                 # of the run that would be returned; 0 for exact models
 
 
 class Piece(NamedTuple):
-    """A stretch of the span in which the same torques act, and how it is answered."""
+    """A part of the span with a fixed set of torques, with its model and method."""
 
     begin: float                # [s]
     end: float                  # [s]
-    torques: tuple[str, ...]    # the names of those that act
+    torques: tuple[str, ...]    # the names of the acting torques
     model: str                  # a closed form's name, or "euler" or "lagrangian"
     method: str                 # "exact", or a name of `methods()`
-    turns: float                # expected
-    predicted_seconds: float    # with every run of the certificate
+    turns: float                # expected revolutions
+    predicted_seconds: float    # including every run of the certificate
 
 
 class Plan:
-    """How a scene is solved to an accuracy; prints as a table.
+    """The model and the method for a scene and an accuracy, with the reasons; prints as a table.
 
     Attributes
     ----------
     scene : Scene
     model : str
-        The closed form's name, such as "triaxial" or "heavy_top", or "euler" or "lagrangian" where equations are
-        stepped; "pieces" where torques begin or cease to act within the span.
+        The name of a closed form, such as "triaxial" or "heavy_top". "euler" or "lagrangian" if equations are
+        integrated. "pieces" if torques start or stop within the span.
     method : str
-        "exact", or a name of `methods()`; of pieces, the one that has most to do.
+        "exact", or a name of `methods()`; for pieces, the costliest method.
     pieces : tuple of Piece
-        What each piece of the span is answered by, in the order of time; empty where the span is not cut.
+        The pieces of the span, in the order of time; empty if the span is not cut.
     state : str
-        What is carried along.
+        The integrated variables.
     accuracy : float
-        What is planned for; NaN where tolerances were given and nothing was planned.
+        The accuracy of the plan; NaN if tolerances were given, so that nothing was planned.
     certify : bool
-        Whether the error is to be bounded, not only expected.
+        True if the error will be bounded, not only expected.
     rtol : float
-        Tolerance of the run that is returned; 0 for closed forms.
+        The tolerance of the run that is returned; 0 for closed forms.
     predicted_error, predicted_seconds : float
-        What the result is expected to claim, and to cost.
+        The expected error, and the expected time [s] with every run of the certificate.
     facts : dict
-        What the plan looked at: numbers without units but for "span" [s] and "decay" [1/s].
+        The properties of the scene that determine the plan, dimensionless except "span" [s] and "decay" [1/s].
     candidates : tuple of Candidate
-        Everything that was considered.
+        All models and methods that were considered, exact models first.
     reasons, left_out : tuple of str
-        Why this model and this method; what is not modelled and why that is safe.
+        Why this model and this method; what is not computed, and why that is safe.
     wishes : dict
-        The method and the formulation that were asked for.
+        The options of the plan: "method" and "formulation" as they were passed to `plan` or `solve`.
     """
 
     def __init__(self, scene: Scene, parts: tuple[Any, ...], wishes: dict[str, Any]) -> None:
@@ -87,33 +87,33 @@ class Plan:
     def _report(self) -> dict[str, Any]:
         if math.isnan(self.accuracy):   # tolerances were given
             facts = _core.plan(self.scene, None, None, True, "euler", costs.factors())["facts"]
-            reason = f"{self.method} was asked for, with tolerances or steps of its own: nothing was planned."
+            reason = f"Tolerances or a fixed step were given with method {self.method}, so nothing was planned."
             return {"facts": facts, "candidates": [], "left_out": [], "reasons": [reason]}
         return dict(_core.plan(self.scene, self.accuracy, self.wishes.get("method"), self.certify,
                                self.wishes.get("formulation", "euler"), costs.factors()))
 
     @property
     def facts(self) -> dict[str, Any]:
-        """What the plan looked at."""
+        """The properties of the scene that determine the plan."""
         return dict(self._report["facts"])
 
     @property
     def candidates(self) -> tuple[Candidate, ...]:
-        """Everything that was considered, exact models first."""
+        """All models and methods that were considered, exact models first."""
         return tuple(Candidate(*candidate) for candidate in self._report["candidates"])
 
     @property
     def reasons(self) -> tuple[str, ...]:
-        """Why this model and this method."""
+        """The reasons for this model and this method."""
         return tuple(self._report["reasons"])
 
     @property
     def left_out(self) -> tuple[str, ...]:
-        """What is not modelled, and why that is safe."""
+        """What is not computed, and why that is safe."""
         return tuple(self._report["left_out"])
 
     def as_dict(self) -> dict[str, Any]:
-        """Return everything, as JSON can hold it."""
+        """Return the whole plan as a dict for JSON."""
         def number(value: float) -> float | None:
             return value if math.isfinite(value) else None
 
@@ -183,7 +183,7 @@ def _describe_start(plan: Plan) -> str:
 
 
 def _name(torque: Any) -> str:
-    """The torque's class, and how often it acts."""
+    """Return the torque's class, and its number of windows."""
     if not hasattr(torque, "windows"):
         return type(torque).__name__
     count = len(torque.windows)
@@ -195,15 +195,16 @@ def _describe_torques(plan: Plan) -> str:
     names = ", ".join(_name(torque) for torque in plan.scene.torques) or "none"
     if not facts["free"]:
         seen = [name for name in ("time", "attitude", "rates") if facts[f"sees_{name}"]]
-        names += f"; {'they look' if len(plan.scene.torques) > 1 else 'it looks'} at {' and '.join(seen) or 'nothing'}"
+        verb = "they depend" if len(plan.scene.torques) > 1 else "it depends"
+        names += f"; {verb} on {' and '.join(seen) or 'nothing'}"
     kept = [_KEPT[name] for name in facts["keeps"]]
     if not kept:
         return f"{names}; nothing is conserved"
-    return f"{names}; {' and '.join(kept)} {'stay' if len(kept) > 1 else 'stays'}"
+    return f"{names}; {' and '.join(kept)} {'are' if len(kept) > 1 else 'is'} conserved"
 
 
 def _table(plan: Plan) -> list[str]:
-    """Every candidate; neighbours that are out for the same reason share a line."""
+    """List every candidate; neighbours with the same reason against them share a line."""
     chosen = plan.model if plan.method == "exact" else plan.method
     rows: list[tuple[str, str, str, str]] = []
     for candidate in plan.candidates:
@@ -222,7 +223,7 @@ def _table(plan: Plan) -> list[str]:
 
 
 def _pieces(plan: Plan, most: int = 12) -> list[str]:
-    """What each piece is answered by; of many, the first and the last."""
+    """List the pieces; of many, the first and the last."""
     def row(piece: Piece) -> tuple[str, ...]:
         how = f"{piece.model}, closed form" if piece.method == "exact" else piece.method
         return (f"{piece.begin:.6g}", f"{piece.end:.6g}", f"{piece.turns:.3g}", _duration(piece.predicted_seconds), how,
@@ -240,7 +241,7 @@ def _pieces(plan: Plan, most: int = 12) -> list[str]:
 
 def _describe_choice(plan: Plan) -> str:
     if plan.pieces:
-        return "pieces, each by what fits it"
+        return "pieces, each with its own model and method"
     if plan.method == "exact":
         return plan.model
     return f"{plan.method} on {'Euler' if plan.model == 'euler' else 'Lagrange'}'s equations"
@@ -257,7 +258,7 @@ def _lines(plan: Plan) -> list[str]:
     rows = [
         ("body", _describe_body(plan)), ("start", _describe_start(plan)), ("torques", _describe_torques(plan)),
         ("span", f"{facts['span']:.6g} s, {about}{facts['turns']:.3g} turns; " +
-                 ("its end alone" if facts["only_at_end"] else f"{count} samples") +
+                 ("the end only" if facts["only_at_end"] else f"{count} samples") +
                  (f"; decay x span = {facts['stiffness']:.1e}" if facts["stiffness"] > 1 else "")),
     ]
     lines += [f"  {name:<9}{text}" for name, text in rows]
@@ -276,17 +277,17 @@ def _lines(plan: Plan) -> list[str]:
 
 def plan(scene: Scene, accuracy: float | None = None, *, method: str | None = None, certify: bool = True,
          formulation: str = "euler") -> Plan:
-    """Choose the least model and the cheapest method for a scene, without running them.
+    """Choose the simplest model and the cheapest method for a scene, without running them.
 
     Parameters
     ----------
     scene : Scene
     accuracy : float, optional
-        Of every sample, as in `solve`; 1e-9 when left out.
+        The largest error of any sample, as in `solve`; 1e-9 if left out.
     method : str, optional
-        One that is to be taken, whatever it costs: "exact" or a name of `methods()`.
+        "exact" or a name of `methods()`, to use instead of the cheapest method.
     certify : bool
-        Bound the error; else it is only expected.
+        Bound the error; otherwise it is only expected.
     formulation : {"euler", "lagrangian"}
         As in `solve`.
 
@@ -298,7 +299,7 @@ def plan(scene: Scene, accuracy: float | None = None, *, method: str | None = No
     Raises
     ------
     InvalidInput
-        For an accuracy that is not in (0, 1], and for wishes that contradict each other or the scene.
+        For an accuracy outside (0, 1], and for options that contradict each other or the scene.
     """
     if not isinstance(scene, Scene):
         raise _core.InvalidInput(f"scene: must be a polhode.Scene, got {type(scene).__name__}")

@@ -1,4 +1,4 @@
-"""Solve a scene: the least model and the cheapest method that answer it."""
+"""Solve a scene by the simplest model and the cheapest method that reach the accuracy."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from .plan import Plan
 
 
 class Event:
-    """A function of time and state whose zeros are wanted.
+    """A function of time and state whose zeros are located.
 
     Parameters
     ----------
     function : callable
         ``function(t, omega, attitude) -> float``.
     direction : {-1, 0, 1}
-        1: only zeros where it rises along the integration, -1: where it falls, 0: both.
+        1: zeros where it rises along the integration, -1: where it falls, 0: both.
     terminal : bool
         The run ends at its first zero.
     """
@@ -47,17 +47,17 @@ def _event(item: Any) -> tuple[Any, int, bool]:
 
 def _take(plan: Plan, accuracy: float | None, method: str | None, rtol: float | None, atol: float | None,
           step: float | None, certify: bool, formulation: str) -> tuple[float, str | None, bool, str]:
-    """What a plan asks for, where nothing contradicts it."""
+    """Return the options of a plan; refuse options that contradict it."""
     if not isinstance(plan, Plan):
         raise _core.InvalidInput(f"plan: must be what polhode.plan() made, got {type(plan).__name__}")
     for name, value in (("accuracy", accuracy), ("rtol", rtol), ("atol", atol), ("step", step)):
         if value is not None:
-            raise _core.InvalidInput(f"{name}: must be left out beside plan=, which has its own, got {value!r}")
+            raise _core.InvalidInput(f"{name}: must be left out with plan=, which has its own, got {value!r}")
     if math.isnan(plan.accuracy):
-        raise _core.InvalidInput("plan: must be made for an accuracy; this one is of a run by tolerances")
+        raise _core.InvalidInput("plan: must be made for an accuracy, got one for tolerances")
     asked = plan.wishes.get("formulation", "euler")
     if formulation not in ("euler", asked):
-        raise _core.InvalidInput(f"formulation: must be left out beside plan=, which has {asked!r}, got "
+        raise _core.InvalidInput(f"formulation: must be left out with plan=, which has {asked!r}, got "
                                  f"{formulation!r}")
     own = plan.wishes.get("method") if plan.pieces else plan.method   # pieces: each has its own
     return plan.accuracy, method if method is not None else own, certify and plan.certify, asked
@@ -79,38 +79,42 @@ def solve(
     events: Iterable[Any] = (),
     progress: Callable[[float, float], object] | None = None,
 ) -> Motion:
-    """Turn the body of a scene.
+    """Compute the rotational motion of a scene at its sample times.
 
     Parameters
     ----------
     scene : Scene
     accuracy : float, optional
-        Of every sample: the larger of the error in omega, relative to the largest omega, and the angle of the
-        attitude's error [rad]. 0 < accuracy <= 1; 1e-9 when no tolerance is given either. `motion.error` bounds the
-        error that was got, and `motion.success` says whether that is within the accuracy. Excludes rtol and atol.
+        The largest error of any sample, 0 < accuracy <= 1. The error of a sample is the larger of two: the error of
+        omega relative to the largest omega, and the angle of the attitude's error [rad]. The default is 1e-9 if no
+        tolerance is given. `motion.error` bounds the error, and `motion.success` compares it with the accuracy.
+        Excludes rtol and atol.
     plan : Plan, optional
-        What `plan()` made: its accuracy, method and certificate are taken. A method given beside it overrides its own.
+        A result of `plan()`. It sets accuracy, method and certificate. An additional `method` replaces its method.
     method : str, optional
-        A name of `methods()`, or "exact" for the closed form alone; without it the plan's choice.
+        A name of `methods()`, or "exact" for a closed form. The planner chooses if it is left out.
     certify : bool
-        Bound the error of a stepped motion: carried along by the run itself, or by a second, coarser run. False saves
-        that: `motion.error` is then what is expected, and `motion.error_kind` says so.
-    rtol, atol : float, optional
-        Tolerances of a step, for those who want to choose: the error is then not estimated. Rates are measured against
-        their own size, the quaternion against 1; atol is added, in rad/s and in quaternion components.
+        Bound the error of an integrated motion. The run itself propagates its error, or a second, coarser run measures
+        it. With False `motion.error` is the expected error, and `motion.error_kind` is "expected".
+    rtol : float, optional
+        Relative tolerance of a step, instead of an accuracy. Rates are measured relative to their size, the quaternion
+        relative to 1. The error of the samples is then not estimated.
+    atol : float, optional
+        Absolute tolerance of a step, added to the relative one, in rad/s and in quaternion components.
     step : float, optional
-        Of fixed-step methods [s], which ask for it and refuse accuracy, rtol and atol.
+        The step of a fixed-step method [s]. These methods require it, and refuse accuracy, rtol and atol.
     max_steps : int
-        Give up after so many steps; the result says so.
+        Stop after this number of steps. `motion.status` is then "max_steps".
     dense : bool
-        Keep the continuous extension, for ``motion(t)``.
+        Keep dense output, for ``motion(t)``.
     formulation : {"euler", "lagrangian"}
-        Euler's equations with a quaternion, or Lagrange's in the textbook's z-x-z angles, which fail at theta = 0 or
-        pi.
+        Euler's equations with a quaternion, or Lagrange's in the textbook's z-x-z angles. The latter fail at theta = 0
+        and pi.
     events : iterable of Event or callables
-        Zeros to be found; a callable may carry `direction` and `terminal` as attributes.
+        Functions whose zeros are located. A callable may have attributes `direction` and `terminal`.
     progress : callable, optional
-        ``progress(reached, last)``, about twenty times a second; False ends the run, and what was computed is returned.
+        ``progress(reached, last)`` is called about twenty times a second. False ends the run, and the samples so far
+        are returned.
 
     Returns
     -------
@@ -119,7 +123,7 @@ def solve(
     Raises
     ------
     InvalidInput
-        For options that contradict each other or have no effect. What a torque or event raises comes through.
+        For options that contradict each other or have no effect. Exceptions of a torque or an event pass through.
     """
     if not isinstance(scene, Scene):
         raise _core.InvalidInput(f"scene: must be a polhode.Scene, got {type(scene).__name__}")
@@ -138,16 +142,17 @@ def solve(
 
 
 def methods() -> list[dict[str, Any]]:
-    """Return every method, a dict each.
+    """Return the records of all methods, one dict for each.
 
-    name; order, and driven_order where a torque acts; dense_order, between the steps; adaptive (by rtol and atol, else
-    by `step=`); implicit; cheap (a game engine's step); keeps, of a free body; needs, of a scene; doc and source.
+    Keys: "name"; "order", and "driven_order" with a torque; "dense_order" between the steps; "adaptive" (with rtol and
+    atol, otherwise with `step=`); "implicit"; "cheap" (a step of game engines); "keeps" (invariants of a free body that
+    it conserves); "needs" (of a scene); "doc"; "source".
     """
     return list(_core.method_records())
 
 
 def generalised_forces(torque: npt.ArrayLike, angles: npt.ArrayLike) -> Floats:
-    """Return Q_phi, Q_theta, Q_psi of a torque, for the textbook's z-x-z angles.
+    """Return the generalised forces Q_phi, Q_theta, Q_psi of a torque in the textbook's z-x-z angles.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Where methods fail: families of hard problems, each a sweep with a truth, a threshold and a verdict for every method.
+"""Where methods fail: families of hard problems, with a truth, a threshold and a verdict for each method.
 
 `atlas(families, folder)` measures, draws and writes; `FAMILIES` is the list.
 """

@@ -1,4 +1,4 @@
-"""The whole of an atlas: measure every family, judge, draw, write."""
+"""The atlas: measure every family, judge, draw and write."""
 
 from __future__ import annotations
 
@@ -45,36 +45,36 @@ def atlas(
     progress: Callable[[int, int, str], object] = lambda done, total, text: None,
     show: Callable[[FamilyResult], object] = lambda result: None,
 ) -> tuple[list[FamilyResult], dict[str, Any]]:
-    """Measure how methods fail, and write pictures, tables and a matrix to a folder.
+    """Measure where methods fail, and write pictures, tables and a matrix to a folder.
 
     Parameters
     ----------
     families : iterable of str
-        Names of `FAMILIES`; all of them when none is given.
+        Names of `FAMILIES`; all if none is given.
     folder : path
-        Made when it is not there. Gets a picture (.png and .svg) and a .json a family, and of all families
-        in the folder together ``matrix``, ``atlas.json`` and, to be read, ``atlas.md``.
-        Families that are finished there, under the same settings and version, are kept and not run again.
+        Created if missing. It gets a picture (.png and .svg) and a .json file for each family. For all families in
+        the folder it gets ``matrix``, ``atlas.json`` and the page ``atlas.md``. Finished families of the same settings
+        and version are kept and not run again.
     quick : bool
-        Fewer values of what is swept.
+        Use fewer values of the swept quantities.
     fresh : bool
-        Run what is finished too.
+        Repeat finished families.
     processes : int
-        Beside this one.
+        Number of worker processes.
     limit : float, optional
-        Seconds of CPU that a single run may take; what does not end in time is left out and says so.
+        Limit of CPU time of a single run [s]. Longer runs are left out, with the reason.
     draw : bool
-        Whether pictures are made, which need matplotlib.
+        Draw the pictures, which needs matplotlib.
     progress : callable
-        ``progress(rows done, rows in all, what ended last)``.
+        ``progress(finished rows, all rows, last finished row)``.
     show : callable
-        Is given each family's result as soon as it is there.
+        Called with the result of each family when it is finished.
 
     Returns
     -------
     results : list of FamilyResult
     document : dict
-        What stands in atlas.json; its "broken_claims" are what polhode says of itself and does not hold.
+        The content of atlas.json. Its "broken_claims" are claims of polhode about its methods that did not hold.
 
     Raises
     ------
@@ -121,7 +121,7 @@ def _measure(
     families: list[Family], there: Callable[[FamilyResult], object], output: pathlib.Path, quick: bool, limit: float,
     processes: int, progress: Callable[[int, int, str], object],
 ) -> None:
-    """Do the rows of all families; each family is written when its last row is in."""
+    """Measure the rows of all families; write each family after its last row."""
     dear_first = sorted(families, key=lambda f: -f.cost)   # so that all processes end together
     jobs = [Job(f.name, e.name, quick, limit) for f in dear_first for e in rows_of(f)]
     by_name = {f.name: f for f in families}

@@ -1,4 +1,4 @@
-"""One problem of a family: what is swept, the scene, and what is true of it."""
+"""One problem of a family: the swept value, the scene, and its truth."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def stored(name: str) -> Floats:
 
 
 def truth_of(family: str, case: Case) -> Truth:
-    """Return what is true at the case's times: stored, from 113-bit arithmetic or a closed form in mpmath."""
+    """Return the stored truth at the case's times, from 113-bit arithmetic or a closed form in mpmath."""
     if case.scene.name:
         return find_truth(case.scene)
     rows: npt.NDArray[np.float64] = stored(key(family, case))

@@ -1,6 +1,6 @@
-"""What polhode says of its own methods. The atlas ends with a finding, and a test fails, where one does not hold.
+"""Claims of polhode about its methods. A claim that does not hold is a finding of the atlas, and fails a test.
 
-A claim names a level at least to be reached.
+Each claim names the lowest level that a method must reach.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from .family import LEVELS
 from .results import FamilyResult
 
 CLAIMS: dict[str, dict[str, str]] = {
-    # What `solve` chooses by itself.
+    # The choice of `solve`.
     "solve": {"racket": "holds", "gimbal": "holds", "long": "holds", "near": "holds", "scales": "holds",
               "norm": "holds", "sleeping": "holds", "spin-up": "holds", "damping": "holds", "chaos": "holds"},
     "exact": {"racket": "holds", "gimbal": "holds", "long": "holds", "near": "holds", "scales": "holds",
@@ -31,13 +31,13 @@ CLAIMS: dict[str, dict[str, str]] = {
     "dmv8": {"step": "holds", "gimbal": "holds", "long": "degrades", "near": "degrades", "scales": "holds",
              "norm": "holds"},
 }
-KEPT = ("energy", "L")   # what a record may promise, and the invariant of `Motion.drift` that shows it
+KEPT = ("energy", "L")   # conserved quantities of a record, and the invariant of `Motion.drift` that measures each
 DRIFT = {"energy": "energy", "L": "angular_momentum"}
-ROUNDING = 1e-9   # of an invariant that is kept, after up to a million turns
+ROUNDING = 1e-9   # of a conserved invariant, after up to a million turns
 
 
 def find_broken(results: list[FamilyResult]) -> list[str]:
-    """Return a sentence for each claim that these results do not bear out."""
+    """Return a sentence for each claim that these results contradict."""
     broken = []
     for name, claims in CLAIMS.items():
         for result in results:
@@ -46,13 +46,13 @@ def find_broken(results: list[FamilyResult]) -> list[str]:
                 continue
             verdict = result.verdict(name)
             if verdict.level not in LEVELS[:LEVELS.index(least) + 1]:
-                broken.append(f"{name}, {result.family.name}: {verdict.level} ({verdict.text}), where it should be "
-                              f"{least} at least{': ' + verdict.why if verdict.why else ''}")
+                broken.append(f"{name}, {result.family.name}: {verdict.level} ({verdict.text}), but should be at "
+                              f"least {least}{': ' + verdict.why if verdict.why else ''}")
     return broken + _not_kept(results) + _overclaimed(results)
 
 
 def _overclaimed(results: list[FamilyResult]) -> list[str]:
-    """Where a stated error is less than the true one, beyond what the stored truth itself is rounded to."""
+    """Find stated errors below the true error, beyond the rounding of the stored truth."""
     broken = []
     for result in results:
         for name in ("solve", "exact"):
@@ -60,12 +60,12 @@ def _overclaimed(results: list[FamilyResult]) -> list[str]:
                 stated, true = p.get("stated"), p.get("error")
                 if p.status == "answered" and true > 1.1 * stated + 1e-15:
                     broken.append(f"{name}, {result.family.name}, at {p.x:g}{' ' + p.series if p.series else ''}: "
-                                  f"states an error of {stated:.1e}, which is {true:.1e}")
+                                  f"states an error of {stated:.1e}, but the error is {true:.1e}")
     return broken
 
 
 def _not_kept(results: list[FamilyResult]) -> list[str]:
-    """What a record says is kept must be kept through the long times."""
+    """Find invariants that a record promises and the family of long times contradicts."""
     broken = []
     for result in results:
         if result.family.name != "long":
@@ -73,11 +73,12 @@ def _not_kept(results: list[FamilyResult]) -> list[str]:
         for entrant in entrants():
             promised = [name.strip() for name in entrant.record.get("keeps", "").split(",")]
             for what in KEPT:
-                # Of those that keep |L| alone, the vector may go where it likes.
+                # A method that conserves |L| alone may change the direction of L.
                 if what not in promised:
                     continue
                 worst = max((p.get(DRIFT[what]) for p in result.rows.get(entrant.name, []) if p.status == "answered"),
                             default=0.0)
                 if worst > ROUNDING:
-                    broken.append(f"{entrant.name}, long: keeps {what} by its record, which moved by {worst:.1e}")
+                    broken.append(f"{entrant.name}, long: its record says that it conserves {what}, which drifted by "
+                                  f"{worst:.1e}")
     return broken

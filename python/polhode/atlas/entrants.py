@@ -1,4 +1,4 @@
-"""Who takes part: what `solve` chooses by itself, the closed forms, every method of the list, and Euler angles."""
+"""The entrants: the choice of `solve`, the closed forms, every method, and Euler angles."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Entrant(NamedTuple):
 
     @property
     def fixed(self) -> bool:
-        """Whether it takes steps of one length, which somebody has to choose."""
+        """True for a fixed step, which the user must choose."""
         return bool(self.record) and not self.record["adaptive"]
 
     def setting(self, *, step: float, rtol: float = TIGHT, accuracy: float = 1e-9) -> dict[str, float]:
@@ -39,7 +39,7 @@ class Entrant(NamedTuple):
 
 
 def entrants() -> list[Entrant]:
-    """Return everyone, in the order of the matrix."""
+    """Return all entrants, in the order of the matrix."""
     records = methods()
     found = [Entrant("solve", "solve", {}, {}), Entrant("exact", "exact", {}, {"method": "exact"})]
     for cheap in (False, True):

@@ -1,4 +1,4 @@
-"""What a family of failures is: a sweep, a truth, a threshold, and a verdict for everyone."""
+"""A family of failures: a sweep, a truth, a threshold, and a verdict for each entrant."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ LATE = ("not done within", "the one before", "would take")   # reasons
 
 @dataclass
 class Point:
-    """One entrant at one value of what is swept. `why` is empty when it answered."""
+    """One entrant at one value of the swept quantity. `why` is empty if it gave a result."""
 
     x: float
     series: str = ""
@@ -33,7 +33,7 @@ class Point:
 
     @property
     def late(self) -> bool:
-        """Whether it is left out for want of time."""
+        """True if it was left out because of the time limit."""
         return self.status == "left out" and self.why.startswith(LATE)
 
     def get(self, name: str) -> float:
@@ -85,7 +85,7 @@ class Verdict:
 
 @dataclass(frozen=True)
 class Family:
-    """One family: the whole of what the atlas knows of it.
+    """One family of the atlas.
 
     `measure(entrant, quick, limit)` yields points; `judge(points)` reads them. `takes(entrant)` says why someone
     does not take part, or "". What a scene itself refuses needs no line there.
@@ -148,7 +148,7 @@ def measure_cases(
     setting: Callable[[Case], dict[str, float]] | None = None,
     more: Callable[[Any, Any], dict[str, float]] | None = None,
 ) -> Iterator[Point]:
-    """Run one case after another, each against its truth; of those that grow, what would be too long is left out."""
+    """Run one case after another and compare each with its truth; leave out cases that would take too long."""
     clocks: dict[str, list[tuple[float, float]]] = {}
     for case in cases:
         point, clock = Point(case.x, case.series), clocks.setdefault(case.series, [])

@@ -1,4 +1,4 @@
-"""What there is to do: every entrant on every family that takes it."""
+"""The jobs: every entrant on every family that accepts it."""
 
 from __future__ import annotations
 

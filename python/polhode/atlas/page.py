@@ -1,4 +1,4 @@
-"""The atlas as a page to read: the matrix and every picture, made from the results alone."""
+"""The atlas as a Markdown page: the matrix and every picture, made from the results."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def _listed(content: dict[str, Any], family: str, level: str) -> str:
 
 
 def costs(seconds: dict[str, float]) -> str:
-    """What a family's rows took, and the dearest three."""
+    """Return the CPU time of a family's rows, and the three longest."""
     dear = [f"{name} {spent:.0f} s" for name, spent in seconds.items() if spent >= 1][:3]
     return f"{sum(seconds.values()):.0f} s of CPU{', of them ' if dear else ''}{', '.join(dear)}"
 
@@ -38,11 +38,11 @@ def page(content: dict[str, Any], pictures: str = "", introduction: str = "") ->
     Parameters
     ----------
     content : dict
-        What stands in atlas.json.
+        The content of atlas.json.
     pictures : str
         Where the pictures are, as a prefix of their names.
     introduction : str
-        What stands before the matrix.
+        The text before the matrix.
     """
     machine = content["machine"]
     whole = "" if not content["quick"] else " --quick"

@@ -1,4 +1,4 @@
-"""The pictures: one a family, a line an entrant with its name at the end, and the matrix of them all."""
+"""The pictures: one for each family, with a named line for each entrant, and the matrix."""
 
 from __future__ import annotations
 

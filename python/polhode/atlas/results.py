@@ -1,4 +1,4 @@
-"""What is kept of a family: its points and verdicts, as JSON, with machine and versions."""
+"""Results of a family as JSON: points and verdicts, with machine and versions."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class FamilyResult:
 
 
 def signature(family: Family, quick: bool, limit: float) -> dict[str, Any]:
-    """What an earlier result must agree with to be kept."""
+    """Return the settings that an earlier result must share to be kept."""
     return {"format": FORMAT, "quick": quick, "limit": limit, "polhode": build_info()["version"],
             "rows": [e.name for e in rows_of(family)], "sweeps": family.sweeps, "holds": family.holds,
             "degrades": family.degrades}

@@ -1,4 +1,4 @@
-"""One entrant on one scene: an answer, or why there is none."""
+"""One entrant on one scene: a result, or the reason why there is none."""
 
 from __future__ import annotations
 

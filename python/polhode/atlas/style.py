@@ -1,4 +1,4 @@
-"""How the atlas looks: a colour, a marker and a place for everyone, readable without colour too."""
+"""Style of the atlas: a colour, a marker and a place for each entrant, readable without colour."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Jobs given out to processes, so that a crash or a hang of one is a data point and not the end."""
+"""Jobs in worker processes, so that a crash or a hang is a data point and does not end the atlas."""
 
 from __future__ import annotations
 

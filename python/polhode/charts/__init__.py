@@ -1,6 +1,6 @@
 """Speed against accuracy: every method, the closed forms and other programs on the same scenes, in one run.
 
-`chart(scenes, folder)` measures, draws and writes; `measure` and `pictures` are its two halves.
+`chart(scenes, folder)` measures with `measure`, draws with `pictures`, and writes the results.
 """
 
 from __future__ import annotations

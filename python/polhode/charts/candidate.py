@@ -1,4 +1,4 @@
-"""What takes part in a chart: a record with a function that answers a scene at one setting."""
+"""Candidates of a chart: records with a function that solves a scene at one setting."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .._solve.motion import Floats
 
 
 class Answer(NamedTuple):
-    """What a candidate returns: the states at the scene's times, and what they cost."""
+    """The result of a candidate: the states at the scene's times, and their cost."""
 
     omega: Floats
     attitude: Floats
@@ -21,7 +21,7 @@ class Answer(NamedTuple):
 
 
 class Failure(Exception):
-    """A run that ended without an answer; the text says why."""
+    """A run that ended without a result; the text says why."""
 
 
 Run = Callable[[float, float | None], Answer]
@@ -29,7 +29,7 @@ Settings = tuple[tuple[str, float], ...]
 
 
 class Candidate(NamedTuple):
-    """One way to answer a scene.
+    """A solver in a chart.
 
     `settings(scene)`: what is swept, from loose to tight, as (label, value). `start(scene)` gets everything ready, such
     as a compiled right-hand side, and returns `run(value, limit)`, which answers the scene or raises `Failure`; that

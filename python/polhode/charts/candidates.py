@@ -1,4 +1,4 @@
-"""Who takes part: every method of the list, the plan's choice, the closed forms that apply, and other programs.
+"""The candidates: every method, the plan's choice, the closed forms that apply, and other programs.
 
 A method joins by the compiled list, another program by its file and a name in `peers`, a closed form by a line here.
 """
@@ -61,7 +61,7 @@ def _method(record: dict[str, Any]) -> Candidate:
 
 
 def _plan() -> Candidate:
-    """What `solve` takes by itself for an accuracy, its certificate included."""
+    """Return the candidate of `solve` with an accuracy, including its certificate."""
     return Candidate("plan", "plan", "polhode.solve(accuracy=), with its certificate", tolerances(3, 12, 3),
                      lambda scene: _solving(scene, "accuracy"), lambda scene: "", "accuracy")
 
@@ -105,6 +105,6 @@ def _exact() -> list[Candidate]:
 
 
 def candidates(with_peers: bool = True) -> list[Candidate]:
-    """Return everyone who takes part, polhode's own first."""
+    """Return all candidates, those of polhode first."""
     own = [_method(record) for record in methods()]
     return [*_exact(), *own, _plan(), *(peer_list.candidates() if with_peers else [])]

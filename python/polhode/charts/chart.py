@@ -1,4 +1,4 @@
-"""The whole of a chart: measure every scene, draw, write, and say where the files are."""
+"""Charts: measure every scene, draw the pictures, and write the files."""
 
 from __future__ import annotations
 
@@ -54,24 +54,24 @@ def chart(
     Parameters
     ----------
     scenes : iterable of Scene, paths or names
-        With omega and attitude wanted.
+        Scenes whose `want` has omega and attitude.
     folder : path
-        Made when it is not there. Gets, as .png and .svg, one picture a scene, ``overview`` and ``limits`` (where
-        steppers fail, if one does), and ``results.json``.
+        Created if missing. It gets one picture for each scene, ``overview``, ``limits`` (if a tolerance does not help),
+        as .png and .svg, and ``results.json``.
     budget : float
-        About how long the whole may take [s]. What does not fit is left out, slow programs first, and listed.
+        Approximate time limit [s]. Runs that do not fit are left out, slow programs first, and listed.
     peers : bool
-        Whether other programs take part, where they are installed; those that are not are named.
+        Also run other programs that are installed. Missing programs are listed.
     progress : callable
-        ``progress(scenes done, what is being done)``.
+        ``progress(finished scenes, present task)``.
     show : callable
-        Is given each scene's result as soon as it is there.
+        Called with the result of each scene when it is finished.
 
     Returns
     -------
     results : list of SceneResult
     document : dict
-        What stands in results.json.
+        The content of results.json.
 
     Raises
     ------

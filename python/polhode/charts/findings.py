@@ -1,4 +1,4 @@
-"""What a measured scene shows, in words made from its numbers."""
+"""Findings about a measured scene, in words made from its numbers."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ def program_ratios(results: list[SceneResult]) -> dict[str, list[float]]:
 
 
 def fastest(result: SceneResult) -> tuple[str, float, float] | None:
-    """Who is first at the tightest of 1e-12, 1e-9, 1e-6, 1e-3 any stepping method reaches: name, error, seconds."""
+    """Return name, error and seconds of the fastest method at the tightest of 1e-12, 1e-9, 1e-6, 1e-3 reached."""
     for error in (1e-12, 1e-9, 1e-6, 1e-3):
         times = {}
         for name in result.names("method", "cheap"):
@@ -124,7 +124,7 @@ def fastest(result: SceneResult) -> tuple[str, float, float] | None:
 
 
 def headline(result: SceneResult) -> str:
-    """The one thing a scene's picture shows."""
+    """Return the headline of a scene's picture."""
     exact = [p for name in result.names("exact") for p in result.of(name)]
     closed = f"the closed form has {to_error(exact[0].error)} in {to_time(exact[0].seconds)}" if exact else ""
     steppers = adaptive(result)
@@ -166,11 +166,11 @@ def to_range(ratios: list[float]) -> str:
     return low if low == high else f"{low} to {high}"
 
 
-LONG = r"\d+\.\d{6,}"   # numbers with more digits than anybody reads
+LONG = r"\d+\.\d{6,}"   # numbers with too many digits to print
 
 
 def under_headline(result: SceneResult) -> str:
-    """What was measured, each peer's time at equal error, and who never answered."""
+    """Return what was measured, each peer's time at equal error, and the candidates without a result."""
     scene = result.scene
     span = abs(scene.times[-1] - scene.t0)
     text = f"{scene.name or 'scene'} {result.title}: {scene.times.size} samples over {span:g} s"
@@ -186,7 +186,7 @@ def under_headline(result: SceneResult) -> str:
 
 
 def without_answer(result: SceneResult) -> dict[str, str]:
-    """Who took part and never answered, and why; the engines' steps fail too often to be told here."""
+    """Return the candidates without a result, with reasons; steps of engines fail too often to be listed."""
     answered = {p.candidate for p in result.points if p.answered}
     silent = [p for p in result.points if p.candidate not in answered and not p.left_out and p.family != "cheap"]
     return {p.candidate: p.why for p in reversed(silent)}

@@ -1,4 +1,4 @@
-"""One scene, measured: every candidate at every setting once, then repeats of all of them in turn, within a budget."""
+"""Measurement of one scene: every candidate at every setting once, then repeats, within a time limit."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ Report = Callable[[str], object]
 
 @dataclass
 class Point:
-    """One candidate at one setting. `why` is empty when it answered."""
+    """One candidate at one setting. `why` is empty if it gave a result."""
 
     candidate: str
     family: str
@@ -57,7 +57,7 @@ class Point:
 
 @dataclass
 class SceneResult:
-    """All points of a scene, and the truth they were held against."""
+    """All points of a scene, and the truth they were compared with."""
 
     scene: Scene
     title: str
@@ -77,7 +77,7 @@ class SceneResult:
 
 
 def compute_drift(scene: Scene, answer: Answer) -> dict[str, float]:
-    """Return how far each invariant moved, the same way for everyone; quaternions count by their direction."""
+    """Return the drift of each invariant, computed alike for all candidates from normalised quaternions."""
     attitude = answer.attitude / np.linalg.norm(answer.attitude, axis=1, keepdims=True)
     return dict(_core.drift(scene, scene.times, answer.omega, attitude))
 

@@ -1,4 +1,4 @@
-"""The pictures: work against precision for one scene, for all of them, and where steppers fail."""
+"""The pictures: time against error for one scene, for all scenes, and the limits of tolerances."""
 
 from __future__ import annotations
 
@@ -190,7 +190,7 @@ def overview(results: list[SceneResult], folder: pathlib.Path) -> list[pathlib.P
         labels |= {name: f"closed form ({', '.join(closed)})" for name in closed[:1]}
         handles = [plt.Line2D([], [], label=text, **style.line(name, names[name])) for name, text in labels.items()]
         handles.append(plt.Line2D([], [], color=style.PALE, linewidth=0.9, marker="o", markersize=3,
-                                  label="beaten everywhere"))
+                                  label="slower everywhere"))
         handles.append(plt.Line2D([], [], color=style.FLOOR, linestyle=(0, (1, 2)), label="rounding of the input"))
         figure.legend(handles=handles, loc="upper left",
                       bbox_to_anchor=(0.3 / width, 1 - (0.72 + 0.25 * title.count("\n")) / height),
@@ -208,7 +208,7 @@ def overview(results: list[SceneResult], folder: pathlib.Path) -> list[pathlib.P
 
 
 def _silent(result: SceneResult) -> str:
-    """Who failed outright here, rather than for want of time."""
+    """Return the candidates that failed for other reasons than the time limit."""
     names = [name for name, why in without_answer(result).items() if not why.startswith(("not done", "hung"))]
     return "\n".join(textwrap.wrap(f"no answer: {', '.join(names)}", 34)) if names else ""
 

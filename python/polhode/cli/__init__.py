@@ -1,7 +1,7 @@
-"""The command line: `polhode run`, `chart`, `methods` and `inertia`.
+"""The command line: `polhode run`, `plan`, `inertia`, `chart`, `atlas` and others.
 
-Exit status: 0 fine, 1 a finding (an invariant that moved, a body that cannot be), 2 bad input, with one line that says
-what.
+Exit status: 0 without a finding, 1 with a finding (such as a drift of an invariant, or an impossible body), 2 for bad
+input, with one line that says why.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ EXTRA = ("typer", "rich")
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the command and leave with its status."""
+    """Run the command and exit with its status."""
     sys.exit(_run(arguments))
 
 
@@ -29,15 +29,15 @@ def _run(arguments: Sequence[str] | None) -> int:
         if (error.name or "").partition(".")[0] not in EXTRA:
             raise
         return _say(f"the command line needs {error.name}: pip install 'polhode[cli]'", 2)
-    except BrokenPipeError:   # the reader has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())   # Python flushes once more at the end
+    except BrokenPipeError:   # the reader has closed the pipe
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())   # because Python flushes again at exit
         return 0
     except KeyboardInterrupt:
         return _say("interrupted", 130)
     except Exception as error:
-        if type(error).__name__ == "Abort":   # what typer makes of Ctrl-C
+        if type(error).__name__ == "Abort":   # typer's exception for Ctrl-C
             return _say("interrupted", 130)
-        if not hasattr(error, "format_message"):   # not about the arguments: a fault, to be seen whole
+        if not hasattr(error, "format_message"):   # not about the arguments: a bug, shown with its traceback
             raise
         return _say(error.format_message(), 2)
 

@@ -23,13 +23,13 @@ from . import files, show
 
 app = typer.Typer(name="polhode", add_completion=False, no_args_is_help=True, rich_markup_mode=None,
                   pretty_exceptions_enable=False, context_settings={"help_option_names": ["-h", "--help"]},
-                  help="Rigid bodies that turn: where does the body point, and how fast does it spin, at time t?")
+                  help="Rotational motion of rigid bodies: attitude and angular velocity at given times.")
 
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")]
 
 
 def _command(function: Callable[..., int | None]) -> Callable[..., None]:
-    """Make a command of a function: what it returns is the status, and bad input is one line and status 2."""
+    """Make a function a command. Its result is the exit status; bad input gives one line and status 2."""
 
     @app.command()
     @functools.wraps(function)
@@ -59,7 +59,7 @@ def _need_matplotlib(what: str) -> None:
 
 
 def _seconds(text: str) -> float:
-    """Read 90, 90s or 1.5min."""
+    """Return the seconds of a text such as 90, 90s or 1.5min."""
     found = re.fullmatch(r"\s*(\d+\.?\d*|\.\d+)\s*(s|min|)\s*", text)
     if not found:
         raise InvalidInput(f"budget: must be a time such as 90s or 5min, got {text!r}")
@@ -75,13 +75,14 @@ def _top(version: Annotated[bool, typer.Option("--version", help="Print the vers
 
 @_command
 def run(
-    scene: Annotated[str, typer.Argument(help="A scene file, or the name of one of polhode's own, such as S1.")],
-    accuracy: Annotated[float | None, typer.Option(help="Of every sample; 1e-9 when nothing is given.")] = None,
-    method: Annotated[str | None, typer.Option(help="One of `polhode methods`.")] = None,
+    scene: Annotated[str, typer.Argument(help="A scene file, or the name of a scene of polhode, such as S1.")],
+    accuracy: Annotated[
+        float | None, typer.Option(help="Largest error of any sample; 1e-9 if no tolerance is given.")] = None,
+    method: Annotated[str | None, typer.Option(help="Method to use: exact, or one of `polhode methods`.")] = None,
     rtol: Annotated[float | None, typer.Option(help="Relative tolerance of a step.")] = None,
     atol: Annotated[float | None, typer.Option(help="Absolute tolerance of a step.")] = None,
-    step: Annotated[float | None, typer.Option(help="Of methods with a fixed step [s].")] = None,
-    max_steps: Annotated[int, typer.Option(help="Give up after so many.")] = 10_000_000,
+    step: Annotated[float | None, typer.Option(help="Step of a fixed-step method [s].")] = None,
+    max_steps: Annotated[int, typer.Option(help="Stop after this number of steps.")] = 10_000_000,
     output: Annotated[
         pathlib.Path | None, typer.Option("-o", "--output", help="Write all samples: .csv, .npz or .json.")] = None,
     picture: Annotated[
@@ -89,16 +90,16 @@ def run(
                                           help="Draw polhode, angles and invariants: .png, .svg or .pdf.")] = None,
     as_json: Json = False,
 ) -> int:
-    """Turn the body of a scene.
+    """Compute the rotational motion of a scene at its sample times.
 
-    Shows the first and last samples, how far the invariants moved, and the cost.
+    Prints the first and last samples, the drift of the invariants, and the cost.
     """
     if output is not None:
         files.check(output)
     if picture is not None:
         _need_matplotlib("pictures")
         files.check(picture, (".png", ".svg", ".pdf"), "plot")
-    with show.Bar("turning") as bar:
+    with show.Bar("solving") as bar:
         motion = solve(Scene.load(scene), accuracy, method=method, rtol=rtol, atol=atol, step=step, max_steps=max_steps,
                        progress=bar.fraction)
     if as_json:
@@ -117,14 +118,14 @@ def run(
 @_command
 def plan(
     scenes: Annotated[list[str], typer.Argument(help="Scene files, or names such as S1.")],
-    accuracy: Annotated[float | None, typer.Option(help="Of every sample; 1e-9 when nothing is given.")] = None,
-    method: Annotated[str | None, typer.Option(help="exact, or one of `polhode methods`.")] = None,
-    certify: Annotated[bool, typer.Option(help="Bound the error by a second run.")] = True,
+    accuracy: Annotated[float | None, typer.Option(help="Largest error of any sample; 1e-9 if left out.")] = None,
+    method: Annotated[str | None, typer.Option(help="Method to use: exact, or one of `polhode methods`.")] = None,
+    certify: Annotated[bool, typer.Option(help="Bound the error with a certificate.")] = True,
     as_json: Json = False,
 ) -> int:
-    """Say how scenes would be solved, and why.
+    """Show how scenes would be solved, and why.
 
-    Shows what is seen in each scene, every closed form and method with its expected error and time, and the choice.
+    Prints the properties of each scene, each closed form and method with its expected error and time, and the choice.
     """
     made = [make_plan(Scene.load(scene), accuracy, method=method, certify=certify) for scene in scenes]
     if as_json:
@@ -136,9 +137,9 @@ def plan(
 
 @_command
 def calibrate(as_json: Json = False) -> int:
-    """Measure this machine for the plans to come.
+    """Measure the speed of this machine for later plans.
 
-    Takes less than 20 s; the result is kept in the user's cache folder.
+    It takes less than 20 s. The result is saved in the user's cache folder.
     """
     with show.Bar("measuring") as bar:
         found = calibration.calibrate(lambda done, total: bar.fraction(done, total))
@@ -151,7 +152,7 @@ def calibrate(as_json: Json = False) -> int:
 
 @_command
 def methods(as_json: Json = False) -> int:
-    """List every method."""
+    """List all methods."""
     records = method_records()
     if as_json:
         _print_json(records)
@@ -163,18 +164,18 @@ def methods(as_json: Json = False) -> int:
 @_command
 def inertia(
     file: Annotated[str, typer.Argument(
-        help="A robot (URDF, MJCF, SDF), a mesh (STL, OBJ, PLY, glTF), a TOML file with a [body] table as in scenes, "
-             "or "
-             "a scene's name.")],
-    density: Annotated[float | None, typer.Option(help="Of a mesh [kg/m^3].")] = None,
-    mass: Annotated[float | None, typer.Option(help="Of a mesh [kg].")] = None,
-    unit: Annotated[str, typer.Option(help="Of a mesh: m, cm, mm, um, in, ft, or a length [m].")] = "m",
-    flip: Annotated[bool, typer.Option("--flip", help="Turn a mesh that is wound inward as a whole.")] = False,
+        help="A robot (URDF, MJCF, SDF), a mesh (STL, OBJ, PLY, glTF), a TOML file with a [body] table, or the name "
+             "of a scene.")],
+    density: Annotated[float | None, typer.Option(help="Density of a mesh [kg/m^3].")] = None,
+    mass: Annotated[float | None, typer.Option(help="Mass of a mesh [kg].")] = None,
+    unit: Annotated[str, typer.Option(help="Unit of a mesh: m, cm, mm, um, in, ft, or a length [m].")] = "m",
+    flip: Annotated[bool, typer.Option("--flip", help="Reverse the faces of a mesh that is wound inward.")] = False,
     as_json: Json = False,
 ) -> int:
-    """Judge a body's inertia, or every link's of a robot.
+    """Check the inertia of a body, or of every link of a robot.
 
-    Shows moments, principal axes and symmetry, and whether there can be such a body; of robots, what is wrong and why.
+    Prints moments, principal axes, symmetry, and whether such a body can exist. For robots it prints what is wrong and
+    the likely cause.
     """
     from . import part, robot
 
@@ -203,25 +204,25 @@ def inertia(
 def _only_for_meshes(**options: Any) -> None:
     for name, value in options.items():
         if value:
-            raise InvalidInput(f"--{name}: must go with a mesh file, got another")
+            raise InvalidInput(f"--{name}: must be used with a mesh file, got another file")
 
 
 @_command
 def chart(
     scenes: Annotated[list[str], typer.Argument(help="Scene files, or names such as S1.")],
     output: Annotated[
-        pathlib.Path, typer.Option("-o", "--output", help="The folder for all files.")] = pathlib.Path("charts"),
+        pathlib.Path, typer.Option("-o", "--output", help="Folder for all files.")] = pathlib.Path("charts"),
     budget: Annotated[
-        str, typer.Option(help="About how long it may take, such as 60s or 5min; what does not fit is left out and "
+        str, typer.Option(help="Approximate time limit, such as 60s or 5min. Runs that exceed it are left out and "
                                "listed.")
     ] = "130s",
-    peers: Annotated[bool, typer.Option(help="Run other programs beside, where they are installed.")] = True,
+    peers: Annotated[bool, typer.Option(help="Also run other programs that are installed.")] = True,
     as_json: Json = False,
 ) -> int:
     """Chart speed against accuracy.
 
-    All methods, the plan's choice, closed forms and other programs on the scenes given, against their truth, in one
-    run.
+    Runs all methods, the plan's choice, closed forms and other programs on the given scenes, and compares them with
+    the truth.
     """
     _need_matplotlib("charts")
     from ..charts import chart as make_chart
@@ -241,12 +242,13 @@ def chart(
 def report(
     output: Annotated[
         pathlib.Path, typer.Option("-o", "--output",
-                                   help="The folder for the page and its files.")] = pathlib.Path("report"),
-    full: Annotated[bool, typer.Option(help="Take all the time it needs, rather than a few minutes.")] = False,
-    budget: Annotated[str | None, typer.Option(help="For the charts, such as 60s or 5min.")] = None,
-    peers: Annotated[bool, typer.Option(help="Run other programs beside, where they are installed.")] = True,
-    atlas: Annotated[bool, typer.Option(help="Measure where methods fail, too.")] = True,
-    scenes: Annotated[list[str] | None, typer.Argument(help="Scene files or names; polhode's own when none is "
+                                   help="Folder for the page and its files.")] = pathlib.Path("report"),
+    full: Annotated[bool, typer.Option(help="Run everything, without the limit of a few minutes.")] = False,
+    budget: Annotated[
+        str | None, typer.Option(help="Approximate time limit of the charts, such as 60s or 5min.")] = None,
+    peers: Annotated[bool, typer.Option(help="Also run other programs that are installed.")] = True,
+    atlas: Annotated[bool, typer.Option(help="Also measure where methods fail.")] = True,
+    scenes: Annotated[list[str] | None, typer.Argument(help="Scene files or names; polhode's scenes if none is "
                                                             "given.")] = None,
 ) -> int:
     """Write a web page of charts, pictures and tables.
@@ -268,19 +270,20 @@ def report(
 
 @_command
 def atlas(
-    families: Annotated[list[str] | None, typer.Argument(help="Names of families; all when none is given.")] = None,
+    families: Annotated[list[str] | None, typer.Argument(help="Names of families; all if none is given.")] = None,
     output: Annotated[pathlib.Path, typer.Option(
-        "-o", "--output", help="The folder; what is finished there is kept.")] = pathlib.Path("atlas"),
-    quick: Annotated[bool, typer.Option("--quick", help="Fewer values: about a minute, not many.")] = False,
-    fresh: Annotated[bool, typer.Option("--fresh", help="Run finished families again.")] = False,
-    processes: Annotated[int, typer.Option(help="How many work at a time.")] = 2,
+        "-o", "--output", help="Folder for all files; finished families in it are kept.")] = pathlib.Path("atlas"),
+    quick: Annotated[bool, typer.Option("--quick", help="Use fewer values, which takes about a minute.")] = False,
+    fresh: Annotated[bool, typer.Option("--fresh", help="Repeat finished families.")] = False,
+    processes: Annotated[int, typer.Option(help="Number of worker processes.")] = 2,
     limit: Annotated[
-        float | None, typer.Option(help="Seconds of CPU a single run may take; 60, quick 2.")] = None,
+        float | None, typer.Option(help="Limit of CPU time of one run [s]; 60, or 2 with --quick.")] = None,
     as_json: Json = False,
 ) -> int:
     """Chart where methods fail.
 
-    Every method on families of hard problems, from the racket to stiff damping, each against a truth and a threshold.
+    Runs every method on families of hard problems, from the tennis racket to stiff damping. Compares each result with
+    the truth and a threshold.
     """
     try:
         import matplotlib  # noqa: F401

@@ -1,4 +1,4 @@
-"""What `polhode atlas` prints: a table a family, the matrix, and where the files are."""
+"""Output of `polhode atlas`: a table for each family, the matrix, and the files."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ STYLES = {"holds": "blue", "degrades": "yellow", "fails": "red", "unknown": "dim
 
 
 def family(result: FamilyResult) -> None:
-    """The numbers of one family: a row an entrant, a column a value of what is swept."""
+    """Print one family: a row for each entrant, a column for each value of the swept quantity."""
     from ..atlas.family import Point, to_short
     from ..atlas.page import costs
 
@@ -32,7 +32,7 @@ def family(result: FamilyResult) -> None:
             return {p.x: p for p in points if p.series == series and not math.isnan(p.x) and p.status != "refused"}
 
         columns = sorted({x for points in result.rows.values() for x in of(points)}, reverse=what.x_inverted)
-        if not columns or what.name == "norm" and len(columns) > 8:   # there everyone has steps of his own
+        if not columns or what.name == "norm" and len(columns) > 8:   # its entrants have different steps
             columns = columns[:: max(1, len(columns) // 8)]
         out.print(Text(f"{what.y_label}{', ' + title if title else ''}; by {what.x_label}"))
         table = show._table("", *(f"{x:.3g}" for x in columns), left=1)
@@ -54,7 +54,7 @@ def _cell(point: Any, value: str, to_short: Any) -> str:
 
 
 def matrix(content: dict[str, Any]) -> None:
-    """Methods against families."""
+    """Print the matrix of methods and families."""
     families = list(content["families"])
     table = show._table("", *families, left=1 + len(families))
     for name, row in content["matrix"].items():
@@ -63,11 +63,11 @@ def matrix(content: dict[str, Any]) -> None:
     out = show.console()
     out.print()
     out.print(table)
-    out.print(Text("● holds   ◐ degrades   ✕ fails   ? too slow to be known here   · does not apply"))
+    out.print(Text("● holds   ◐ degrades   ✕ fails   ? too slow to measure here   · does not apply"))
 
 
 def end(content: dict[str, Any], folder: pathlib.Path) -> None:
-    """Say where the files are, and which of polhode's own claims did not hold."""
+    """Print where the files are, and which claims of polhode did not hold."""
     out = show.console()
     count = len(content["families"])
     out.print(Text(f"\n{count} famil{'ies' if count > 1 else 'y'} in {content['seconds']:.0f} s "

@@ -1,4 +1,4 @@
-"""A body in a TOML file: what it is, or why there can be none."""
+"""Mass properties of a body in a TOML file, or the reason why it cannot exist."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .._scene.files import load_body
 def examine(source: str) -> dict[str, Any]:
     """Return moments, axes, symmetry and verdict of a [body] table.
 
-    A tensor that breaks the triangle inequality is a finding, not an error: `valid` is false, and `verdict` says why.
+    A tensor that breaks the triangle inequality is a finding, not an error: `valid` is False, and `verdict` says why.
     """
     body = load_body(source)
     finding: dict[str, Any] = {"file": str(source), "valid": True, "verdict": "a body can have this tensor"}
@@ -38,7 +38,7 @@ def examine(source: str) -> dict[str, Any]:
 
 
 def _loosely(body: Any) -> InertiaTensor | None:
-    """The tensor without the triangle inequality, if it holds at least what every tensor must."""
+    """Return the tensor without the check of the triangle inequality; None if it fails other checks."""
     try:
         return body_inertia(body.model_copy(update={"physical": False}))
     except InvalidInput:
@@ -46,7 +46,7 @@ def _loosely(body: Any) -> InertiaTensor | None:
 
 
 def _verdict(tensor: InertiaTensor) -> str:
-    """Why a tensor that was let through by `physical = false` would have been refused."""
+    """Return the reason why `InertiaTensor` would refuse a tensor that has `physical = false`."""
     try:
         InertiaTensor(tensor.matrix)
     except InvalidInput as error:

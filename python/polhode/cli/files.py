@@ -1,4 +1,4 @@
-"""Motions as files: CSV for eyes and spreadsheets, NPZ for NumPy, JSON for everything else."""
+"""Motions as files: CSV for spreadsheets, NPZ for NumPy, JSON for other programs."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ COLUMNS = {"t": ("t",), "omega": ("omega_x", "omega_y", "omega_z"),
 
 
 def check(path: pathlib.Path, endings: tuple[str, ...] = (".csv", ".npz", ".json"), option: str = "output") -> None:
-    """Refuse, before anything is computed, a file that cannot be written."""
+    """Refuse a file that cannot be written, before the motion is computed."""
     if path.suffix not in endings:
         raise InvalidInput(f"{option}: must end in {', '.join(endings[:-1])} or {endings[-1]}, got {str(path)!r}")
     if path.is_dir() or not path.parent.is_dir() or not os.access(path.parent, os.W_OK):
@@ -31,7 +31,7 @@ def _arrays(motion: Motion) -> dict[str, Any]:
 
 
 def to_json(motion: Motion) -> dict[str, Any]:
-    """Return everything a motion says; what is not a finite number is null."""
+    """Return all parts of a motion; numbers that are not finite are null."""
     return {
         "scene": motion.scene.name,
         "plan": {key: getattr(motion.plan, key) for key in ("model", "method", "state", "rtol")}, "asked": motion.asked,
@@ -43,7 +43,7 @@ def to_json(motion: Motion) -> dict[str, Any]:
 
 
 def write(path: pathlib.Path, motion: Motion) -> None:
-    """Write a motion by the file's ending; CSV holds every bit, as the shortest digits that read back the same."""
+    """Write a motion in the format of the file's suffix. CSV numbers have all their digits."""
     arrays = _arrays(motion)
     if path.suffix == ".npz":
         np.savez_compressed(path, **arrays)

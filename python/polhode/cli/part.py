@@ -1,4 +1,4 @@
-"""A mesh file: what is inside its surface, or why that is none."""
+"""Mass properties of a mesh file, or the reason why its surface encloses no body."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from .._core import InvalidInput, MassProperties
 
 
 def is_mesh(file: str) -> bool:
-    """By its suffix."""
+    """Return True if the suffix is that of a mesh file."""
     return pathlib.Path(file).suffix.lower() in mesh.FORMATS
 
 
 def examine(file: str, density: float | None, mass: float | None, unit: str, flip: bool) -> dict[str, Any]:
     """Return mass, centre, moments and axes of the solid in a mesh file.
 
-    A surface that is no body's is a finding, not an error: `valid` is false, and `verdict` says why.
+    A surface that encloses no body is a finding, not an error: `valid` is False, and `verdict` says why.
     """
     finding: dict[str, Any] = {"file": file, "valid": True, "verdict": "the surface of a body", "notes": []}
     for name, value in {"density": density, "mass": mass}.items():
@@ -29,7 +29,7 @@ def examine(file: str, density: float | None, mass: float | None, unit: str, fli
         raise InvalidInput("--density: must be given, or else --mass, got both")
     if density is None and mass is None:
         density = 1.0
-        finding["notes"].append("neither --density nor --mass given: for 1 kg/m^3")
+        finding["notes"].append("neither --density nor --mass is given: the density is 1 kg/m^3")
     length = _core.unit_in_metres(_number(unit))
     vertices, faces = mesh.read(file)
     finding["faces"] = len(faces)
@@ -45,7 +45,7 @@ def examine(file: str, density: float | None, mass: float | None, unit: str, fli
             return finding | {"valid": False, "verdict": str(error).replace('repair="flip"', "--flip")}
     finding["notes"] += [str(warning.message).replace('unit="', "--unit ").replace('"', "") for warning in caught]
     if report["degenerate"]:
-        finding["notes"].append(f"{report['degenerate']} faces have two corners at one place: they count for nothing")
+        finding["notes"].append(f"{report['degenerate']} faces have two equal corners and are ignored")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")   # said above
         body = MassProperties.from_mesh(vertices, faces, density=density, mass=mass, unit=length, check=False,

@@ -1,4 +1,4 @@
-"""A robot description: a line a link, and what to do about each finding."""
+"""Findings about a robot description: one line for each link, and advice for each finding."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from ..inertia.robots import Link
 
 
 def is_robot(file: str) -> bool:
-    """By its suffix."""
+    """Return True if the suffix is that of a robot description."""
     return pathlib.Path(file).suffix.lower() in robots.suffixes
 
 
 def examine(file: str) -> dict[str, Any]:
-    """Judge every link of a file."""
+    """Check every link of a file."""
     robot = robots.read(file)
     links = [_plain(_link(link)) for link in robot.links]
     return {"file": str(file), "format": robot.kind, "name": robot.name,
@@ -45,7 +45,7 @@ def _link(link: Link) -> dict[str, Any]:
 
 
 def _plain(content: Any) -> Any:
-    """None for what is not finite: JSON has no word for it."""
+    """Replace numbers that are not finite by None, because JSON has none."""
     if isinstance(content, dict):
         return {key: _plain(value) for key, value in content.items()}
     if isinstance(content, list):
@@ -56,13 +56,13 @@ def _plain(content: Any) -> Any:
 def _finding(finding: Finding, link: Link) -> dict[str, Any]:
     content = finding.to_dict()
     if finding.com is not None:
-        com = link.pose.turn @ finding.com   # back to the link's axes, as in the file
+        com = link.pose.turn @ finding.com   # in the link's axes, as in the file
         content["com"] = np.where(np.abs(com) < 1e-9 * np.abs(com).max(), 0.0, com).tolist()
     return content
 
 
 def advice(link: dict[str, Any], finding: dict[str, Any]) -> list[str]:
-    """What a finding says, line by line: what is broken, why, and what to write instead."""
+    """Return the lines of a finding: what is wrong, the likely cause, and what to write instead."""
     lines = [f"{link['name']}: {finding['text']}", f"likely   {finding['advice']}"]
     fixed = []
     if finding["mass"] is not None and finding["mass"] != link["mass"]:

@@ -1,4 +1,4 @@
-"""Tables to read. On a terminal they fit it; anywhere else nothing is cut to a width."""
+"""Tables of the command line. They fit a terminal; other output is not cut."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ UNCUT = 100_000
 
 
 def console(stderr: bool = False) -> Console:
-    """Return a console on what stdout (or stderr) is now."""
+    """Return a console on the present stdout or stderr."""
     stream = sys.stderr if stderr else sys.stdout
     return Console(file=stream, highlight=False, markup=False, width=None if stream.isatty() else UNCUT)
 
 
 class Bar:
-    """Progress on stderr: a bar on a terminal, else a line when something new begins; what ends at once has none."""
+    """Progress on stderr: a bar on a terminal, otherwise one line for each new task."""
 
     def __init__(self, title: str, total: float = 1.0) -> None:
         self._console = console(stderr=True)
@@ -69,11 +69,11 @@ class Bar:
         self.step(done, text)
 
     def print_above(self, result: SceneResult) -> None:
-        """Print a scene's table while the bar goes on below it."""
+        """Print a scene's table above the bar."""
         self.above(scene, result)
 
     def above(self, show: Callable[[Any], object], result: Any) -> None:
-        """Print something while the bar goes on below it."""
+        """Print something above the bar."""
         if self._console.is_terminal and sys.stdout.isatty():
             self._bar.stop()
             show(result)
@@ -95,7 +95,7 @@ def _numbers(row: Any) -> list[str]:
 
 
 def motion(result: Motion) -> None:
-    """First and last samples, the invariants' drift, counts, message."""
+    """Print first and last samples, drift of the invariants, counts and message."""
     out = console()
     plan, n = result.plan, len(result)
     name = result.scene.name or "scene"
@@ -114,23 +114,23 @@ def motion(result: Motion) -> None:
     drift = ", ".join(f"{name.replace('_', ' ')} {value:.1e}" for name, value in result.drift.items())
     counts = ", ".join(f"{value:,} {name.removesuffix('s') if value == 1 else name}"
                        for name, value in result.stats.items() if isinstance(value, int) and value)
-    out.print(Text(f"drift   {drift or 'nothing here is kept by the motion'}"))
+    out.print(Text(f"drift   {drift or 'no invariant is known here'}"))
     out.print(Text(f"cost    {counts}; {1e3 * result.stats['seconds']:.3g} ms"))
     out.print(Text(f"result  {'' if result.success else 'FINDING: '}{result.message}"))
 
 
 def calibration(factors: dict[str, float], file: str) -> None:
-    """Each model's and method's time, by the forecast's."""
+    """Print the time of each model and method over its forecast."""
     out = console()
     table = _table("model or method", "time / forecast", left=1)
     for name, factor in factors.items():
         table.add_row(name, f"{factor:.2f}")
     out.print(table)
-    out.print(Text(f"kept in {file}"))
+    out.print(Text(f"saved in {file}"))
 
 
 def methods(records: list[dict[str, Any]]) -> None:
-    """One line a method."""
+    """Print one line for each method."""
     table = _table("method", "order", "dense", "steps", "keeps", "what it is", "source", left=7)
     for record in records:
         table.add_row(record["name"], str(record["order"]), str(record["dense_order"]),
@@ -146,7 +146,7 @@ BODY_UNITS = {"size": " [m]", "volume": " [m^3]", "mass": " [kg]", "com": " [m]"
 
 
 def body(finding: dict[str, Any]) -> None:
-    """What `inertia` found."""
+    """Print the mass properties of a body."""
     out = console()
     table = _table("", "", left=2)
     table.show_header = False
@@ -165,7 +165,7 @@ def body(finding: dict[str, Any]) -> None:
 
 
 def robot(content: dict[str, Any]) -> None:
-    """What `inertia` found in a robot description: the table of its links, then what to do about each finding."""
+    """Print the findings of a robot description: a table of its links, then advice for each finding."""
     from .robot import advice
 
     out = console()
@@ -203,7 +203,7 @@ def _drifts(point: Point) -> tuple[str, str]:
 
 
 def scene(result: SceneResult) -> None:
-    """The table of one scene of a chart."""
+    """Print the table of one scene of a chart."""
     from .._plot.text import to_time
     from ..charts.findings import dominated, headline
 
@@ -233,20 +233,20 @@ def scene(result: SceneResult) -> None:
     if starts:
         out.print(Text(f"start-up and warm-up before the first answer: {', '.join(starts)}"))
     if beaten := sorted(dominated(result)):
-        out.print(Text(f"beaten everywhere, in grey: {', '.join(beaten)}"))
+        out.print(Text(f"slower everywhere than another, in grey: {', '.join(beaten)}"))
     for note in result.notes:
         out.print(Text(note))
 
 
 def chart_end(content: dict[str, Any], folder: pathlib.Path) -> None:
-    """Say where the files are."""
+    """Print where the files are."""
     machine, out = content["machine"], console()
     count = len(content["scenes"])
     scenes = f"{count} scene{'s' if count > 1 else ''}"
     out.print(Text(f"\n{scenes} in {content['seconds']:.0f} s on {machine['processor']}"))
     for name, how in content["missing"].items():
-        out.print(Text(f"{name} is not here: {how}"))
+        out.print(Text(f"{name} is not installed: {how}"))
     for name in content["files"]:
         if not name.endswith(".svg"):
             out.print(Text(f"{folder / name}"))
-    out.print(Text("each picture is there as .svg too"))
+    out.print(Text("each picture also exists as .svg"))

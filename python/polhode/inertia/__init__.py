@@ -1,7 +1,7 @@
 """Inertia tensors, their principal axes, and the mass properties of bodies.
 
-`InertiaTensor` and `MassProperties` check what they are given once, at the door: a tensor that no body can have is
-refused with the axis, the deficit in per cent and the likely cause. `polhode.shapes` makes the simple bodies.
+`InertiaTensor` and `MassProperties` check their arguments. A tensor that no body can have is refused, with the axis,
+the deficit in per cent and the likely cause. `polhode.shapes` makes simple bodies.
 """
 
 from __future__ import annotations
@@ -22,19 +22,19 @@ __all__ = ["Diagnosis", "Finding", "Flaw", "InertiaTensor", "MassProperties", "P
 
 
 def principal_axes(matrices: npt.ArrayLike) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-    """Principal moments and axes of many tensors at once, bit for bit those of `InertiaTensor`.
+    """Return the principal moments and axes of many tensors, with the same bits as `InertiaTensor`.
 
-    The moments ascend, which leaves the signs of the axes to choose. The axes of the smallest and of the largest moment
-    point towards the given axis they lie nearest to, the middle one completes the right-handed frame; so a frame turned
-    by less than 45 degrees from the given axes is found as such, and no axis flips within 45 degrees of a given axis.
-    Of two equal moments (closer than 16 units of rounding of the largest), the axes are the given ones carried along by
-    the smallest turn onto the axis that stands apart; of three, the given axes themselves.
+    The moments ascend. The signs of the axes follow a rule. The axes of the smallest and of the largest moment point
+    towards the nearest given axis, and the middle axis completes the right-handed frame. So no axis flips within 45
+    degrees of a given axis. Moments are equal if they differ by less than 16 units of rounding of the largest. For two
+    equal moments the smallest rotation that aligns the third axis is applied to the given axes. For three equal moments
+    the axes are the given axes.
 
     Parameters
     ----------
     matrices : array_like, shape (..., 3, 3)
-        Symmetric, in the given axes [kg m^2]. Entries across the diagonal may differ by 1e-12 of the largest one, and
-        their mean is taken. Whether a body can have such a tensor is not asked.
+        Symmetric, in the given axes [kg m^2]. Entries across the diagonal may differ by 1e-12 of the largest entry, and
+        their mean is taken. The triangle inequality is not checked.
 
     Returns
     -------
@@ -46,9 +46,10 @@ def principal_axes(matrices: npt.ArrayLike) -> tuple[npt.NDArray[np.float64], np
     Raises
     ------
     InvalidInput
-        Wrong shape, or a matrix that is not symmetric. One that is not finite gives NaN and a RuntimeWarning.
+        For a wrong shape, or a matrix that is not symmetric. A matrix that is not finite gives NaN and a
+        RuntimeWarning.
     """
     moments, axes, not_finite = _core.principal_axes(matrices)
     if not_finite:
-        warnings.warn(f"matrices: {not_finite} not finite, answered with NaN", RuntimeWarning, stacklevel=2)
+        warnings.warn(f"matrices: {not_finite} not finite, results are NaN", RuntimeWarning, stacklevel=2)
     return moments, axes

@@ -1,4 +1,4 @@
-"""What is broken, in words and per cent."""
+"""Violated conditions of inertia data, in words and per cent."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Array = npt.NDArray[np.float64]
 
 
 class Breach(NamedTuple):
-    """See Finding."""
+    """A violated condition; see Finding."""
 
     what: str
     per_cent: float
@@ -22,7 +22,7 @@ class Breach(NamedTuple):
 
 
 def breaches(given: Bodies, found: Evidence, flaws: Flaw, margin: float, geometry: Geometry) -> list[Breach]:
-    """All that is broken: what no body can have, or else what this one should not have."""
+    """Return the conditions that no body can violate, or else those that are unlikely for this body."""
     mass, matrix = given.mass[0], given.matrix[0]
     broken = []
     values, axes = np.linalg.eigh(matrix)

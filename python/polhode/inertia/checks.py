@@ -11,7 +11,7 @@ from .. import _core
 
 
 class Flaw(enum.IntFlag):
-    """What no body's tensor has; 0 is fine."""
+    """Flaws that no tensor of a body can have; 0 means none."""
 
     NOT_FINITE = 1
     NOT_SYMMETRIC = 2
@@ -20,7 +20,7 @@ class Flaw(enum.IntFlag):
 
 
 def check(matrices: npt.ArrayLike) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.uint8]]:
-    """Judge many tensors as the door of `InertiaTensor` does, refusing none.
+    """Check many tensors by the rules of `InertiaTensor`, without refusing any.
 
     Parameters
     ----------
@@ -30,8 +30,8 @@ def check(matrices: npt.ArrayLike) -> tuple[npt.NDArray[np.float64], npt.NDArray
     Returns
     -------
     margins : ndarray, shape (...)
-        What is left to the triangle inequality, (a + b - c) / c for the principal moments a <= b <= c: 1 for a sphere,
-        0 for a flat body (and for zeros), negative for what can be no body; NaN for a matrix that is not finite.
+        The margin of the triangle inequality, (a + b - c) / c for the principal moments a <= b <= c. It is 1 for a
+        sphere, 0 for a flat body and for zeros, and negative for an impossible body. It is NaN if not finite.
     flaws : ndarray of uint8, shape (...)
         Bits of `Flaw`: `flaws == 0` are fine, `flaws & Flaw.TRIANGLE` those with a moment above the sum of the others.
 

@@ -1,4 +1,4 @@
-"""The ways in which inertia data go wrong, each with what undoes it."""
+"""Common errors in inertia data, each with its correction."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ USUAL = set(list(ORDERS)[:2])
 
 
 class Cause(NamedTuple):
-    """What may have gone wrong, and the body without it."""
+    """A possible error, and the corrected body."""
 
     kind: str
     text: str
@@ -37,7 +37,7 @@ def _key(body: Bodies) -> bytes:
 
 
 def undo(given: Bodies, geometry: Geometry, only_units: bool = False) -> list[Cause]:
-    """Every cause that could be, for a body that was given; what changes nothing is left out."""
+    """Return all possible causes for a body, without those that change nothing."""
     mass = float(given.mass[0]) if np.isfinite(given.mass[0]) else None
     com = given.com[0] if np.isfinite(given.com[0]).all() else None
     matrix = given.matrix[0]
@@ -64,9 +64,9 @@ def _signs(mass: float | None, com: Array | None, matrix: Array) -> Iterator[Cau
             i, j = ENTRIES[name]
             flipped[i, j] = flipped[j, i] = -matrix[i, j]
         if len(names) == 3:
-            text = "the products of inertia have the opposite sign (written as +integral of x y dm): turn all three"
+            text = "the products of inertia have the opposite sign (written as +integral of x y dm): reverse all three"
         else:
-            text = f"the sign of {names[0]}: turn it"
+            text = f"the sign of {names[0]}: reverse it"
         yield Cause("sign", text, cost, single(mass, com, flipped))
 
 
@@ -87,17 +87,17 @@ def _points(mass: float | None, com: Array | None, matrix: Array, geometry: Geom
     term = mass * point_term(com)
     where = "(" + ", ".join(f"{x:.4g}" for x in com) + ")"
     if com.any():
-        yield Cause("point", "the tensor is about the frame's origin, not about the centre of mass: take the "
-                    f"parallel-axis term m (d.d 1 - d d^T) off, d = {where} m", 0.0, single(mass, com, matrix - term))
-        yield Cause("point", "the parallel-axis term was taken off a tensor that was about the centre of mass already: "
-                    f"add m (d.d 1 - d d^T) back, d = {where} m", 3.5, single(mass, com, matrix + term))
+        yield Cause("point", "the tensor is about the frame's origin, not about the centre of mass: subtract the "
+                    f"parallel-axis term m (d.d 1 - d d^T), d = {where} m", 0.0, single(mass, com, matrix - term))
+        yield Cause("point", "the parallel-axis term was subtracted from a tensor about the centre of mass: "
+                    f"add m (d.d 1 - d d^T) again, d = {where} m", 3.5, single(mass, com, matrix + term))
     else:
         for r in geometry.references:
             where = "(" + ", ".join(f"{x:.4g}" for x in r.com) + ")"
             yield Cause("point", f"the centre of mass was left at the origin: the geometry has it at {where} m", 1.0,
                         single(mass, r.com, matrix))
             yield Cause("point", "tensor about the frame's origin and no centre of mass: the geometry has it at "
-                        f"{where} m; take the parallel-axis term off", 1.0,
+                        f"{where} m; subtract the parallel-axis term", 1.0,
                         single(mass, r.com, matrix - mass * point_term(r.com)))
 
 
@@ -155,7 +155,7 @@ def _axes(mass: float | None, com: Array | None, matrix: Array) -> Iterator[Caus
                 text = f"mirrored or left-handed axes: {axis} points the other way"
                 cost = 1.0
             else:
-                text = "axes taken for one another: x, y, z should be " + ", ".join(
+                text = "axes exchanged: x, y, z should be " + ", ".join(
                     ("-" if s < 0 else "") + "xyz"[i] for i, s in zip(order, signs))
                 cost = 1.5 + (min(signs) < 0)
             yield Cause("axes", text + ", in the tensor", cost, single(mass, com, rotated))

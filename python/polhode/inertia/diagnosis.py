@@ -1,4 +1,4 @@
-"""What is wrong with inertia data, by how much, why, and what they should probably be."""
+"""Diagnosis of inertia data: errors, their size, their likely causes, and corrected data."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .findings import Diagnosis, Finding
 
 Array = npt.NDArray[np.float64]
 
-CONVINCED = 10.0   # nats a cause must gain on the data as given, its own rarity paid: 20 000 to one
+CONVINCED = 10.0   # nats that a cause must gain on the given data, less its own rarity: 20 000 to one
 GEOMETRY_UNITS = (
     (1e-3, "the geometry is in millimetres: a mesh without scale 0.001?"),
     (1e-2, "the geometry is in centimetres: a mesh without scale 0.01?"),
@@ -27,15 +27,15 @@ GEOMETRY_UNITS = (
 )
 
 
-LARGEST = 1e100    # of any number: beyond it squares overflow
+LARGEST = 1e100    # of any number: above it squares overflow
 
 
 def diagnose(*body: Any, geometry: MassProperties | None = None, extents: npt.ArrayLike | None = None,
              volume: float | None = None, about: npt.ArrayLike | None = None) -> Diagnosis:
-    """Find what is wrong with a tensor, or with mass, centre and tensor together, and what they should probably be.
+    """Find errors in a tensor, or in mass, centre of mass and tensor together, and suggest corrections.
 
-    Nothing is refused for being unphysical: that is what is looked for. A cause is named only when undoing it explains
-    the data much better than unevenly spread mass could; causes compete. `docs/diagnosis.md` says what can be found.
+    Unphysical data are not refused, but reported. A cause is named only if its correction explains the data much better
+    than an uneven distribution of mass could. `docs/diagnosis.md` lists the errors that can be found.
 
     Parameters
     ----------
@@ -43,13 +43,13 @@ def diagnose(*body: Any, geometry: MassProperties | None = None, extents: npt.Ar
         `matrix`, or `mass, com, matrix`: the tensor, shape (3, 3), about the centre of mass [kg m^2]; the mass [kg];
         the centre of mass (3,) in the same axes [m]. Or one InertiaTensor or MassProperties.
     geometry : MassProperties, optional
-        A uniform body of the same form, in the same axes from the same origin. Its mass does not count.
+        A uniform body of the same form, in the same axes from the same origin. Its mass is ignored.
     extents : array_like, shape (2, 3), optional
         Lower and upper corner of a box, along the same axes, that holds all of the body [m].
     volume : float, optional
-        Of the material, about [m^3]: the density is judged, too, with room for what is hollow or left out.
+        Approximate volume of the material [m^3], to check the density. Hollow parts are allowed for.
     about : array_like, shape (3,), optional
-        The point `matrix` is about, when it is not the centre of mass [m].
+        The point of reference of `matrix` [m], if it is not the centre of mass.
 
     Returns
     -------
@@ -58,16 +58,16 @@ def diagnose(*body: Any, geometry: MassProperties | None = None, extents: npt.Ar
     Raises
     ------
     InvalidInput
-        Wrong shapes, or a mass, centre or extents that are not finite.
+        For wrong shapes, and for a mass, centre or extents that are not finite.
     """
     mass, com, matrix = _given(body)
     known = _geometry(geometry, extents, volume)
     shift = np.zeros((3, 3))
     if about is not None:
         if mass is None or com is None:
-            raise InvalidInput("about: needs mass and com beside the matrix")
+            raise InvalidInput("about: must be given together with mass and com")
         shift = mass * ev.point_term(np.asarray(_core.to_numbers(about, "about", [3])) - com)
-    with np.errstate(all="ignore"):   # what overflows is scored as no body
+    with np.errstate(all="ignore"):   # overflow counts as an impossible body
         return judge(mass, com, matrix - shift, known)
 
 
@@ -104,11 +104,11 @@ def _geometry(body: MassProperties | None, extents: npt.ArrayLike | None, volume
 
 def judge(mass: float | None, com: Array | None, matrix: Array, geometry: ev.Geometry,
           more: Sequence[Cause] = ()) -> Diagnosis:
-    """Diagnose numbers that passed the door; `more` are causes that only the file knows of."""
+    """Diagnose checked numbers; `more` are causes known from the file alone."""
     usable = np.abs(matrix) < LARGEST   # NaN is not
     if not usable.all():
         i, j = np.argwhere(~usable)[0]
-        advice = "a slip in an exponent?" if np.isfinite(matrix[i, j]) else "a number never computed"
+        advice = "a wrong exponent?" if np.isfinite(matrix[i, j]) else "a number that was not computed"
         return Diagnosis((Finding("finite", 100.0, f"{matrix[i, j]} at [{i}, {j}]", "unknown", advice),), np.nan)
     findings = []
     if Flaw.NOT_SYMMETRIC in _judged(matrix)[1]:

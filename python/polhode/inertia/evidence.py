@@ -1,4 +1,4 @@
-"""How well mass, centre and tensor fit what bodies can be, and one body's geometry: what causes compete by."""
+"""Scores of how well mass, centre and tensor fit possible bodies, and a given geometry."""
 
 from __future__ import annotations
 
@@ -50,12 +50,12 @@ def point_term(d: Array) -> Array:
 
 
 def spread(matrix: Array) -> Array:
-    """Second moments of mass, integral of x x^T dm, of tensors (..., 3, 3), and back: trace/2 - I is its own kind."""
+    """Return the second moments of mass, integral of x x^T dm = trace(I)/2 - I, of tensors (..., 3, 3)."""
     return _array(np.trace(matrix, axis1=-2, axis2=-1)[..., None, None] / 2 * np.eye(3) - matrix)
 
 
 def from_spread(second: Array) -> Array:
-    """Tensors of second moments."""
+    """Return the tensors with these second moments."""
     return _array(np.trace(second, axis1=-2, axis2=-1)[..., None, None] * np.eye(3) - second)
 
 
@@ -114,7 +114,7 @@ class Evidence(NamedTuple):
     misfit: Array     # departure from the nearest reference; NaN without one
 
     def sound(self) -> npt.NDArray[np.bool_]:
-        """No breach."""
+        """True if no condition is violated."""
         out = (self.extent > 0) | (self.outside > 0)
         broken = (self.margin < -ROUNDED) | out | (self.dense != 0) | (self.size != 0)
         return np.asarray(~broken, dtype=bool)

@@ -1,4 +1,4 @@
-"""What a diagnosis says."""
+"""The results of a diagnosis."""
 
 from __future__ import annotations
 
@@ -15,26 +15,26 @@ IMPOSSIBLE = ("finite", "symmetric", "positive", "triangle", "mass")
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Finding:
-    """One thing that is wrong.
+    """One error in inertia data.
 
     Attributes
     ----------
     what : str
-        What is broken. What no body can have: "finite", "symmetric", "positive", "triangle", "mass"; what this body
-        should not have: "extent", "density", "size", "geometry".
+        The violated condition. Impossible for any body: "finite", "symmetric", "positive", "triangle", "mass". Unlikely
+        for this body: "extent", "density", "size", "geometry".
     per_cent : float
-        By how much, of what `text` says.
+        The size of the violation, relative to the quantity in `text`.
     text : str
-        What is broken, in words, with its numbers.
+        The violated condition in words, with its numbers.
     cause : str
         "sign", "order", "point", "units", "axes", "decimal", "rounding", "triangle of zeros", "placeholder" or
         "unknown".
     advice : str
-        The likely cause in words, and what to do.
+        The likely cause in words, and the correction.
     matrix : ndarray, shape (3, 3), or None
-        The repaired tensor, about the same point in the same axes [kg m^2].
+        The corrected tensor, about the same point in the same axes [kg m^2].
     mass, com
-        The repaired mass [kg] and centre of mass [m], where they were given.
+        The corrected mass [kg] and centre of mass [m], if they were given.
     """
 
     what: str
@@ -48,32 +48,32 @@ class Finding:
 
     @property
     def impossible(self) -> bool:
-        """No body has it; else it is only unlikely for this one."""
+        """True if no body can have this error; False if it is only unlikely for this body."""
         return self.what in IMPOSSIBLE
 
     def __str__(self) -> str:
         return f"{self.text}: {self.advice}"
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain Python, as for JSON."""
+        """Return the finding as a dict for JSON."""
         content = dataclasses.asdict(self)
         return {k: v.tolist() if isinstance(v, np.ndarray) else v for k, v in content.items()}
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Diagnosis:
-    """What was found.
+    """The findings about inertia data.
 
     Attributes
     ----------
     findings : tuple of Finding
-        The worst first; empty when fine.
+        The worst first; empty if there are none.
     margin : float
-        What is left to the triangle inequality, as a part of the largest moment; negative beyond it.
+        The margin of the triangle inequality, as a part of the largest moment; negative if violated.
     misfit : float or None
-        Largest difference from a uniform body of the geometry and the same mass, as a part of its largest moment or, of
-        the centre of mass, of the radius of gyration; None without a geometry. Real links have some: their mass is not
-        even.
+        The largest difference from a uniform body with the geometry and the mass; None without a geometry. Differences
+        are relative to the largest moment, those of the centre of mass to the radius of gyration. Real links are not
+        uniform, so it is not zero.
     """
 
     findings: tuple[Finding, ...]
@@ -82,15 +82,15 @@ class Diagnosis:
 
     @property
     def fine(self) -> bool:
-        """Nothing was found."""
+        """True if there are no findings."""
         return not self.findings
 
     @property
     def verdict(self) -> str:
-        """One line."""
+        """The findings in one line."""
         if self.findings:
             return "; ".join(str(finding) for finding in self.findings)
-        text = f"fine: {100 * self.margin:.3g} % of the largest moment left to the triangle inequality"
+        text = f"fine: the triangle inequality holds by {100 * self.margin:.3g} % of the largest moment"
         if self.misfit is not None:
             text += f"; {100 * self.misfit:.2g} % from a uniform body of its geometry"
         return text

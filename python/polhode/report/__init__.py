@@ -1,7 +1,6 @@
-"""The report: charts, atlas, pictures and tables as one web page that opens from disk, made by one command.
+"""The report: charts, atlas, pictures and tables as one web page that opens from disk.
 
-`report(folder)` measures and writes; `page`, `curves` and `tables` turn what was measured into the page, and take every
-number in it from there.
+`report(folder)` measures and writes. `page`, `curves` and `tables` make the page from the results.
 """
 
 from __future__ import annotations

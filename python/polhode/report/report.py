@@ -1,4 +1,4 @@
-"""The whole of a report: measure, draw, write the page, and say where it is."""
+"""Reports: measure, draw, and write the page."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ PAGE, SCRIPT = "index.html", "plotly.min.js"
 
 
 def plotly_script() -> str:
-    """Plotly's own script, which comes with its Python package: nothing is fetched."""
+    """Return Plotly's script from its Python package, without a download."""
     try:
         from plotly.offline import get_plotlyjs  # type: ignore[import-untyped,unused-ignore]
     except ImportError:
@@ -66,29 +66,29 @@ def report(
     Parameters
     ----------
     folder : path
-        Made when it is not there. Gets ``index.html``, which opens from disk without a network, Plotly's script beside
-        it, and all pictures and results in folders of their own.
+        Created if missing. It gets ``index.html``, which opens from disk without a network, Plotly's script, and
+        folders with all pictures and results.
     scenes : iterable of Scene, paths or names
     full : bool
-        Take the time that everything needs, rather than a few minutes.
+        Run everything, without the limit of a few minutes.
     budget : float, optional
-        Of the charts [s].
+        Approximate time limit of the charts [s].
     peers : bool
-        Whether other programs take part, where they are installed.
+        Also run other programs that are installed.
     with_atlas : bool
-        Whether the atlas of failures is measured too.
+        Also measure the atlas.
     progress, show : callable
-        As of `polhode.charts.chart`.
+        As for `polhode.charts.chart`.
 
     Returns
     -------
     path
-        Of the page.
+        The path of the page.
 
     Raises
     ------
     InvalidInput
-        For what `polhode.charts.chart` refuses, and without Jinja2 or Plotly.
+        For everything that `polhode.charts.chart` refuses, and without Jinja2 or Plotly.
     """
     start = time.perf_counter()
     script = plotly_script()

@@ -17,7 +17,7 @@ struct Rk4 {
       .dense_order = 3,
       .adaptive = false,
       .keeps = "nothing",
-      .doc = "The classical Runge-Kutta method at a fixed step: what teachers and engines compare with.",
+      .doc = "The classical Runge-Kutta method at a fixed step: a common baseline for comparisons.",
       .source = "Kutta 1901, Z. Math. Phys. 46, 435",
   };
 

@@ -15,7 +15,7 @@ struct Rk45 {
       .adaptive = true,
       .keeps = "nothing",
       .doc =
-          "Explicit Runge-Kutta pair of orders 5(4), seven stages, the last reused; for any torque at loose "
+          "Explicit Runge-Kutta pair of orders 5(4) with seven stages, the last reused, for any torque at loose "
           "accuracies.",
       .source = "Dormand & Prince 1980, J. Comput. Appl. Math. 6, 19",
       .forecast = {.error_per_turn = 0.5,

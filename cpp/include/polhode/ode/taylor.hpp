@@ -48,8 +48,7 @@ struct Taylor {
       .keeps = "nothing",
       .needs = "torques of the library, not Custom",
       .doc =
-          "The Taylor series of the solution by recurrences, order and step by the tolerance: the one for tight "
-          "accuracies.",
+          "Taylor series of the solution by recurrences. The tolerance sets order and step. Best at tight accuracies.",
       .source = "Jorba & Zou 2005, Exp. Math. 14, 99",
       // margin: a decade of tolerance costs a few per cent here, a second attempt two runs.
       .forecast = {.error_per_turn = 0.4,

@@ -50,7 +50,7 @@ Record describe_tetrahedron() {
   return with_volume(make_record<&tetrahedron>(
       "tetrahedron",
       "A solid tetrahedron with any four corners; its centre of mass is their mean. "
-      "About the centre of mass: I_xx = m/20 sum (y^2 + z^2), I_xy = -m/20 sum x y over the corners, seen from there.",
+      "About the centre of mass: I_xx = m/20 sum (y^2 + z^2), I_xy = -m/20 sum x y over the corners, relative to it.",
       {{"mass", "mass [kg]"}, {"vertices", "x, y, z of the four corners, in any order [m]"}}),
                      [](const double* v) {
                        Real e[3][3];

@@ -36,7 +36,7 @@ Record describe_triangular_prism() {
       "triangular_prism",
       "A solid triangle in x, y, drawn out along z from -h/2 to h/2; its centre of mass is the mean of the corners. "
       "About the centre of mass: I_xx = m/12 (sum y^2 + h^2), I_xy = -m/12 sum x y, I_zz = m/12 sum (x^2 + y^2) over "
-      "the corners, seen from there.",
+      "the corners, relative to it.",
       {{"mass", "mass [kg]"},
        {"vertices", "x, y of the three corners, in any order [m]"},
        {"height", "h along z [m]"}}),

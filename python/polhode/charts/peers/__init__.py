@@ -1,4 +1,4 @@
-"""Other programs beside polhode: one file each, and its name in this list.
+"""Other programs to compare with: one file for each, and its name in this list.
 
 A peer's file has `NAME`, `INSTALL` (how to get it), `found() -> str` (its version, or "" when it is not there) and
 `candidates()`. Each runs at the best settings its makers document.

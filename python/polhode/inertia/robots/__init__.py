@@ -1,4 +1,4 @@
-"""Robot descriptions: the links of URDF, MJCF and SDF files, each judged by itself and against its geometry."""
+"""Robot descriptions: checks of the links of URDF, MJCF and SDF files, alone and against their geometry."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ _readers: dict[str, Callable[[Node, pathlib.Path], Robot]] = {"robot": urdf.read
 
 
 def read(path: str | os.PathLike[str]) -> Robot:
-    """Read a robot description; what it is, its root element says.
+    """Read a robot description; its root element determines the format.
 
     Raises
     ------
     InvalidInput
-        A file that cannot be read, is no XML, declares entities, or lacks what a link must have.
+        For a file that cannot be read, is not XML, declares entities, or lacks a required part of a link.
     """
     file = pathlib.Path(path)
     root = parse(file)
