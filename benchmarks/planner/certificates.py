@@ -26,7 +26,7 @@ def run(scene, rtol):
 
 
 def moved(scene):
-    """The scene with every input moved by two units in the last place, up or down."""
+    """The scene with every input changed by two units in the last place, up or down."""
     rng = np.random.Generator(np.random.PCG64(2026))
 
     def move(x):

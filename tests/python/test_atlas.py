@@ -237,7 +237,7 @@ def test_a_broken_claim_is_found():
 def test_a_record_that_promises_too_much_is_found():
     rows = {"dmv2": [Point(1e2, "", {"error": 2.0, "energy": 1e-6, "angular_momentum": 1e-14})]}
     (sentence,) = [s for s in claims.find_broken([FamilyResult(BY_NAME["long"], True, 2.0, rows)]) if "dmv2" in s]
-    assert "keeps energy by its record, which moved by 1.0e-06" in sentence
+    assert "its record says that it conserves energy, which drifted by 1.0e-06" in sentence
 
 
 def test_claims_name_what_there_is():

@@ -65,7 +65,7 @@ def test_run_shows_ends_drift_cost_and_message(small):
 def test_run_finds_an_invariant_that_moved():
     result = call("run", "S1", "--method", "rk45", "--rtol", "1e-6")
     assert result.exit_code == 1
-    assert "FINDING: " in result.stdout and "moved by" in result.stdout
+    assert "FINDING: " in result.stdout and "drifted by" in result.stdout
     assert call("run", "S1", "--method", "rk45", "--rtol", "1e-6", "--max-steps", 10).exit_code == 1
 
 

@@ -35,7 +35,7 @@ def test_a_part(part):
 
 def test_what_is_said_besides(part):
     found = json.loads(call("inertia", part, "--json").stdout)
-    assert found["notes"] == ["neither --density nor --mass given: for 1 kg/m^3"]
+    assert found["notes"] == ["neither --density nor --mass is given: the density is 1 kg/m^3"]
     found = json.loads(call("inertia", part, "--mass", 1, "--unit", "ft", "--json").stdout)
     assert found["notes"] == []
     found = json.loads(call("inertia", part, "--mass", 1, "--unit", "20", "--json").stdout)
@@ -69,7 +69,7 @@ def test_bad_options(part, options, words, capsys):
 def test_options_that_would_have_no_effect(capsys):
     for option in (("--density", "2"), ("--mass", "2"), ("--unit", "mm"), ("--flip",)):
         status, _, err = left("inertia", "S1", *option, capsys=capsys)
-        assert status == 2 and f"{option[0]}: must go with a mesh file" in err
+        assert status == 2 and f"{option[0]}: must be used with a mesh file" in err
 
 
 def test_a_file_that_lies(part, capsys):

@@ -17,7 +17,7 @@ def test_a_fast_body_that_slows_down_is_handed_to_the_implicit_method(accuracy):
     plan = ph.plan(common, accuracy)
     first, second = plan.pieces
     assert (first.method, second.method) == ("taylor", "radau") and 0 < first.end == second.begin < 20
-    assert "taylor hands the state to radau at t =" in str(plan) and plan.predicted_error < 2 * accuracy
+    assert "switch from taylor to radau at t =" in str(plan) and plan.predicted_error < 2 * accuracy
     motion = ph.solve(common, accuracy=accuracy)
     omega, attitude, _ = ph._core.reference(common, 26, 1e-21, 100_000)
     assert motion.success and motion.plan.pieces == plan.pieces, motion.message

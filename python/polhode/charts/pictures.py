@@ -190,7 +190,7 @@ def overview(results: list[SceneResult], folder: pathlib.Path) -> list[pathlib.P
         labels |= {name: f"closed form ({', '.join(closed)})" for name in closed[:1]}
         handles = [plt.Line2D([], [], label=text, **style.line(name, names[name])) for name, text in labels.items()]
         handles.append(plt.Line2D([], [], color=style.PALE, linewidth=0.9, marker="o", markersize=3,
-                                  label="slower everywhere"))
+                                  label="beaten everywhere"))
         handles.append(plt.Line2D([], [], color=style.FLOOR, linestyle=(0, (1, 2)), label="rounding of the input"))
         figure.legend(handles=handles, loc="upper left",
                       bbox_to_anchor=(0.3 / width, 1 - (0.72 + 0.25 * title.count("\n")) / height),

@@ -233,7 +233,7 @@ def scene(result: SceneResult) -> None:
     if starts:
         out.print(Text(f"start-up and warm-up before the first answer: {', '.join(starts)}"))
     if beaten := sorted(dominated(result)):
-        out.print(Text(f"slower everywhere than another, in grey: {', '.join(beaten)}"))
+        out.print(Text(f"beaten everywhere, in grey: {', '.join(beaten)}"))
     for note in result.notes:
         out.print(Text(note))
 

@@ -22,7 +22,8 @@ class Leapfrog {
   static constexpr int interior = 0;
 
   Leapfrog(const PrincipalBody& body, const Scene& scene) : body_(&body) {
-    // refuse() has checked the scene, so find_weight_arm is not NaN. Scaled by the same powers of two as the moments.
+    // refuse_leapfrog() has checked the scene, so find_weight_arm is not NaN. It is scaled by the powers of two of the
+    // moments.
     const double e = body.I[2] / scene.inertia_B().matrix()(2, 2), unit = body.to_scaled_time(1.0);
     M_ = find_weight_arm(scene) * e / unit / unit;
   }
