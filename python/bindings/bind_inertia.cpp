@@ -122,11 +122,11 @@ physical : bool
           "axes", [](const InertiaTensor& t) { return from_matrix3(t.axes()); },
           "(3, 3) R_BP: the columns are the principal axes in the given axes, right-handed, in the moments' order; "
           "the\n"
-          "signs as :func:`polhode.inertia.principal_axes` tells.")
+          "signs by the rule of :func:`polhode.inertia.principal_axes`.")
       .def_property_readonly(
           "symmetry", [](const InertiaTensor& t) { return to_text(t.symmetry()); },
           "'spherical', 'oblate' (the largest moment apart), 'prolate' (the smallest) or 'triaxial'.")
-      .def_property_readonly("physical", &InertiaTensor::physical, "The triangle inequality was asked for.")
+      .def_property_readonly("physical", &InertiaTensor::physical, "True if the triangle inequality was checked.")
       .def(
           "principal",
           [](const InertiaTensor& t, py::object gap) {

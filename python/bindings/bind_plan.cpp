@@ -84,7 +84,7 @@ SolveOptions to_wishes(const py::object& accuracy, const py::object& method, boo
 }
 
 void bind_plan(py::module_& m) {
-  py::class_<Factors>(m, "CostFactors", "How much slower than forecast each method is on this machine, by name.")
+  py::class_<Factors>(m, "CostFactors", "The time of each method on this machine over its forecast, by name.")
       .def(py::init([](const std::map<std::string, double>& factors) {
              return Factors{CostFactors(factors.begin(), factors.end())};
            }),

@@ -151,7 +151,7 @@ void bind_solve(py::module_& m) {
         py::arg("formulation"), py::arg("events"), py::arg("progress"), py::arg("factors").none(true));
 
   m.def("method_refusal", [](const std::string& method, const Scene& scene) { return compute_refusal(method, scene); },
-        "Why a method does not take a scene, or an empty string.");
+        "The reason why a method cannot integrate a scene, or an empty string.");
 
   m.def("energy", [](const Scene& scene, const Array& t, const Array& omega, const py::object& attitude) {
     Array energy(t.size());
@@ -189,7 +189,7 @@ void bind_solve(py::module_& m) {
     return py::make_tuple(Array({n, py::ssize_t{3}}, found.omega.data()),
                           Array({n, py::ssize_t{4}}, found.attitude.data()), found.steps);
   }, py::arg("scene"), py::arg("order"), py::arg("tolerance"), py::arg("max_steps"),
-     "omega, attitude and steps of a scene by Taylor series in long double: what to hold others against.");
+     "omega, attitude and steps of a scene by Taylor series in long double, as a reference.");
   m.def("generalised_forces", [](py::handle torque, py::handle angles) {
     const Vector3d tau_B = to_vector3(torque, "torque"), q = to_vector3(angles, "angles");
     return from_vector3(LagrangianProblem<NoTorque>::compute_rate_map(q[1], q[2]).transpose() * tau_B);

@@ -77,8 +77,8 @@ def report(vertices: npt.ArrayLike, faces: npt.ArrayLike) -> dict[str, Any]:
         "faces"; "components": surfaces that share no edge, including cavities; "cavities": surfaces wound inward inside
         another; "embedded": surfaces wound outward inside a solid, which count twice; "unjudged": surfaces whose
         nesting was not checked, because there are too many; "degenerate": faces with two equal corners, which are
-        ignored; "merged": True if the surface is closed only with equal vertices merged; "inside_out"; "low" and "high": corners
-        of the bounding box, shape (3,).
+        ignored; "merged": True if the surface is closed only with equal vertices merged; "inside_out"; "low" and "high":
+        corners of the bounding box, shape (3,).
 
     Raises
     ------
@@ -150,7 +150,7 @@ def _by_trimesh(file: pathlib.Path, data: bytes) -> tuple[Vertices, Faces]:
     try:
         # No tidying: what the file holds is what is judged.
         loaded = trimesh.load(file, force="scene", process=False, maintain_order=True, skip_materials=True)
-    except Exception as error:   # whatever a reader of foreign bytes may throw
+    except Exception as error:   # a reader of foreign bytes may raise anything
         raise _Wrong(f"cannot be read as {kind[1:].upper()}: {type(error).__name__}: {error}") from None
     return _join(loaded)
 

@@ -170,7 +170,8 @@ MeshIntegrals integrate_mesh(const Mesh& mesh, SimdLevel level) {
   const double size = sums.hi[10];
   if (!std::isfinite(size)) inertia::require_finite_vertices(mesh);
   if (!(size >= 1e-280 && size <= 1e280)) {
-    throw InvalidInput("vertices", "of a mesh between 1e-45 and 1e45 in size", "a larger or smaller one, or only faces without area");
+    throw InvalidInput("vertices", "of a mesh between 1e-45 and 1e45 in size",
+                       "a larger or smaller one, or only faces without area");
   }
   // A volume of zero leaves rounding at the 100th bit.
   if (std::abs(found.volume.hi) <= 1e-29 * std::sqrt(size)) {

@@ -55,7 +55,7 @@ class SampleRows {
     double* q = attitude_in_place ? trajectory_.attitude.data() + 4 * order_[first] : attitude_.data();
     unpack_(rows, count, w, q);
     for (std::size_t i = 0; i < count && times[i] == scene_.t0(); ++i) {
-      // The start is returned as given, whatever variables the method integrates.
+      // The start is returned as given, for any variables of the method.
       const Quat& start = scene_.attitude();
       std::copy_n(scene_.omega().data(), 3, w + 3 * i);
       q[4 * i] = start.x, q[4 * i + 1] = start.y, q[4 * i + 2] = start.z, q[4 * i + 3] = start.w;

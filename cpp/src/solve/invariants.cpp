@@ -23,7 +23,7 @@ double compute_potential(const Scene& scene, double t, const double* omega, cons
   return sum;
 }
 
-/// |difference| / scale, and 0 for no difference, whatever the scale.
+/// |difference| / scale, and 0 for no difference at any scale.
 double relative(double difference, double scale) {
   return difference == 0.0 ? 0.0 : std::abs(difference) / scale;
 }

@@ -20,7 +20,7 @@ class Rotation:
 
     Names and meanings are those of `scipy.spatial.transform.Rotation`, whose objects are accepted wherever a rotation
     is. What differs is said where it does: bad input is refused where SciPy repairs it (`from_quat`, `from_matrix`),
-    `as_euler` never warns (`gimbal_lock` tells), and equal attitudes compare equal. Objects are immutable.
+    `as_euler` never warns (see `gimbal_lock`), and equal attitudes compare equal. Objects are immutable.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ class Rotation:
         Parameters
         ----------
         rotvec : array_like, shape (..., 3)
-            [rad], or degrees when asked for; of any length.
+            [rad], or degrees if `degrees`; of any length.
 
         Raises
         ------
@@ -117,7 +117,7 @@ class Rotation:
             One to three axes, neighbours different: upper case turns about the axes as turned so far (intrinsic),
             lower case about the fixed axes (extrinsic). The textbook's (phi, theta, psi) are "ZXZ".
         angles : array_like, shape (..., len(seq)); also a number for one axis
-            [rad], or degrees when asked for, in the order of the letters.
+            [rad], or degrees if `degrees`, in the order of the letters.
 
         Raises
         ------
@@ -198,7 +198,7 @@ class Rotation:
     # ---- given as
 
     def as_quat(self, canonical: bool = False, *, scalar_first: bool = False) -> FloatArray:
-        """Quaternions, shape (..., 4): (x, y, z, w), or (w, x, y, z) when asked for.
+        """Quaternions, shape (..., 4): (x, y, z, w), or (w, x, y, z) if `scalar_first`.
 
         Parameters
         ----------
@@ -240,7 +240,7 @@ class Rotation:
         angles : ndarray, shape (..., 3)
             The outer ones in [-pi, pi], the middle one in [0, pi] ("ZXZ") or [-pi/2, pi/2] ("ZYX"). Their matrix is
             this rotation's within 2e-15 at every distance from the pole. At gimbal lock the third angle is 0 and the
-            middle one is the pole's; `gimbal_lock` tells where. No warning is given.
+            middle one is the pole's; see `gimbal_lock`. No warning is given.
 
         Raises
         ------
@@ -380,7 +380,7 @@ def _set(rotation: Rotation, quat: FloatArray) -> None:
 
 
 def _wrap(quat: FloatArray) -> Rotation:
-    """The rotation of unit quaternions that nobody else holds."""
+    """Return the rotation of unit quaternions, without a copy."""
     rotation = object.__new__(Rotation)
     _set(rotation, quat)
     return rotation

@@ -107,7 +107,7 @@ def serve(answer: Callable[[Any], Iterable[Any]]) -> None:
         with one_at_a_time:
             try:
                 _write(replies, (kind, content))
-            except OSError:   # nobody listens any more
+            except OSError:   # the reader has ended
                 os._exit(1)
 
     def beat() -> None:

@@ -22,7 +22,7 @@ class Entrant(NamedTuple):
     name: str
     kind: str                # one of KINDS
     record: dict[str, Any]   # of the method; empty where none is named
-    options: dict[str, Any]  # what `solve` is told
+    options: dict[str, Any]  # the options of `solve`
 
     @property
     def fixed(self) -> bool:
@@ -52,5 +52,5 @@ def entrants() -> list[Entrant]:
     return found
 
 
-# What happens where nobody takes care: a plain Runge-Kutta run whose quaternion is left alone (family "norm").
+# A plain Runge-Kutta run without normalisation of the quaternion (family "norm").
 WITNESS = Entrant("rk4 plain", "witness", {}, {})

@@ -35,7 +35,7 @@ def find_families(names: Iterable[str]) -> list[Family]:
 
 
 def rows_of(family: Family) -> list[Entrant]:
-    """Who takes part in a family, in the order of the matrix."""
+    """Return the entrants of a family, in the order of the matrix."""
     return [e for e in [*entrants(), WITNESS] if not family.takes(e)]
 
 

@@ -39,7 +39,7 @@ def line(entrant: Entrant, place: int) -> dict[str, Any]:
 
 
 def line_styles(everyone: list[Entrant]) -> dict[str, dict[str, Any]]:
-    """Return everyone's line, the same on every picture."""
+    """Return the line of each entrant, the same on every picture."""
     places: dict[str, int] = {}
     found = {}
     for entrant in everyone:

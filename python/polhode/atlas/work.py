@@ -59,7 +59,7 @@ class _JobWorker(Worker):
 
 def work(jobs: Sequence[Job], done: Done, *, processes: int = 2,
          command: Sequence[str] = workers.command(__name__), silence: float = SILENCE) -> None:
-    """Do all jobs, in their order, and hand over the points of each as soon as it ends.
+    """Do all jobs in their order, and pass on the points of each when it ends.
 
     Parameters
     ----------

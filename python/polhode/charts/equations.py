@@ -169,7 +169,7 @@ def source(scene: Scene) -> tuple[list[tuple[str, str]], list[str]]:
     found = derivatives(scene, Symbol("t", lines), state, lambda v: v.called("cos"), lambda v: v.called("sin"))
     names = [value.name if isinstance(value, Symbol) else repr(float(value)) for value in found]
     used, kept = set(names), []
-    for text, name in reversed(lines.items()):   # what nobody reads is left out
+    for text, name in reversed(lines.items()):   # unused names are left out
         if name in used:
             kept.append((name, text))
             used.update(re.findall(r"\bv\d+\b", text))

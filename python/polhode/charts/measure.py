@@ -182,7 +182,7 @@ def measure(
         Of wall time [s]. The candidates share three quarters of it, what one leaves going to those after it; the rest
         is for repeats.
     report : callable
-        Is told, in a few words, what is being done.
+        Called with the present task in a few words.
     runner : InProcess or Subprocess, optional
         Where the candidates run; this process without it.
     """

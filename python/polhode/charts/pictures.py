@@ -79,7 +79,7 @@ def _frame(axes: Any, results: list[SceneResult]) -> None:
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlim(LOST * 2.5, 10.0 ** (math.floor(math.log10(max(least, 1e-17))) - 0.3))
-    times = [p.seconds for p in points] or [1e-6, 1.0]   # nobody may have answered
+    times = [p.seconds for p in points] or [1e-6, 1.0]   # there may be no points
     low, high = math.log10(min(times)), math.log10(max(times))
     air = max(0.35, 1.0 - (high - low) / 2)   # two decades at least, or a flat line would look rough
     axes.set_ylim(10 ** (low - air), 10 ** (high + air))

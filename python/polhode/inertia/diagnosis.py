@@ -205,7 +205,7 @@ def _symmetric(mass: float | None, com: Array | None, matrix: Array, geometry: e
         best = upper + lower - np.diag(matrix.diagonal())
     elif a == -b:
         cause, advice = "sign", "the sign in one triangle; " + (
-            "the one that fits better is taken" if geometry.references else "nothing here tells which")
+            "the better fit is taken" if geometry.references else "the data do not show which")
     elif ratio and abs(np.log10(ratio) - round(np.log10(ratio))) < 1e-9:
         cause, advice = "decimal", "a decimal point in one of them; the entry that fits better is taken"
     return Finding("symmetric", 100 * apart.max(), text, cause, advice, best, mass, com), best

@@ -1,4 +1,4 @@
-"""Tables of a report, each cell from results.json: who is fastest, what the scenes are, on what machine."""
+"""Tables of a report from results.json: the fastest candidates, the scenes, and the machine."""
 
 from __future__ import annotations
 

@@ -7,7 +7,7 @@
 namespace polhode {
 
 /// A value that no computation can start from; Python sees it as a ValueError.
-/// The message tells where, what is required, what was found and, when known, the likely cause.
+/// The message states the place, the requirement, the value found and, if known, the likely cause.
 class InvalidInput : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;

@@ -58,7 +58,7 @@ inline Vector3d rotate(const Quat& q_WB, const Vector3d& v_B) {
           v_B[2] + q_WB.w * tz + q_WB.x * ty - q_WB.y * tx};
 }
 
-/// The attitude at the door: a quaternion within 1e-6 of unit norm is normalised, any other refused.
+/// Checks an attitude. A quaternion within 1e-6 of unit norm is normalised, any other is refused.
 Quat make_attitude(const Quat& q);
 
 }  // namespace polhode

@@ -10,7 +10,7 @@
 
 namespace polhode {
 
-/// What the caller wants to be told at each time.
+/// The quantities to return at each time.
 struct Wanted {
   bool omega = true;
   bool attitude = true;

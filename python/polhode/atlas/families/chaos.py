@@ -1,4 +1,4 @@
-"""(g) Chaos: how far ahead the answer can be known, and whether anybody says so."""
+"""(g) Chaos: how far ahead the motion can be known, and whether methods report it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""(j) The quaternion's norm: what leaves the unit sphere when nobody brings it back."""
+"""(j) The quaternion's norm: errors of quaternions that are not normalised."""
 
 from __future__ import annotations
 

@@ -62,7 +62,7 @@ def _link(node: Node, path: str, file: pathlib.Path) -> Link:
 
 
 def _pose(node: Node) -> tuple[Pose, bool]:
-    """The pose, and whether it is told in the link's frame."""
+    """Return the pose, and whether it is relative to the link's frame."""
     pose = node.child("pose")
     if pose is None or not pose.text:
         return Pose(), True
