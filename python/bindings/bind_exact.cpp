@@ -2,12 +2,12 @@
 
 namespace polhode::python {
 
-void bind_free_motion(py::module_& m);
-void bind_heavy_top(py::module_& m);
+void bind_exact_free_motion(py::module_& m);
+void bind_exact_heavy_top(py::module_& m);
 
 void bind_exact(py::module_& m) {
-  bind_free_motion(m);
-  bind_heavy_top(m);
+  bind_exact_free_motion(m);
+  bind_exact_heavy_top(m);
 }
 
 }  // namespace polhode::python

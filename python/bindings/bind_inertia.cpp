@@ -11,7 +11,7 @@
 
 namespace polhode::python {
 
-void bind_mesh(py::module_& m, py::class_<MassProperties>& cls);  // bind_mesh.cpp
+void bind_inertia_mesh(py::module_& m, py::class_<MassProperties>& cls);  // bind_inertia_mesh.cpp
 
 namespace {
 
@@ -268,7 +268,7 @@ translation : array_like, shape (3,)
           [](const py::tuple& state) {
             return MassProperties(state[0].cast<double>(), to_vector3(state[1], "com"), to_tensor(state[2], "inertia"));
           }));
-  bind_mesh(m, cls);
+  bind_inertia_mesh(m, cls);
 }
 
 /// All parameters of a shape, one after the other, each checked against its size.

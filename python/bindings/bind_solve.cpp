@@ -1,10 +1,10 @@
-#include <pybind11/functional.h>
 #include <pybind11/stl.h>
 
 #include <memory>
 
-#include "bind_plan.hpp"
 #include "bind_scene.hpp"
+#include "bind_solve_options.hpp"
+#include "bind_solve_plan.hpp"
 #include "convert.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/solve/invariants.hpp"
@@ -16,32 +16,6 @@
 
 namespace polhode::python {
 namespace {
-
-/// Lets Ctrl-C and a user's callback end a long run. Called without the GIL, a few times a second.
-std::function<bool(double, double)> make_progress(const py::object& callback) {
-  return [&callback](double reached, double last) {
-    py::gil_scoped_acquire gil;
-    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    if (callback.is_none()) return true;
-    const py::object answer = callback(reached, last);
-    return answer.is_none() || py::bool_(answer);
-  };
-}
-
-SceneEvent to_event(const py::object& function, int direction, bool terminal) {
-  if (!PyCallable_Check(function.ptr())) {
-    throw InvalidInput("events", "callable as event(t, omega, attitude)", std::string(py::str(py::type::of(function))));
-  }
-  // A raw pointer: `function` outlives the run, and the copies of this closure are made without the GIL.
-  PyObject* pointer = function.ptr();
-  return {[pointer](const State& state) {
-            py::gil_scoped_acquire gil;
-            return to_real(py::reinterpret_borrow<py::object>(pointer)(state.t, from_vector3(state.omega),
-                                                                       from_quat(state.attitude)),
-                           "the event's function");
-          },
-          direction, terminal};
-}
 
 /// The rows of a vector that the answer owns, as an array that keeps the answer alive.
 py::object view(const py::object& answer, const std::vector<double>& values, py::ssize_t columns, bool wanted = true) {
@@ -57,23 +31,9 @@ struct Answer {
   Wanted want;
 };
 
-std::unique_ptr<Answer> solve_scene(const Scene& scene, const py::object& accuracy, const py::object& method,
-                                    const py::object& rtol, const py::object& atol, const py::object& step,
-                                    bool certify, long max_steps, bool dense, const std::string& formulation,
-                                    const py::list& events, const py::object& progress, const Factors* factors) {
-  SolveOptions options = to_wishes(accuracy, method, certify, formulation);
-  options.cost_factors = factors == nullptr ? nullptr : &factors->by_name;
-  options.rtol = to_optional(rtol, "rtol");
-  options.atol = to_optional(atol, "atol");
-  options.step = to_optional(step, "step");
-  options.max_steps = max_steps;
-  options.dense = dense;
-  for (const py::handle item : events) {
-    const py::tuple event = item.cast<py::tuple>();
-    options.events.push_back(to_event(event[0], event[1].cast<int>(), event[2].cast<bool>()));
-  }
-  options.progress = make_progress(progress);
-
+std::unique_ptr<Answer> solve_scene(const Scene& scene, const py::dict& given) {
+  SolveOptions options = to_solve_options(given);
+  if (!options.progress) options.progress = make_progress(py::none());
   py::gil_scoped_release nogil;   // Python callables take it back for themselves
   return std::unique_ptr<Answer>(new Answer{solve(scene, options), scene.want()});
 }
@@ -93,7 +53,12 @@ py::dict describe_stats(const Motion& motion) {
 py::list describe_events(const Motion& motion) {
   py::list hits;
   for (const MotionEvent& hit : motion.events) {
-    hits.append(py::make_tuple(hit.event, hit.state.t, from_vector3(hit.state.omega), from_quat(hit.state.attitude)));
+    py::dict all;
+    all["event"] = hit.event;
+    all["t"] = hit.state.t;
+    all["omega"] = from_vector3(hit.state.omega);
+    all["attitude"] = from_quat(hit.state.attitude);
+    hits.append(all);
   }
   return hits;
 }
@@ -103,7 +68,7 @@ std::size_t rows(const Array& array) { return static_cast<std::size_t>(array.siz
 }  // namespace
 
 void bind_solve(py::module_& m) {
-  bind_plan(m);
+  bind_solve_plan(m);
   py::class_<Answer>(m, "Answer")
       .def_property_readonly("t",
                              [](const py::object& self) { return view(self, self.cast<const Answer&>().motion.t, 1); })
@@ -121,7 +86,11 @@ void bind_solve(py::module_& m) {
       .def_property_readonly("message", [](const Answer& answer) { return answer.motion.message; })
       .def_property_readonly("stats", [](const Answer& answer) { return describe_stats(answer.motion); })
       .def_property_readonly("events", [](const Answer& answer) { return describe_events(answer.motion); })
-      .def_property_readonly("plan", [](const Answer& answer) { const Motion& motion = answer.motion; return describe_plan(motion.plan, motion.state, motion.rtol_used); })
+      .def_property_readonly("plan",
+                             [](const Answer& answer) {
+                               const Motion& motion = answer.motion;
+                               return describe_plan(motion.plan, motion.state, motion.rtol_used);
+                             })
       .def_property_readonly("error", [](const Answer& answer) { return answer.motion.error; })
       .def_property_readonly("error_kind", [](const Answer& answer) { return answer.motion.error_kind; })
       .def_property_readonly("asked", [](const Answer& answer) { return answer.motion.asked; })
@@ -146,9 +115,7 @@ void bind_solve(py::module_& m) {
         return py::make_tuple(omega, attitude);
       });
 
-  m.def("solve", &solve_scene, py::arg("scene"), py::arg("accuracy"), py::arg("method"), py::arg("rtol"),
-        py::arg("atol"), py::arg("step"), py::arg("certify"), py::arg("max_steps"), py::arg("dense"),
-        py::arg("formulation"), py::arg("events"), py::arg("progress"), py::arg("factors").none(true));
+  m.def("solve", &solve_scene, py::arg("scene"), py::arg("options"));
 
   m.def("method_refusal", [](const std::string& method, const Scene& scene) { return compute_refusal(method, scene); },
         "The reason why a method cannot integrate a scene, or an empty string.");

@@ -4,8 +4,8 @@
 #include <tuple>
 
 #include "bind_scene.hpp"
+#include "bind_torque.hpp"
 #include "convert.hpp"
-#include "custom_torque.hpp"
 #include "polhode/core/error.hpp"
 
 // Every torque of the list gets its Python class from its record: constructor, properties, repr, equality, hash,
@@ -172,12 +172,12 @@ void bind_one(py::module_& m) {
 
 template <>
 void bind_one<torques::Custom>(py::module_& m) {
-  bind_custom_torque(m);
+  bind_torque_custom(m);
 }
 
 template <>
 void bind_one<torques::During>(py::module_& m) {
-  bind_during(m);
+  bind_torque_during(m);
 }
 
 py::dict describe(const TorqueRecord& record) {

@@ -15,5 +15,5 @@ PYBIND11_MODULE(_core, m, pybind11::mod_gil_not_used()) {
   bind_scene(m);
   bind_solve(m);
   bind_batch(m);
-  bind_solve_many(m);
+  bind_batch_solve_many(m);
 }

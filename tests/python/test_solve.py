@@ -337,6 +337,12 @@ def test_bad_options_are_refused(options):
         ph.solve(scene("S5"), **options)
 
 
+@pytest.mark.parametrize("act", [ph._core.solve, ph._core.plan])
+def test_the_core_refuses_an_option_that_it_does_not_know(act):
+    with pytest.raises(ph.InvalidInput, match="acuracy"):
+        act(scene("S5"), {"acuracy": 1e-6})
+
+
 def test_a_scene_is_asked_for():
     with pytest.raises(ph.InvalidInput, match="Scene"):
         ph.solve({"omega": 1})

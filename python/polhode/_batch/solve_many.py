@@ -146,9 +146,7 @@ def solve_many(
     times = listed[0].times.size if listed else 0
     want = listed[0].want if listed else ("omega", "attitude")
     out = {name: np.empty((bodies, times, width)) if name in want else None for name, width in WIDTHS.items()}
-    status, message, methods, reached, error, steps, success, lanes = _core._solve_many(
-        listed, *starts, bodies, times, out["omega"], out["attitude"], accuracy, method, rtol, atol, step,
-        int(max_steps),
-        workers)
-    return Motions(out["omega"], out["attitude"], tuple(status), tuple(message), tuple(methods), reached, error, steps,
-                   success, lanes)
+    options = {"accuracy": accuracy, "method": method, "rtol": rtol, "atol": atol, "step": step,
+               "max_steps": int(max_steps)}
+    found = _core._solve_many(listed, *starts, bodies, times, out["omega"], out["attitude"], options, workers)
+    return Motions(omega=out["omega"], attitude=out["attitude"], **found)

@@ -657,7 +657,7 @@ class Answer:
     def omega(self) -> typing.Any:
         ...
     @property
-    def plan(self) -> tuple[typing.Any, ...]:
+    def plan(self) -> dict[str, typing.Any]:
         ...
     @property
     def stats(self) -> dict[str, typing.Any]:
@@ -670,15 +670,15 @@ class Answer:
         ...
 def _complete_K(arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
     ...
-def _free_motion(arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg3: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg4: typing.Any, arg5: typing.Any, arg6: typing.SupportsInt | typing.SupportsIndex) -> int:
+def _free_motion(arg0: typing.Any, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg3: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg4: typing.Any, arg5: typing.Any, arg6: typing.SupportsInt | typing.SupportsIndex) -> int:
     ...
-def _heavy_top(arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg3: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg4: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg5: typing.Any, arg6: typing.Any, arg7: typing.SupportsInt | typing.SupportsIndex) -> int:
+def _heavy_top(arg0: typing.Any, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg3: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg4: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg5: typing.Any, arg6: typing.Any, arg7: typing.SupportsInt | typing.SupportsIndex) -> int:
     ...
 def _jacobi(arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     ...
 def _nome(arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
     ...
-def _solve_many(arg0: list[typing.Any], arg1: typing.Any, arg2: typing.Any, arg3: typing.Any, arg4: typing.SupportsInt | typing.SupportsIndex, arg5: typing.SupportsInt | typing.SupportsIndex, arg6: typing.Any, arg7: typing.Any, arg8: typing.Any, arg9: typing.Any, arg10: typing.Any, arg11: typing.Any, arg12: typing.Any, arg13: typing.SupportsInt | typing.SupportsIndex, arg14: typing.SupportsInt | typing.SupportsIndex) -> tuple[typing.Any, ...]:
+def _solve_many(scenes: list[typing.Any], moments: typing.Any, omega: typing.Any, attitude: typing.Any, bodies: typing.SupportsInt | typing.SupportsIndex, times: typing.SupportsInt | typing.SupportsIndex, omega_out: typing.Any, attitude_out: typing.Any, options: dict[str, typing.Any], threads: typing.SupportsInt | typing.SupportsIndex) -> dict[str, typing.Any]:
     ...
 def angular_momentum(arg0: Scene, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
     ...
@@ -720,7 +720,7 @@ def method_refusal(arg0: str, arg1: Scene) -> str:
     """
     Why a method does not take a scene, or an empty string.
     """
-def plan(scene: Scene, accuracy: typing.Any, method: typing.Any, certify: bool, formulation: str, factors: CostFactors) -> dict[str, typing.Any]:
+def plan(scene: Scene, options: dict[str, typing.Any]) -> dict[str, typing.Any]:
     ...
 def principal_axes(matrices: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], int]:
     """
@@ -738,7 +738,7 @@ def shape_volume(name: str, values: collections.abc.Sequence[typing.Any]) -> flo
     """
     The volume of a body, from all its parameters, in the record's order.
     """
-def solve(scene: Scene, accuracy: typing.Any, method: typing.Any, rtol: typing.Any, atol: typing.Any, step: typing.Any, certify: bool, max_steps: typing.SupportsInt | typing.SupportsIndex, dense: bool, formulation: str, events: list[typing.Any], progress: typing.Any, factors: CostFactors) -> Answer:
+def solve(scene: Scene, options: dict[str, typing.Any]) -> Answer:
     ...
 def to_numbers(value: typing.Any, name: str, shape: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], finite: bool = True) -> numpy.typing.NDArray[numpy.float64]:
     """

@@ -10,7 +10,6 @@ from typing import Any
 from .. import _core, torques
 from .._scene.scene import Scene
 from .costs import keep
-from .plan import Plan
 from .solve import solve
 
 MOST_SECONDS = 15.0   # of all measurements together
@@ -61,17 +60,18 @@ def measure(progress: Callable[[int, int], object] | None = None) -> dict[str, f
     jobs: list[tuple[str, Any, float]] = []
     for scene in _scenes():
         for accuracy in (1e-5, 1e-9):
-            report = _core.plan(scene, accuracy, None, False, "euler", shipped)
-            stepped = report["plan"][1] != "exact"
-            able = [name for name, exact, why_not, *_ in report["candidates"] if not exact and not why_not]
-            names = able if stepped else ["exact"]
+            report = _core.plan(scene, {"accuracy": accuracy, "certify": False, "cost_factors": shipped})
+            able = [candidate["name"] for candidate in report["candidates"]
+                    if not candidate["exact"] and not candidate["why_not"]]
+            names = ["exact"] if report["plan"]["method"] == "exact" else able
             jobs += [(name, scene, accuracy) for name in names]
     ratios: dict[str, list[float]] = {}
     for done, (name, scene, accuracy) in enumerate(jobs):
-        forecast = Plan(scene, _core.plan(scene, accuracy, name, False, "euler", shipped)["plan"], {})
+        options = {"accuracy": accuracy, "method": name, "certify": False, "cost_factors": shipped}
+        forecast = _core.plan(scene, options)["plan"]
         took = _seconds(lambda: solve(scene, accuracy, method=name, certify=False), MOST_SECONDS / len(jobs) / 4)
-        key = forecast.model if name == "exact" else name
-        ratios.setdefault(key, []).append(took / forecast.predicted_seconds)
+        key = forecast["model"] if name == "exact" else name
+        ratios.setdefault(key, []).append(took / forecast["predicted_seconds"])
         if progress is not None:
             progress(done + 1, len(jobs))
     return {key: math.exp(sum(map(math.log, values)) / len(values)) for key, values in ratios.items()}

@@ -32,7 +32,7 @@ class EventHit(NamedTuple):
 # How each part of the core's answer is converted.
 _PARTS: dict[str, Callable[[Any], Any]] = {
     **dict.fromkeys(("t", "omega", "attitude", "status", "stats", "error", "error_kind", "asked"), lambda part: part),
-    "plan": lambda part: part, "events": lambda part: tuple(EventHit(*hit) for hit in part),
+    "plan": lambda part: part, "events": lambda part: tuple(EventHit(**hit) for hit in part),
 }
 
 
@@ -76,10 +76,10 @@ class Motion:
     asked: float
     events: tuple[EventHit, ...]
 
-    def __init__(self, scene: Scene, answer: _core.Answer, wishes: dict[str, Any] | None = None) -> None:
+    def __init__(self, scene: Scene, answer: _core.Answer, options: dict[str, Any] | None = None) -> None:
         self.scene = scene
         self._answer: _core.Answer | None = answer
-        self._options = wishes or {}
+        self._options = options or {}
 
     def __getattr__(self, name: str) -> Any:
         # Each part is copied from the compiled core at first use.

@@ -67,30 +67,30 @@ class Plan:
         The options of the plan: "method" and "formulation" as they were passed to `plan` or `solve`.
     """
 
-    def __init__(self, scene: Scene, parts: tuple[Any, ...], wishes: dict[str, Any]) -> None:
+    model: str
+    method: str
+    pieces: tuple[Piece, ...]
+    state: str
+    accuracy: float
+    certify: bool
+    rtol: float
+    predicted_error: float
+    predicted_seconds: float
+
+    def __init__(self, scene: Scene, parts: dict[str, Any], options: dict[str, Any]) -> None:
         self.scene = scene
-        self.model: str
-        self.method: str
-        self.state: str
-        self.accuracy: float
-        self.certify: bool
-        self.rtol: float
-        self.predicted_error: float
-        self.predicted_seconds: float
-        self.pieces: tuple[Piece, ...]
-        (self.model, self.method, self.state, self.accuracy, self.certify, self.rtol, self.predicted_error,
-         self.predicted_seconds, pieces) = parts
-        self.pieces = tuple(Piece(*piece) for piece in pieces)
-        self.wishes = wishes
+        vars(self).update(parts)
+        self.pieces = tuple(Piece(**piece) for piece in parts["pieces"])
+        self.wishes = options
 
     @functools.cached_property
     def _report(self) -> dict[str, Any]:
         if math.isnan(self.accuracy):   # tolerances were given
-            facts = _core.plan(self.scene, None, None, True, "euler", costs.factors())["facts"]
+            facts = _core.plan(self.scene, {"cost_factors": costs.factors()})["facts"]
             reason = f"Tolerances or a fixed step were given with method {self.method}, so nothing was planned."
             return {"facts": facts, "candidates": [], "left_out": [], "reasons": [reason]}
-        return dict(_core.plan(self.scene, self.accuracy, self.wishes.get("method"), self.certify,
-                               self.wishes.get("formulation", "euler"), costs.factors()))
+        return _core.plan(self.scene, {**self.wishes, "accuracy": self.accuracy, "certify": self.certify,
+                                       "cost_factors": costs.factors()})
 
     @property
     def facts(self) -> dict[str, Any]:
@@ -100,7 +100,7 @@ class Plan:
     @property
     def candidates(self) -> tuple[Candidate, ...]:
         """All models and methods that were considered, exact models first."""
-        return tuple(Candidate(*candidate) for candidate in self._report["candidates"])
+        return tuple(Candidate(**candidate) for candidate in self._report["candidates"])
 
     @property
     def reasons(self) -> tuple[str, ...]:
@@ -303,7 +303,9 @@ def plan(scene: Scene, accuracy: float | None = None, *, method: str | None = No
     """
     if not isinstance(scene, Scene):
         raise _core.InvalidInput(f"scene: must be a polhode.Scene, got {type(scene).__name__}")
-    report = _core.plan(scene, accuracy, method, bool(certify), str(formulation), costs.factors())
-    made = Plan(scene, report["plan"], {"method": method, "formulation": formulation})
-    made.__dict__["_report"] = dict(report)
+    asked = {"method": method, "formulation": str(formulation)}
+    report = _core.plan(scene, {**asked, "accuracy": accuracy, "certify": bool(certify),
+                                "cost_factors": costs.factors()})
+    made = Plan(scene, report["plan"], asked)
+    made.__dict__["_report"] = report
     return made

@@ -39,10 +39,10 @@ class Event:
         self.function, self.direction, self.terminal = function, int(direction), bool(terminal)
 
 
-def _event(item: Any) -> tuple[Any, int, bool]:
-    event = item if isinstance(item, Event) else Event(
-        item, getattr(item, "direction", 0), bool(getattr(item, "terminal", False)))
-    return event.function, event.direction, event.terminal
+def _event(item: Any) -> Event:
+    if isinstance(item, Event):
+        return item
+    return Event(item, getattr(item, "direction", 0), bool(getattr(item, "terminal", False)))
 
 
 def _take(plan: Plan, accuracy: float | None, method: str | None, rtol: float | None, atol: float | None,
@@ -135,10 +135,12 @@ def solve(
         raise _core.InvalidInput(f"max_steps: must be a whole number, got {max_steps!r}")
     if plan is not None:
         accuracy, method, certify, formulation = _take(plan, accuracy, method, rtol, atol, step, certify, formulation)
-    options = None if method is None and formulation == "euler" else {"method": method, "formulation": formulation}
-    answer = _core.solve(scene, accuracy, method, rtol, atol, step, bool(certify), int(max_steps), bool(dense),
-                         str(formulation), [_event(item) for item in events], progress, factors())
-    return Motion(scene, answer, options)
+    answer = _core.solve(scene, {
+        "accuracy": accuracy, "method": method, "rtol": rtol, "atol": atol, "step": step, "certify": bool(certify),
+        "max_steps": int(max_steps), "dense": bool(dense), "formulation": str(formulation),
+        "events": [_event(item) for item in events], "progress": progress, "cost_factors": factors()})
+    asked = None if method is None and formulation == "euler" else {"method": method, "formulation": formulation}
+    return Motion(scene, answer, asked)
 
 
 def methods() -> list[dict[str, Any]]:

@@ -141,7 +141,7 @@ MassProperties properties_of(const Triangles& triangles, const Options& options)
 
 }  // namespace
 
-void bind_mesh(py::module_& m, py::class_<MassProperties>& cls) {
+void bind_inertia_mesh(py::module_& m, py::class_<MassProperties>& cls) {
   cls.def_static(
       "from_mesh",
       [](py::handle vertices, py::handle faces, const py::object& density, const py::object& mass, py::handle unit,

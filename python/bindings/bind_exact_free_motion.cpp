@@ -32,7 +32,7 @@ Array along(const FreeMotion& motion, py::handle t) {
 
 }  // namespace
 
-void bind_free_motion(py::module_& m) {
+void bind_exact_free_motion(py::module_& m) {
   py::class_<FreeMotion> cls(m, "FreeMotion", R"(Torque-free motion of any rigid body, in closed form at any time.
 
 One class for the sphere, symmetric and triaxial bodies, steady rotation, rest, needles and the separatrix, exactly and

@@ -6,10 +6,10 @@
 namespace polhode::python {
 
 /// polhode.torques.Custom: a Python callable, or a compiled function pointer from numba, ctypes or C++.
-void bind_custom_torque(py::module_& m);
+void bind_torque_custom(py::module_& m);
 
 /// polhode.torques.During: another torque, within windows of time.
-void bind_during(py::module_& m);
+void bind_torque_during(py::module_& m);
 
 /// What a torque looks at, as `torque.traits` shows it.
 inline py::dict describe_traits(const TorqueTraits& traits) {

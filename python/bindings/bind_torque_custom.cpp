@@ -1,4 +1,4 @@
-#include "custom_torque.hpp"
+#include "bind_torque.hpp"
 
 #include <atomic>
 #include <cstdint>
@@ -193,7 +193,7 @@ InvalidInput
 
 }  // namespace
 
-void bind_custom_torque(py::module_& m) {
+void bind_torque_custom(py::module_& m) {
   py::class_<Custom> type(m, "Custom", custom_doc);
   type.def(py::init(&make_custom), py::arg("function"), py::kw_only(), py::arg("uses_time") = true,
            py::arg("uses_attitude") = true, py::arg("uses_rates") = true, py::arg("potential") = py::none(),

@@ -1,6 +1,6 @@
 #include "bind_scene.hpp"
+#include "bind_torque.hpp"
 #include "convert.hpp"
-#include "custom_torque.hpp"
 #include "polhode/core/error.hpp"
 
 // polhode.torques.During: another torque, within windows of time.
@@ -70,7 +70,7 @@ InvalidInput
 
 }  // namespace
 
-void bind_during(py::module_& m) {
+void bind_torque_during(py::module_& m) {
   py::class_<During>(m, "During", during_doc)
       .def(py::init([](const py::object& torque, const py::object& windows) {
              return During(to_lasting(torque), to_windows(windows));

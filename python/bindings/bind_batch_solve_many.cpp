@@ -6,7 +6,7 @@
 #include <mutex>
 #include <thread>
 
-#include "bind_scene.hpp"
+#include "bind_solve_options.hpp"
 #include "convert.hpp"
 #include "polhode/batch/solve_many.hpp"
 #include "polhode/core/error.hpp"
@@ -52,19 +52,10 @@ void run_interruptibly(const Work& work) {
   if (failure) std::rethrow_exception(failure);
 }
 
-py::tuple solve_batch(const py::list& scenes, const py::object& moments, const py::object& omega,
-                      const py::object& attitude, std::size_t bodies, std::size_t times, const py::object& omega_out,
-                      const py::object& attitude_out, const py::object& accuracy, const py::object& method,
-                      const py::object& rtol, const py::object& atol, const py::object& step, long max_steps,
-                      int threads) {
-  SolveOptions options;
-  const auto real = [](const py::object& value, const char* name) {
-    return value.is_none() ? std::nullopt : std::optional<double>(to_real(value, name));
-  };
-  options.accuracy = real(accuracy, "accuracy");
-  options.rtol = real(rtol, "rtol"), options.atol = real(atol, "atol"), options.step = real(step, "step");
-  if (!method.is_none()) options.method = std::string(py::str(method));
-  options.max_steps = max_steps;
+py::dict solve_batch(const py::list& scenes, const py::object& moments, const py::object& omega,
+                     const py::object& attitude, std::size_t bodies, std::size_t times, const py::object& omega_out,
+                     const py::object& attitude_out, const py::dict& given, int threads) {
+  SolveOptions options = to_solve_options(given);
 
   // One scene for all with starts of its own for each body, or a scene for each.
   std::vector<const Scene*> list;
@@ -98,18 +89,34 @@ py::tuple solve_batch(const py::list& scenes, const py::object& moments, const p
   py::array_t<long> steps(n);
   py::array_t<bool> success(n), lanes(n);
   for (py::ssize_t i = 0; i < n; ++i) {
-    const ManyResult& one = results[static_cast<std::size_t>(i)];
-    status.append(std::string(to_text(one.status)));
-    message.append(one.message);
-    methods.append(one.method);
-    reached.mutable_data()[i] = one.t_reached, errors.mutable_data()[i] = one.error;
-    steps.mutable_data()[i] = one.steps, success.mutable_data()[i] = one.success, lanes.mutable_data()[i] = one.lanes;
+    const ManyResult& result = results[static_cast<std::size_t>(i)];
+    status.append(std::string(to_text(result.status)));
+    message.append(result.message);
+    methods.append(result.method);
+    reached.mutable_data()[i] = result.t_reached;
+    errors.mutable_data()[i] = result.error;
+    steps.mutable_data()[i] = result.steps;
+    success.mutable_data()[i] = result.success;
+    lanes.mutable_data()[i] = result.lanes;
   }
-  return py::make_tuple(status, message, methods, reached, errors, steps, success, lanes);
+  py::dict all;
+  all["status"] = py::tuple(status);
+  all["message"] = py::tuple(message);
+  all["method"] = py::tuple(methods);
+  all["t_reached"] = reached;
+  all["error"] = errors;
+  all["steps"] = steps;
+  all["success"] = success;
+  all["lanes"] = lanes;
+  return all;
 }
 
 }  // namespace
 
-void bind_solve_many(py::module_& m) { m.def("_solve_many", &solve_batch); }
+void bind_batch_solve_many(py::module_& m) {
+  m.def("_solve_many", &solve_batch, py::arg("scenes"), py::arg("moments"), py::arg("omega"), py::arg("attitude"),
+        py::arg("bodies"), py::arg("times"), py::arg("omega_out"), py::arg("attitude_out"), py::arg("options"),
+        py::arg("threads"));
+}
 
 }  // namespace polhode::python

@@ -1,0 +1,106 @@
+#include "bind_solve_plan.hpp"
+
+#include <pybind11/stl.h>
+
+#include "bind_solve_options.hpp"
+#include "polhode/solve/closed_form.hpp"
+
+namespace polhode::python {
+namespace {
+
+py::dict describe_facts(const Facts& facts) {
+  py::dict all;
+  all["free"] = facts.is_free();
+  all["symmetry"] = to_text(facts.symmetry);
+  all["gaps"] = py::make_tuple(facts.gap_low, facts.gap_high);
+  all["off_axis"] = facts.off_axis;
+  all["separatrix"] = facts.separatrix;
+  all["span"] = facts.span();
+  all["turns"] = facts.turns;
+  all["only_at_end"] = facts.only_at_end;
+  all["sees_time"] = facts.torques.uses_time;
+  all["sees_attitude"] = facts.torques.uses_attitude;
+  all["sees_rates"] = facts.torques.uses_rates;
+  py::list kept;
+  if (facts.is_free() || facts.torques.keeps_energy) kept.append("energy");
+  if (facts.is_free()) kept.append("angular_momentum");
+  if (!facts.is_free() && facts.torques.keeps_vertical) kept.append("vertical_momentum");
+  if (facts.torques.keeps_jacobi) kept.append("jacobi");
+  all["keeps"] = kept;
+  all["may_spin_up"] = facts.may_spin_up;
+  all["decay"] = facts.decay;
+  all["stiffness"] = facts.stiffness;
+  return all;
+}
+
+py::dict describe_candidate(const Candidate& candidate) {
+  py::dict all;
+  all["name"] = candidate.name;
+  all["exact"] = candidate.exact;
+  all["why_not"] = candidate.why_not;
+  all["predicted_error"] = candidate.predicted_error;
+  all["predicted_seconds"] = candidate.predicted_seconds;
+  all["rtol"] = candidate.rtol;
+  return all;
+}
+
+py::dict describe_piece(const PiecePlan& piece) {
+  py::dict all;
+  all["begin"] = piece.begin;
+  all["end"] = piece.end;
+  all["torques"] = py::tuple(py::cast(piece.torques));
+  all["model"] = piece.model;
+  all["method"] = piece.method;
+  all["turns"] = piece.turns;
+  all["predicted_seconds"] = piece.predicted_seconds;
+  return all;
+}
+
+py::dict make_report(const Scene& scene, const py::dict& options) {
+  const PlanReport report = explain_plan(scene, to_solve_options(options));
+  py::list candidates;
+  for (const Candidate& candidate : report.candidates) candidates.append(describe_candidate(candidate));
+  py::dict all;
+  all["plan"] = describe_plan(report.plan, report.plan.state, report.plan.rtol);
+  all["facts"] = describe_facts(report.facts);
+  all["candidates"] = candidates;
+  all["reasons"] = py::cast(report.reasons);
+  all["left_out"] = py::cast(report.left_out);
+  return all;
+}
+
+}  // namespace
+
+py::dict describe_plan(const Plan& plan, const std::string& state, double rtol) {
+  py::list pieces;
+  for (const PiecePlan& piece : plan.pieces) pieces.append(describe_piece(piece));
+  py::dict all;
+  all["model"] = plan.model;
+  all["method"] = plan.method;
+  all["pieces"] = pieces;
+  all["state"] = state;
+  all["accuracy"] = plan.accuracy;
+  all["certify"] = plan.certify;
+  all["rtol"] = rtol;
+  all["predicted_error"] = plan.predicted_error;
+  all["predicted_seconds"] = plan.predicted_seconds;
+  return all;
+}
+
+void bind_solve_plan(py::module_& m) {
+  py::class_<Factors>(m, "CostFactors", "The time of each method on this machine over its forecast, by name.")
+      .def(py::init([](const std::map<std::string, double>& factors) {
+             return Factors{CostFactors(factors.begin(), factors.end())};
+           }),
+           py::arg("factors"));
+  m.def("plan", &make_report, py::arg("scene"), py::arg("options"));
+  m.def("exact_models", [] {
+    py::list list;
+    for (const ExactModel& model : exact_models()) {
+      list.append(py::make_tuple(std::string(model.name), std::string(model.doc), std::string(model.source)));
+    }
+    return list;
+  }, "The closed forms: name, doc, source.");
+}
+
+}  // namespace polhode::python
