@@ -17,28 +17,38 @@ double* target(const Batch& batch, const py::object& out, std::size_t width) {
   return array.mutable_data();
 }
 
-/// polhode.batch brings everything to (bodies, ...) and (times,) or (bodies, times); outputs are written in place.
+/// Python brings everything to (bodies, ...) and (times,) or (bodies, times); outputs are written in place. `inertia`
+/// is the InertiaTensor of all bodies or (bodies, 3) moments, and `moments` keeps the latter alive.
 template <class Batch>
-Batch make_batch(const Array& moments, const Array& omega, const Array& attitude, const Array& t) {
+Batch make_batch(const py::object& inertia, Array& moments, const Array& omega, const Array& attitude, const Array& t) {
   Batch batch;
-  batch.bodies = static_cast<std::size_t>(moments.shape(0));
+  batch.bodies = static_cast<std::size_t>(omega.shape(0));
   batch.own_times = t.ndim() == 2;
   batch.times = static_cast<std::size_t>(t.shape(t.ndim() - 1));
-  batch.moments = moments.data(), batch.omega = omega.data(), batch.attitude = attitude.data(), batch.t = t.data();
+  batch.omega = omega.data(), batch.attitude = attitude.data(), batch.t = t.data();
+  if (py::isinstance<InertiaTensor>(inertia)) {
+    batch.tensor = &inertia.cast<const InertiaTensor&>();
+  } else {
+    moments = inertia.cast<Array>();
+    batch.moments = moments.data();
+  }
   return batch;
 }
 
-std::size_t batch_free_motion(const Array& moments, const Array& omega, const Array& attitude, const Array& t,
+std::size_t batch_free_motion(const py::object& inertia, const Array& omega, const Array& attitude, const Array& t,
                               const py::object& omega_out, const py::object& attitude_out, int threads) {
-  const auto batch = make_batch<FreeMotionBatch>(moments, omega, attitude, t);
+  Array moments;
+  const auto batch = make_batch<FreeMotionBatch>(inertia, moments, omega, attitude, t);
   double *w = target(batch, omega_out, 3), *q = target(batch, attitude_out, 4);
   py::gil_scoped_release nogil;
   return free_motion(batch, w, q, threads);
 }
 
-std::size_t batch_heavy_top(const Array& moments, const Array& weight_arm, const Array& omega, const Array& attitude,
-                            const Array& t, const py::object& omega_out, const py::object& attitude_out, int threads) {
-  auto batch = make_batch<HeavyTopBatch>(moments, omega, attitude, t);
+std::size_t batch_heavy_top(const py::object& inertia, const Array& weight_arm, const Array& omega,
+                            const Array& attitude, const Array& t, const py::object& omega_out,
+                            const py::object& attitude_out, int threads) {
+  Array moments;
+  auto batch = make_batch<HeavyTopBatch>(inertia, moments, omega, attitude, t);
   batch.weight_arm = weight_arm.data();
   double *w = target(batch, omega_out, 3), *q = target(batch, attitude_out, 4);
   py::gil_scoped_release nogil;

@@ -121,14 +121,18 @@ def test_want_and_out():
     np.testing.assert_array_equal(ph.free_motion(tensor, omega[0], attitude[0], times)[0], w[0])
 
 
-def test_a_turned_tensor():
+def test_a_full_tensor_has_the_bits_of_the_object():
     moments, omega, attitude = bodies(4)
     q = np.array([0.1, 0.7, -0.3, 0.6]) / np.linalg.norm([0.1, 0.7, -0.3, 0.6])
     R = ph.Rotation.from_quat(q).as_matrix()
     tensor = ph.InertiaTensor(R @ np.diag(moments[0]) @ R.T)
     times = np.linspace(0, 20, 5)
-    got = ph.free_motion(tensor, omega[:, None], attitude[:, None], times)
-    assert_same(got, [ph.FreeMotion(tensor, w, a) for w, a in zip(omega, attitude, strict=True)], [times] * 4, 1e-12)
+    motions = [ph.FreeMotion(tensor, w, a) for w, a in zip(omega, attitude, strict=True)]
+    assert_same(ph.free_motion(tensor, omega[:, None], attitude[:, None], times), motions, [times] * 4, 0)
+    assert_same(ph.free_motion(tensor, omega, attitude, times[:4]), motions, times, 0)
+    out = np.empty((4, 3))
+    assert ph.free_motion(tensor, omega, attitude, times[:4], out=out, want="omega") is out
+    np.testing.assert_array_equal(out[1], motions[1].at(times[1])[0])
 
 
 def test_not_a_number_poisons_its_rows_alone():

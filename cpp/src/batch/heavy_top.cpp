@@ -12,9 +12,14 @@ namespace polhode {
 namespace {
 
 HeavyTop make_top(const HeavyTopBatch& b, std::size_t body) {
-  const double *I = b.moments + 3 * body, *w = b.omega + 3 * body, *q = b.attitude + 4 * body;
+  const double *w = b.omega + 3 * body, *q = b.attitude + 4 * body;
+  const double arm = b.weight_arm[body];
+  const Vector3d omega{w[0], w[1], w[2]};
+  const Quat attitude{q[0], q[1], q[2], q[3]};
   try {
-    return {Vector3d{I[0], I[1], I[2]}, b.weight_arm[body], Vector3d{w[0], w[1], w[2]}, Quat{q[0], q[1], q[2], q[3]}};
+    if (b.tensor) return {*b.tensor, arm, omega, attitude};
+    const double* I = b.moments + 3 * body;
+    return {Vector3d{I[0], I[1], I[2]}, arm, omega, attitude};
   } catch (const InvalidInput& error) {
     throw InvalidInput(row_name("body", body) + ": " + error.what());
   }
@@ -24,8 +29,9 @@ HeavyTop make_top(const HeavyTopBatch& b, std::size_t body) {
 std::size_t run(const HeavyTopBatch& b, const Rows& rows, std::size_t first, std::size_t last) {
   std::size_t poisoned = 0;
   for (std::size_t body = first; body < last; ++body) {
-    if (!within(b.moments + 3 * body, 3) || !within(b.weight_arm + body, 1) || !within(b.omega + 3 * body, 3) ||
-        !within(b.attitude + 4 * body, 4)) {
+    const bool finite = (b.tensor || within(b.moments + 3 * body, 3)) && within(b.weight_arm + body, 1) &&
+                        within(b.omega + 3 * body, 3) && within(b.attitude + 4 * body, 4);
+    if (!finite) {
       poisoned += rows.poison(body, 0, rows.times);
       continue;
     }

@@ -20,6 +20,9 @@ double norm(const Quat& q) {
 }
 
 Quat make_attitude(const Quat& q) {
+  constexpr double rounding = std::numeric_limits<double>::epsilon();
+  const double square = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
+  if (std::abs(square - 1.0) <= rounding) return q;   // the norm below is then within 4 * rounding, and slow
   const double n = norm(q);
   if (!std::isfinite(n)) {
     throw InvalidInput("attitude", "a finite quaternion (x, y, z, w)",
@@ -30,8 +33,7 @@ Quat make_attitude(const Quat& q) {
     throw InvalidInput("attitude", "a unit quaternion (x, y, z, w)", "norm " + to_text(n),
                        "normalise it first, if it is meant to be an attitude");
   }
-  if (std::abs(n - 1.0) <= 4 * std::numeric_limits<double>::epsilon())
-    return q;   // so that doing it twice changes nothing
+  if (std::abs(n - 1.0) <= 4 * rounding) return q;   // so that doing it twice changes nothing
   return {q.x / n, q.y / n, q.z / n, q.w / n};
 }
 

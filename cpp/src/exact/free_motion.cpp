@@ -5,12 +5,15 @@
 #include <numbers>
 #include <string>
 
+#include "exact/free_frame.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/math/detail/double_double.hpp"
 
 namespace polhode {
 namespace {
 
+using exact::exponent_of;
+using exact::ldexp;
 using math::DD;
 
 constexpr double most_radians = 1e25;  // beyond it even 106 bits leave fewer than 7 digits of the phase
@@ -19,10 +22,6 @@ constexpr double hyper_from = 0.97;    // k^2; either form is good to 1e-15 on b
 std::string vector_text(const Vector3d& v) {
   return "(" + to_text(v[0]) + ", " + to_text(v[1]) + ", " + to_text(v[2]) + ")";
 }
-
-int exponent_of(const Vector3d& v) { return std::ilogb(v.cwiseAbs().maxCoeff()); }
-
-Vector3d ldexp(const Vector3d& v, int e) { return {std::ldexp(v[0], e), std::ldexp(v[1], e), std::ldexp(v[2], e)}; }
 
 /// Converts a scaled quantity to SI. Throws InvalidInput if float64 cannot represent it.
 double representable(double scaled, int exponent, const char* name) {
@@ -33,8 +32,6 @@ double representable(double scaled, int exponent, const char* name) {
   }
   return value;
 }
-
-Quat working_attitude(const exact::FreeState<double>& s) { return {s.x, s.y, s.z, s.w}; }
 
 }  // namespace
 
@@ -133,28 +130,13 @@ void FreeMotion::set_up(const Vector3d& moments, const Matrix3d& R_BP, bool exac
   kind_ = s.I[2] > s.I[0] ? FreeKind::about_greatest : FreeKind::about_least;
   classify(I_sorted, w_sorted, exact_axes);
 
-  // All constant rotations in two matrices: omega = 2^e R_BP M omega', q = q0 conj(S Q(0)) (S Q'), with S = R_BP M.
   Matrix3d M;
   for (int c = 0; c < 3; ++c)
     for (int a = 0; a < 3; ++a) M(c, a) = s.M[c][a];
-  const Matrix3d S = R_BP * M;
-  for (int c = 0; c < 3; ++c)
-    for (int a = 0; a < 3; ++a) frame_.omega[3 * c + a] = S(c, a) * frame_.time_scale;
-  const auto in_body_axes = [&S](double x, double y, double z, double qw) {
-    const Vector3d v = S * Vector3d(x, y, z);
-    return Quat{v[0], v[1], v[2], qw};
-  };
   Quat first;
-  if (form_ == Form::trig) first = working_attitude(exact::evaluate(trig_, 0.0));
-  if (form_ == Form::hyper) first = working_attitude(exact::evaluate(hyper_, 0.0));
-  const Quat left = normalized(attitude_ * conjugate(in_body_axes(first.x, first.y, first.z, first.w)));
-  for (std::size_t i = 0; i < 4; ++i) {
-    const Quat q = left * in_body_axes(i == 0, i == 1, i == 2, i == 3);
-    frame_.attitude[i] = q.x;
-    frame_.attitude[4 + i] = q.y;
-    frame_.attitude[8 + i] = q.z;
-    frame_.attitude[12 + i] = q.w;
-  }
+  if (form_ == Form::trig) first = exact::first_attitude(trig_);
+  if (form_ == Form::hyper) first = exact::first_attitude(hyper_);
+  frame_ = exact::make_free_frame(R_BP, M, frame_.time_scale, first, attitude_);
 }
 
 double FreeMotion::checked_time(double t) const {

@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
 import numpy.typing as npt
 
 from .. import _core
-from .._attitude.rotation import Rotation
 from .._core import InertiaTensor
-from .broadcast import Array, check_out, check_threads, check_want, evaluate, to_rows
+from .broadcast import Array, check_threads, evaluate, to_rows
 
 
-def _product(p: Array, q: Array) -> Array:
-    """Return Hamilton's product of arrays of quaternions."""
-    x, y, z, w = np.moveaxis(p, -1, 0)
-    a, b, c, d = np.moveaxis(q, -1, 0)
-    return np.stack([w * a + x * d + y * c - z * b, w * b - x * c + y * d + z * a,
-                     w * c + x * b - y * a + z * d, w * d - x * a - y * b - z * c], axis=-1)
+def _split(inertia: InertiaTensor | npt.ArrayLike) -> tuple[tuple[InertiaTensor, ...], list[tuple[Array, int]]]:
+    """Return what all bodies share, a tensor, and what each has of its own, moments; one of the two is empty."""
+    if isinstance(inertia, InertiaTensor):
+        return (inertia,), []
+    return (), [(to_rows(inertia, "inertia", 3), 1)]
 
 
 def free_motion(
@@ -78,22 +75,12 @@ def free_motion(
     workers = check_threads(threads)
     speeds, attitudes = to_rows(omega, "omega", 3), to_rows(attitude, "attitude", 4)
     times = to_rows(t, "t", None)
-    if isinstance(inertia, InertiaTensor):
-        matrix = inertia.matrix
-        if np.count_nonzero(matrix - np.diag(np.diag(matrix))):
-            def in_principal_axes(w: Array, q: Array, names: tuple[str, ...]) -> Any:
-                return free_motion(inertia.moments, w, q, times, want=names, threads=threads)
-
-            q_BP = Rotation.from_matrix(inertia.axes).as_quat()
-            return _rotated(inertia.axes, q_BP, speeds, attitudes, out, want, in_principal_axes)
-        moments = np.diag(matrix).copy()
-    else:
-        moments = to_rows(inertia, "inertia", 3)
+    common, own = _split(inertia)
 
     def kernel(*arguments: Any) -> int:
-        return _core._free_motion(*(*arguments, workers))
+        return _core._free_motion(*common, *arguments, workers)
 
-    return evaluate([(moments, 1), (speeds, 1), (attitudes, 1)], times, out, want, kernel)
+    return evaluate([*own, (speeds, 1), (attitudes, 1)], times, out, want, kernel)
 
 
 def heavy_top(
@@ -153,49 +140,9 @@ def heavy_top(
     times = to_rows(t, "t", None)
     arms = to_rows(weight_arm, "weight_arm", None)
 
+    common, own = _split(inertia)
+
     def kernel(*arguments: Any) -> int:
-        return _core._heavy_top(*(*arguments, workers))
+        return _core._heavy_top(*common, *arguments, workers)
 
-    def evaluate_tops(moments: Array, w: Array, q: Array, target: Any, names: str | Sequence[str]) -> Any:
-        return evaluate([(moments, 1), (arms, 0), (w, 1), (q, 1)], times, target, names, kernel)
-
-    if not isinstance(inertia, InertiaTensor):
-        return evaluate_tops(to_rows(inertia, "inertia", 3), speeds, attitudes, out, want)
-    matrix = inertia.matrix
-    if not np.count_nonzero(matrix - np.diag(np.diag(matrix))):
-        return evaluate_tops(np.diag(matrix).copy(), speeds, attitudes, out, want)
-    # Products of inertia: the frame S has the symmetry axis for its z, as HeavyTop finds it.
-    moments, axes = inertia.moments, inertia.axes
-    lone = 2 if moments[1] - moments[0] <= moments[2] - moments[1] else 0
-    first, second = [k for k in range(3) if k != lone]
-    axis = axes[:, lone] * np.copysign(1.0, axes[np.argmax(np.abs(axes[:, lone])), lone])
-    R_BS = np.stack([axes[:, first], np.cross(axis, axes[:, first]), axis], axis=1)
-    equal = 0.5 * (moments[first] + moments[second])
-
-    def top(w: Array, q: Array, names: tuple[str, ...]) -> Any:
-        return evaluate_tops(np.array([equal, equal, moments[lone]]), w, q, None, names)
-
-    return _rotated(R_BS, Rotation.from_matrix(R_BS).as_quat(), speeds, attitudes, out, want, top)
-
-
-def _rotated(
-    R_BP: Array,
-    q_BP: Array,
-    omega: Array,
-    attitude: Array,
-    out: Any,
-    want: str | Sequence[str],
-    motion: Callable[[Array, Array, tuple[str, ...]], Any],
-) -> Any:
-    """Convert a motion from principal axes P to the body axes B."""
-    names = check_want(want)
-    found = motion(omega @ R_BP, _product(attitude, q_BP), names)
-    back: dict[str, Callable[[Array], Array]] = {
-        "omega": lambda w: w @ R_BP.T, "attitude": lambda q: _product(q, q_BP * [-1, -1, -1, 1])}
-    answer = [back[name](values) for name, values in zip(names, found, strict=True)]
-    targets = check_out(out, names, answer[0].shape[:-1])
-    for k, name in enumerate(names):
-        if name in targets:
-            targets[name][...] = answer[k]
-            answer[k] = targets[name]
-    return answer[0] if isinstance(want, str) else tuple(answer)
+    return evaluate([*own, (arms, 0), (speeds, 1), (attitudes, 1)], times, out, want, kernel)

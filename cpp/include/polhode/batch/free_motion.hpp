@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include "polhode/inertia/inertia_tensor.hpp"
+
 namespace polhode {
 
 /// Free motion of many bodies at many times, on plain C-contiguous arrays.
@@ -12,10 +14,12 @@ struct FreeMotionBatch {
   const double* attitude = nullptr;  ///< (bodies, 4) at t = 0, (x, y, z, w)
   const double* t = nullptr;         ///< (times) for all bodies, or (bodies, times) with own_times [s]
   bool own_times = false;
+  const InertiaTensor* tensor = nullptr;  ///< of all bodies, in any body axes; then `moments` is null
 };
 
 /// Writes omega (bodies, times, 3) and attitude (bodies, times, 4); either may be null. The bits of the result do not
-/// depend on the number of threads (0: chosen by the machine and the amount of work).
+/// depend on the number of threads (0: chosen by the machine and the amount of work). With a tensor that is not
+/// diagonal, they are those of FreeMotion.
 ///
 /// A row with an input that is not finite becomes NaN; returns the number of such rows. Throws InvalidInput, with the
 /// number of the body, for impossible moments, attitudes that are not unit and |omega t| > 1e25 rad.

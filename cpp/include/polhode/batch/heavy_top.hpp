@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include "polhode/inertia/inertia_tensor.hpp"
+
 namespace polhode {
 
 /// Many heavy symmetric tops at many times, on plain C-contiguous arrays.
@@ -13,6 +15,7 @@ struct HeavyTopBatch {
   const double* attitude = nullptr;    ///< (bodies, 4) at t = 0, (x, y, z, w)
   const double* t = nullptr;           ///< (times) for all bodies, or (bodies, times) with own_times [s]
   bool own_times = false;
+  const InertiaTensor* tensor = nullptr;  ///< of all tops, about the pivot, in any body axes; then `moments` is null
 };
 
 /// Writes omega (bodies, times, 3) and attitude (bodies, times, 4); either may be null. The bits of the result do not

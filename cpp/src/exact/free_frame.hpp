@@ -1,0 +1,27 @@
+#pragma once
+
+#include "polhode/core/quat.hpp"
+#include "polhode/exact/detail/free_kernels.hpp"
+
+// Between the body axes B, the principal axes P and the working axes of the series, for FreeMotion and its batch.
+namespace polhode::exact {
+
+/// e with the largest |v_i| in [2^e, 2^(e + 1)).
+int exponent_of(const Vector3d& v);
+
+/// 2^e v.
+Vector3d ldexp(const Vector3d& v, int e);
+
+/// Q(0) of a series, in working axes.
+template <class Series>
+Quat first_attitude(const Series& series) {
+  const FreeState<double> state = evaluate(series, 0.0);
+  return {state.x, state.y, state.z, state.w};
+}
+
+/// All constant rotations in two matrices: omega = time_scale S omega' and q = q0 conj(S Q(0)) (S Q'), S = R_BP M.
+/// M is the rotation from working to principal axes, `first` is Q(0) and `attitude` is q0.
+FreeFrame make_free_frame(const Matrix3d& R_BP, const Matrix3d& M, double time_scale, const Quat& first,
+                          const Quat& attitude);
+
+}  // namespace polhode::exact
