@@ -14,12 +14,15 @@ constexpr std::uint32_t two_over_pi[] = {
     0x1ff897ffu, 0xde05980fu, 0xef2f118bu, 0x5a0a6d1fu, 0x6d367ecfu, 0x27cb09b7u, 0x4f463f66u, 0x9e5fea2du,
     0x7527bac7u, 0xebe5f17bu, 0x3d0739f7u, 0x8a5292eau, 0x6bfb5fb1u, 0x1f8d5d08u, 0x56033046u, 0xfc7b6babu};
 
+}  // namespace
+
 /// Payne & Hanek 1983, ACM SIGNUM Newsletter 18, 19: of 2 / pi only the 192 bits count whose product with the angle is
-/// neither a multiple of four quarters nor below 2^-137. The product is exact in integers. For angle >= 1.
+/// neither a multiple of four quarters nor below 2^-137. The product is exact in integers.
 QuarterTurns reduce_exactly(double angle) {
-  const auto bits = std::bit_cast<std::uint64_t>(angle);
+  const bool negative_angle = angle < 0.0;
+  const auto bits = std::bit_cast<std::uint64_t>(abs(angle));
   const std::uint64_t mantissa = (bits & 0x000fffffffffffffu) | 0x0010000000000000u;
-  const int exponent = static_cast<int>(bits >> 52) - 1075;   // angle = mantissa 2^exponent
+  const int exponent = static_cast<int>(bits >> 52) - 1075;   // |angle| = mantissa 2^exponent
   // Bit i after the point of 2 / pi gives multiples of 2^(exponent - i) quarters: those of 4 and more are left out.
   const auto first = static_cast<std::size_t>(exponent - 1 + 63);   // in the table
   constexpr int words = 6;
@@ -47,26 +50,8 @@ QuarterTurns reduce_exactly(double angle) {
   double unit = 0x1p-30;
   for (int i = 0; i < words; ++i, unit *= 0x1p-32) fraction = fraction + DD(static_cast<double>(product[i]) * unit);
   const DD rest = fraction * DD(1.5707963267948966, 6.123233995736766e-17);
-  return {rest.hi, rest.lo, quarters & 3u};
-}
-
-}  // namespace
-
-QuarterTurns reduce_to_quarter(double angle) {
-  const double size = abs(angle);
-  if (size <= 1e5) {
-    // pi / 2 in two parts of 33 bits, whose products with that many quarters are exact, and a rest: Cody & Waite 1980.
-    const double shifted = size * 0.6366197723675814 + 0x1.8p52, n = shifted - 0x1.8p52;
-    const DD near = two_diff(size - n * 0x1.921fb544p+0, n * 0x1.0b4611a6p-34);
-    if (abs(near.hi) > 0x1p-40) {
-      const double low = near.lo - n * 0x1.3198a2e037073p-69;
-      const auto quarters = static_cast<unsigned>(std::bit_cast<std::uint64_t>(shifted));
-      return angle < 0.0 ? QuarterTurns{-near.hi, -low, (0u - quarters) & 3u}
-                         : QuarterTurns{near.hi, low, quarters & 3u};
-    }
-  }
-  const QuarterTurns found = reduce_exactly(size);
-  return angle < 0.0 ? QuarterTurns{-found.rest, -found.low, (0u - found.quarters) & 3u} : found;
+  return negative_angle ? QuarterTurns{-rest.hi, -rest.lo, (0u - quarters) & 3u}
+                        : QuarterTurns{rest.hi, rest.lo, quarters & 3u};
 }
 
 }  // namespace polhode::math

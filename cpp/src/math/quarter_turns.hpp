@@ -10,7 +10,7 @@ struct QuarterTurns {
   unsigned quarters;   ///< modulo 4
 };
 
-/// For |angle| > pi / 4, finite.
-QuarterTurns reduce_to_quarter(double angle);
+/// For 1 <= |angle| < infinity, at some 50 ns.
+QuarterTurns reduce_exactly(double angle);
 
 }  // namespace polhode::math

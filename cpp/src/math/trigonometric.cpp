@@ -50,13 +50,28 @@ struct Kernel {
   }
 };
 
-QuarterTurns reduce(double angle) {
-  return abs(angle) <= quarter ? QuarterTurns{angle, 0.0, 0} : reduce_to_quarter(angle);
+/// Whole quarter turns are taken from an angle.
+POLHODE_INLINE QuarterTurns reduce(double angle) {
+  const double size = abs(angle);
+  if (size <= quarter) return {angle, 0.0, 0};
+  if (size <= 1e5) {
+    // pi / 2 in two parts of 33 bits, whose products with that many quarters are exact, and a rest: Cody & Waite 1980.
+    const double shifted = angle * 0.6366197723675814 + 0x1.8p52, n = shifted - 0x1.8p52;
+    const DD rest = two_diff(angle - n * 0x1.921fb544p+0, n * 0x1.0b4611a6p-34);
+    if (abs(rest.hi) > 0x1p-40) {
+      return {rest.hi, rest.lo - n * 0x1.3198a2e037073p-69,
+              static_cast<unsigned>(std::bit_cast<std::uint64_t>(shifted)) & 3u};
+    }
+  }
+  return reduce_exactly(angle);
+}
+
+double change_sign_if(bool mask, double a) {
+  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(a) ^ (std::uint64_t{mask} << 63));
 }
 
 double sine_of(const Kernel& kernel, unsigned quarters) {
-  const double size = (quarters & 1) != 0 ? kernel.cos() : kernel.sin();
-  return (quarters & 2) != 0 ? -size : size;
+  return change_sign_if((quarters & 2) != 0, (quarters & 1) != 0 ? kernel.cos() : kernel.sin());
 }
 
 /// atan(k / 16).
@@ -100,15 +115,17 @@ DD angle_in_octant(DD y, DD x) {
   return fast_two_sum(sum.hi, sum.lo + (base_angle[k][1] + (t_low + series)));
 }
 
-/// pi / 2 times 1 or 2, less an angle that is not larger.
-DD rest_of(double quarters, DD angle) {
-  const DD sum = fast_two_sum(quarters * 1.5707963267948966, -angle.hi);
-  return fast_two_sum(sum.hi, sum.lo + (quarters * 6.123233995736766e-17 - angle.lo));
-}
-
-/// The angle of (x, y), x, y >= 0, not both 0.
-DD angle_in_quadrant(DD y, DD x) {
-  return y.hi <= x.hi ? angle_in_octant(y, x) : rest_of(1.0, angle_in_octant(x, y));
+/// The angle of (x, y) or of (-x, y), x, y >= 0, not both 0: one of 0, pi / 2, pi plus or less an angle in an octant.
+double angle_in_half_plane(DD y, DD x, bool left) {
+  constexpr double base[4][3] = {{0.0, 0.0, 1.0},
+                                 {1.5707963267948966, 6.123233995736766e-17, -1.0},
+                                 {3.141592653589793, 1.2246467991473532e-16, -1.0},
+                                 {1.5707963267948966, 6.123233995736766e-17, 1.0}};
+  const bool steep = y.hi > x.hi;
+  const DD angle = angle_in_octant(select(steep, x, y), select(steep, y, x));
+  const double* from = base[2 * left + steep];
+  const DD sum = fast_two_sum(from[0], from[2] * angle.hi);
+  return sum.hi + (sum.lo + (from[1] + from[2] * angle.lo));
 }
 
 /// sqrt(1 - x^2), |x| <= 1.
@@ -122,12 +139,9 @@ SinCosPair sincos(double angle) {
   const QuarterTurns q = reduce(angle);
   const Kernel kernel(q.rest, q.low);
   const double s = kernel.sin(), c = kernel.cos();
-  switch (q.quarters) {
-    case 0: return {s, c};
-    case 1: return {c, -s};
-    case 2: return {-s, -c};
-    default: return {-c, s};
-  }
+  const bool odd = (q.quarters & 1) != 0;
+  return {change_sign_if((q.quarters & 2) != 0, select(odd, c, s)),
+          change_sign_if(((q.quarters + 1) & 2) != 0, select(odd, s, c))};
 }
 
 double sin(double angle) {
@@ -145,25 +159,22 @@ double cos(double angle) {
 }
 
 double atan2(double y, double x) {
-  if (std::isnan(x) || std::isnan(y)) return x + y;
+  constexpr double least = 0x1p-500, largest = 0x1p500;
   double ay = abs(y), ax = abs(x);
-  if (ay == 0.0 || std::isinf(ax)) {
-    if (std::isinf(ay)) ay = ax = 1.0;   // on the diagonal
-    else return std::signbit(x) ? copysign(pi<double>(), y) : copysign(0.0, y);
-  } else if (std::isinf(ay)) {
-    ay = 1.0, ax = 0.0;
+  if (!(ay > least && ay < largest && ax > least && ax < largest)) {
+    if (std::isnan(x) || std::isnan(y)) return x + y;
+    if (ay == 0.0 || (std::isinf(ax) && !std::isinf(ay))) return copysign(std::signbit(x) ? pi<double>() : 0.0, y);
+    if (std::isinf(ay)) {
+      ax = std::isinf(ax) ? 1.0 : 0.0, ay = 1.0;
+    } else {
+      // Far below the x axis's length the angle is the quotient, which may be below the normal numbers.
+      if (!std::signbit(x) && ay < 0x1p-28 * ax) return y / x;
+      int exponent = 0;
+      std::frexp(max(ax, ay), &exponent);
+      ay = std::ldexp(ay, -exponent), ax = std::ldexp(ax, -exponent);
+    }
   }
-  const double large = max(ax, ay);
-  // Far below the x axis's length the angle is the quotient, which may be below the normal numbers.
-  if (x > 0.0 && ay < tiny * 0.5 * ax) return y / x;
-  if (!(large < 0x1p500 && min(ax, ay) > 0x1p-500)) {
-    int exponent = 0;
-    std::frexp(large, &exponent);
-    ay = std::ldexp(ay, -exponent), ax = std::ldexp(ax, -exponent);
-  }
-  DD angle = angle_in_quadrant(ay, ax);
-  if (std::signbit(x)) angle = rest_of(2.0, angle);
-  return copysign(angle.hi, y);
+  return copysign(angle_in_half_plane(ay, ax, std::signbit(x)), y);
 }
 
 double atan(double x) { return atan2(x, 1.0); }
@@ -172,14 +183,13 @@ double asin(double x) {
   const double size = abs(x);
   if (size < tiny) return x;
   if (!(size <= 1.0)) return std::numeric_limits<double>::quiet_NaN();
-  return copysign(angle_in_quadrant(size, other_leg(x)).hi, x);
+  return copysign(angle_in_half_plane(size, other_leg(x), false), x);
 }
 
 double acos(double x) {
   const double size = abs(x);
   if (!(size <= 1.0)) return std::numeric_limits<double>::quiet_NaN();
-  const DD angle = angle_in_quadrant(other_leg(x), size);
-  return std::signbit(x) ? rest_of(2.0, angle).hi : angle.hi;
+  return angle_in_half_plane(other_leg(x), size, std::signbit(x));
 }
 
 double hypot(double a, double b, double c) {

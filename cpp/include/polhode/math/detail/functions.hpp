@@ -6,37 +6,46 @@
 // Special values are those of C.
 namespace polhode::math {
 
+/// The value depends on the arguments alone: calls may be merged, or left out.
+#if defined(__GNUC__) || defined(__clang__)
+#define POLHODE_PURE __attribute__((const))
+#else
+#define POLHODE_PURE
+#endif
+
 // Within 0.51 ulp for every argument, at about the speed of the system's library.
 
 struct SinCosPair {
   double sin, cos;
 };
 
-SinCosPair sincos(double angle);
-double sin(double angle);
-double cos(double angle);
-double atan2(double y, double x);   ///< 0.51 ulp of the normal numbers; one rounding more below them
-double atan(double x);
-double asin(double x);
-double acos(double x);
-double hypot(double a, double b);
-double hypot(double a, double b, double c);
+POLHODE_PURE SinCosPair sincos(double angle);
+POLHODE_PURE double sin(double angle);
+POLHODE_PURE double cos(double angle);
+POLHODE_PURE double atan2(double y, double x);   ///< 0.51 ulp of the normal numbers; one rounding more below them
+POLHODE_PURE double atan(double x);
+POLHODE_PURE double asin(double x);
+POLHODE_PURE double acos(double x);
+POLHODE_PURE double hypot(double a, double b);
+POLHODE_PURE double hypot(double a, double b, double c);
 
 // Within 0.51 ulp for every argument, at some 100 to 600 ns: for set-ups and plans.
 
-double exp(double x);
-double expm1(double x);
-double log(double x);
-double asinh(double x);
-double cbrt(double x);
-double pow(double x, double y);
+POLHODE_PURE double exp(double x);
+POLHODE_PURE double expm1(double x);
+POLHODE_PURE double log(double x);
+POLHODE_PURE double asinh(double x);
+POLHODE_PURE double cbrt(double x);
+POLHODE_PURE double pow(double x, double y);
 
 // Relative error about 1e-15 (of a power x^y: 1e-15 (1 + |y log2 x|)): for step sizes, forecasts and plans.
 
-double fast_log2(double x);
-double fast_exp2(double x);
-double fast_log(double x);
-double fast_pow(double x, double y);    ///< for x > 0
-double power(double x, int n);          ///< x^n by repeated multiplication, 0^0 = 1
+POLHODE_PURE double fast_log2(double x);
+POLHODE_PURE double fast_exp2(double x);
+POLHODE_PURE double fast_log(double x);
+POLHODE_PURE double fast_pow(double x, double y);    ///< for x > 0
+POLHODE_PURE double power(double x, int n);          ///< x^n by repeated multiplication, 0^0 = 1
+
+#undef POLHODE_PURE
 
 }  // namespace polhode::math
