@@ -10,6 +10,7 @@
 #include "polhode/attitude/detail/arrays.hpp"
 #include "polhode/attitude/euler.hpp"
 #include "polhode/attitude/kinematics.hpp"
+#include "polhode/math/detail/functions.hpp"
 #include "polhode/attitude/matrix.hpp"
 #include "polhode/attitude/rotation_vector.hpp"
 #include "polhode/core/error.hpp"
@@ -72,10 +73,10 @@ TEST_CASE("attitude: Euler angles are the product of three turns, both ways") {
       const Vector3d angles(angle(random), angle(random), angle(random));
       const Matrix3d R_WB = euler_matrix(sequence, angles);
       const Quat q_WB = quat_from_euler(sequence, angles);
-      CHECK(distance(to_matrix(q_WB), R_WB) < 3e-15);
-      CHECK(distance(to_matrix(quat_from_matrix(R_WB)), R_WB) < 3e-15);
+      CHECK(distance(to_matrix(q_WB), R_WB) < 4e-15);
+      CHECK(distance(to_matrix(quat_from_matrix(R_WB)), R_WB) < 4e-15);
       const Vector3d back = to_euler(sequence, q_WB);
-      CHECK(distance(euler_matrix(sequence, back), R_WB) < 3e-15);
+      CHECK(distance(euler_matrix(sequence, back), R_WB) < 4e-15);
       CHECK(std::abs(back[1] - (sequence.proper() ? pi / 2 : 0.0)) <= pi / 2);
     }
   }
@@ -132,7 +133,7 @@ TEST_CASE("attitude: what is no rotation is refused") {
   }
 }
 
-TEST_CASE("attitude: the array of sines and cosines is that of the library, also for large angles") {
+TEST_CASE("attitude: the array of sines and cosines is that of single numbers, also for large angles") {
   // A rotation about one axis shows the sine and cosine of the half angle.
   const EulerSequence sequence("ZXZ");
   std::vector<double> angles;
@@ -143,8 +144,9 @@ TEST_CASE("attitude: the array of sines and cosines is that of the library, also
   CHECK(arrays::quat_from_euler(sequence, n, angles.data(), 1.0, q.data()) == n);
   for (std::size_t i = 0; i < n; ++i) {
     const double half = 0.5 * angles[3 * i];
-    CHECK(std::abs(q[4 * i + 2] - std::sin(half)) <= 3e-16 * std::abs(std::sin(half)));
-    CHECK(std::abs(q[4 * i + 3] - std::cos(half)) <= 3e-16 * std::abs(std::cos(half)));
+    // 0.8 ulp of the arrays' loop and 0.52 of the functions are 2.9e-16 at most: a bound, not a measurement.
+    CHECK(std::abs(q[4 * i + 2] - math::sin(half)) <= 3e-16 * std::abs(math::sin(half)));
+    CHECK(std::abs(q[4 * i + 3] - math::cos(half)) <= 3e-16 * std::abs(math::cos(half)));
   }
   angles[3 * (n - 1)] = NAN;
   CHECK(arrays::quat_from_euler(sequence, n, angles.data(), 1.0, q.data()) == n - 1);

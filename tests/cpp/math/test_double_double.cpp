@@ -61,7 +61,7 @@ TEST_CASE("sincos of cycles is right to an ulp in every quadrant") {
     const SinCos exact = sincos(DD(f) * scaled(pi<DD>(), 2.0));
     worst = std::max({worst, std::abs((DD(s) - exact.sin).hi), std::abs((DD(c) - exact.cos).hi)});
   }
-  CHECK(worst < 1.7e-16);
+  CHECK(worst < 1.7e-16);   // the documented bound; the code has the same bits on every machine
   CHECK(worst > 4e-17);
   double s = 1, c = 0;
   sincos_cycles(0.5, s, c);
@@ -84,7 +84,7 @@ TEST_CASE("sincos without fused operations is right in every quadrant, up to the
     check(i * (most_unfused_angle / 4096));
     check(i * 1.5707963267948966);   // next to a multiple of a quarter turn
   }
-  CHECK(worst < 1.4e-16);
+  CHECK(worst < 1.4e-16);   // the documented bound, as above
   CHECK(worst > 4e-17);
   double s = 1, c = 0;
   sincos_unfused(0.0, s, c);

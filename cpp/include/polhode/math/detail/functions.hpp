@@ -13,7 +13,7 @@ namespace polhode::math {
 #define POLHODE_PURE
 #endif
 
-// Within 0.51 ulp for every argument, at about the speed of the system's library.
+// Within 0.52 ulp for every argument, at 0.8 to 3 times the time of the system's library.
 
 struct SinCosPair {
   double sin, cos;
@@ -22,7 +22,7 @@ struct SinCosPair {
 POLHODE_PURE SinCosPair sincos(double angle);
 POLHODE_PURE double sin(double angle);
 POLHODE_PURE double cos(double angle);
-POLHODE_PURE double atan2(double y, double x);   ///< 0.51 ulp of the normal numbers; one rounding more below them
+POLHODE_PURE double atan2(double y, double x);
 POLHODE_PURE double atan(double x);
 POLHODE_PURE double asin(double x);
 POLHODE_PURE double acos(double x);
