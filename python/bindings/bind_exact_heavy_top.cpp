@@ -82,8 +82,8 @@ InvalidInput
                              [](const HeavyTop& top) { return py::make_tuple(top.tilt_min(), top.tilt_max()); },
                              "(least, greatest) angle between the symmetry axis and space z [rad].")
       .def_property_readonly("precession_rate", &HeavyTop::precession_rate,
-                             "Mean rate at which the axis turns round space z, over a nutation [rad/s]; NaN where\n"
-                             "there is none to speak of (the axis stays vertical, or 'homoclinic').")
+                             "Mean rate of the axis about space z over a nutation [rad/s]. NaN for an axis that\n"
+                             "stays vertical, and for 'homoclinic'.")
       .def_property_readonly("energy", &HeavyTop::energy, "Kinetic energy and weight_arm cos(tilt) [J].")
       .def_property_readonly("p_phi", &HeavyTop::p_phi, "Angular momentum about space z [kg m^2/s].")
       .def_property_readonly("p_psi", &HeavyTop::p_psi, "Angular momentum about the symmetry axis [kg m^2/s].")

@@ -19,10 +19,11 @@ MODULES = (ph, ph.inertia, ph.shapes, ph.torques, ph.mesh, ph.elliptic, ph.chart
 
 
 def find_faults(texts):
-    """The sentences of {place: text} that are too long, and the idioms."""
+    """The sentences of {place: text} that are too long, formulas apart, and the idioms."""
     found = []
     for place, text in texts.items():
-        found += [(place, words, sentence) for words, sentence in prose.count(text).sentences if words > prose.LONG]
+        found += [(place, words, sentence) for words, sentence in prose.count(text).sentences
+                  if words > prose.LONG and " = " not in sentence]
         found += [(place, idiom[0]) for idiom in IDIOM.finditer(text)]
     return found
 
@@ -59,9 +60,9 @@ def helps():
 
 def records():
     """The descriptions of methods, closed forms and torques, and the needs of methods."""
-    listed = [*ph.methods(), *ph._core.exact_models(), *ph.torques.records()]
-    return {record["name"]: record["doc"] for record in listed} | {
-        f"{record['name']} needs": record["needs"] for record in ph.methods()}
+    found = {record["name"]: record["doc"] for record in [*ph.methods(), *ph.torques.records()]}
+    found |= {name: doc for name, doc, _ in ph._core.exact_models()}
+    return found | {f"{record['name']} needs": record["needs"] for record in ph.methods()}
 
 
 def make_plans():

@@ -11,8 +11,8 @@ MassProperties cone(double mass, double radius, double height) {
 Record describe_cone() {
   return with_volume(
       make_record<&cone>("cone",
-                            "A solid cone round z, the centre of its base at the origin, its apex at (0, 0, h), its "
-                            "centre of mass at (0, 0, h/4). "
+                            "A solid cone round z. The centre of its base is at the origin, its apex at (0, 0, h), and "
+                            "its centre of mass at (0, 0, h/4). "
                             "About the centre of mass: Ix = Iy = 3/80 m (4 r^2 + h^2), Iz = 3/10 m r^2.",
                             {{"mass", "mass [kg]"}, {"radius", "r of the base [m]"}, {"height", "h [m]"}}),
       [](const double* v) -> Real { return pi / 3 * v[0] * v[0] * v[1]; });
