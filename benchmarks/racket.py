@@ -157,8 +157,8 @@ def draw(results):
         axes.legend(frameon=False, loc="upper right", bbox_to_anchor=(1.0, 0.88), fontsize=9)
         style.heading(figure, "The racket: the closed form and separatrix variables keep it",
                       "Block (0.20, 0.40, 0.52) kg m², error of rates and attitude against 110 digits; tightest "
-                      "tolerances.\ntaylor, radau, symplectic (steps of 0.02 s) carry separatrix variables, other methods "
-                      "the rates.",
+                      "tolerances.\ntaylor, radau, symplectic (steps of 0.02 s) carry separatrix variables, other "
+                      "methods the rates.",
                       0.09)
         paths = style.save(figure, folder, "racket")
         plt.close(figure)

@@ -77,8 +77,8 @@ def report(vertices: npt.ArrayLike, faces: npt.ArrayLike) -> dict[str, Any]:
         "faces"; "components": surfaces that share no edge, including cavities; "cavities": surfaces wound inward inside
         another; "embedded": surfaces wound outward inside a solid, which count twice; "unjudged": surfaces whose
         nesting was not checked, because there are too many; "degenerate": faces with two equal corners, which are
-        ignored; "merged": True if the surface is closed only with equal vertices merged; "inside_out"; "low" and "high":
-        corners of the bounding box, shape (3,).
+        ignored; "merged": True if the surface is closed only with equal vertices merged; "inside_out"; "low" and
+        "high": corners of the bounding box, shape (3,).
 
     Raises
     ------

@@ -229,7 +229,7 @@ def test_a_broken_claim_is_found():
     family = BY_NAME["near"]
     result = FamilyResult(family, True, 2.0, {"exact": [Point(0.0, "sphere", {"error": 1e-3})]})
     (sentence,) = [s for s in claims.find_broken([result]) if s.startswith("exact")]
-    assert "near: degrades (1e-3), where it should be holds" in sentence
+    assert "near: degrades (1e-3), but should be at least holds" in sentence
     good = FamilyResult(family, True, 2.0, {"exact": [Point(0.0, "sphere", {"error": 1e-15})]})
     assert not [s for s in claims.find_broken([good]) if s.startswith("exact")]
 

@@ -122,7 +122,7 @@ def test_a_plan_is_carried_out():
 @pytest.mark.parametrize("options", [{"accuracy": 1e-6}, {"rtol": 1e-6}, {"atol": 1e-6}, {"step": 0.1},
                                      {"formulation": "lagrangian"}])
 def test_wishes_beside_a_plan_are_refused(options):
-    with pytest.raises(ph.InvalidInput, match=r"beside plan="):
+    with pytest.raises(ph.InvalidInput, match=r"with plan="):
         ph.solve(scene("S5"), plan=ph.plan(scene("S5")), **options)
 
 

@@ -40,7 +40,7 @@ def test_it_is_a_value(torque):
 
 
 @pytest.mark.parametrize(("windows", "words"), [
-    ([(10, 0)], "got [10, 0] (begin and end are swapped)"), ([(5, 5)], "got [5, 5] (an empty window"),
+    ([(10, 0)], "got [10, 0] (begin and end are swapped)"), ([(5, 5)], "got [5, 5] (the window is empty"),
     ([(0, 10), (5, 15)], "apart from each other, got [0, 10] and [5, 15] (give two torques"),
     ([(0, np.nan)], "got [0, nan]"),
     ([(np.nan, 1)], "got [nan, 1]"), ([(0, 1, 2)], "pairs (begin, end), got shape (1, 3)"), ("soon", "During.windows"),

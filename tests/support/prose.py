@@ -5,8 +5,8 @@
 Prints for each page the mean, the share of sentences above 25 words and the longest sentence; exits with 1 if a mean is
 above the limit. Counted is running text: paragraphs, quotations and list items. Code blocks, indented blocks, tables,
 headings, displayed formulas, pictures and HTML tags are left out. Code in a line and a formula in a line are one word
-each; of a link only its text counts. A sentence ends at a full stop, a question or exclamation mark, and at the end of its
-paragraph or list item; a colon or a semicolon does not end it. Fragments of one or two words are not sentences.
+each; of a link only its text counts. A sentence ends at a full stop, a question or exclamation mark, and at the end of
+its paragraph or list item; a colon or a semicolon does not end it. Fragments of one or two words are not sentences.
 """
 
 from __future__ import annotations

@@ -257,24 +257,20 @@ def main():
         import polhode as ph
         print(json.dumps({"level": ph.build_info()["simd"], "hashes": compute(ph)}))
         return 0
-    stored = json.loads(STORE.read_text()) if STORE.exists() else {}
+    stored = json.loads(STORE.read_text()) if STORE.exists() and not chosen.write else {}
     failed = 0
     for level in chosen.level or LEVELS:
         found = compute_at(level)
         if found is None:
             print(f"{level}: not on this machine")
             continue
-        if chosen.write and LEVELS[level] not in (stored.get("made by") or {}):
-            stored[LEVELS[level]] = found
-            stored.setdefault("made by", {})[LEVELS[level]] = level
-        kept = stored.get(LEVELS[level], {})
+        kept = stored.setdefault(LEVELS[level], found) if chosen.write else stored.get(LEVELS[level], {})
         moved = sorted(name for name in kept.keys() | found.keys() if kept.get(name) != found.get(name))
         failed += len(moved)
         print(f"{level}: {len(found) - len(moved)} of {len(found)} answers have the stored bits")
         for name in moved:
             print(f"  {name}: {'is new' if name not in kept else 'is gone' if name not in found else 'has moved'}")
     if chosen.write:
-        stored.pop("made by", None)
         STORE.write_text(json.dumps(stored, indent=0, sort_keys=True) + "\n")
     return 1 if failed else 0
 

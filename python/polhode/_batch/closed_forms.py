@@ -78,7 +78,7 @@ def free_motion(
     common, own = _split(inertia)
 
     def kernel(*arguments: Any) -> int:
-        return _core._free_motion(*common, *arguments, workers)
+        return _core._free_motion(*(*common, *arguments, workers))
 
     return evaluate([*own, (speeds, 1), (attitudes, 1)], times, out, want, kernel)
 
@@ -143,6 +143,6 @@ def heavy_top(
     common, own = _split(inertia)
 
     def kernel(*arguments: Any) -> int:
-        return _core._heavy_top(*common, *arguments, workers)
+        return _core._heavy_top(*(*common, *arguments, workers))
 
     return evaluate([*own, (arms, 0), (speeds, 1), (attitudes, 1)], times, out, want, kernel)

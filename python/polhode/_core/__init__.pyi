@@ -136,7 +136,7 @@ class InertiaTensor:
     def axes(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (3, 3) R_BP: the columns are the principal axes in the given axes, right-handed, in the moments' order; the
-        signs as :func:`polhode.inertia.principal_axes` tells.
+        signs by the rule of :func:`polhode.inertia.principal_axes`.
         """
     @property
     def matrix(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -151,7 +151,7 @@ class InertiaTensor:
     @property
     def physical(self) -> bool:
         """
-        The triangle inequality was asked for.
+        True if the triangle inequality was checked.
         """
     @property
     def symmetry(self) -> str:
@@ -583,8 +583,8 @@ class HeavyTop:
     @property
     def precession_rate(self) -> float:
         """
-        Mean rate at which the axis turns round space z, over a nutation [rad/s]; NaN where
-        there is none to speak of (the axis stays vertical, or 'homoclinic').
+        Mean rate of the axis about space z over a nutation [rad/s]. NaN for an axis that
+        stays vertical, and for 'homoclinic'.
         """
     @property
     def tilt_bounds(self) -> tuple[float, float]:
@@ -625,7 +625,7 @@ class Scene:
         ...
 class CostFactors:
     """
-    How much slower than forecast each method is on this machine, by name.
+    The time of each method on this machine over its forecast, by name.
     """
     def __init__(self, factors: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex]) -> None:
         ...
@@ -718,7 +718,7 @@ def method_records() -> list[typing.Any]:
     """
 def method_refusal(arg0: str, arg1: Scene) -> str:
     """
-    Why a method does not take a scene, or an empty string.
+    The reason why a method cannot integrate a scene, or an empty string.
     """
 def plan(scene: Scene, options: dict[str, typing.Any]) -> dict[str, typing.Any]:
     ...
@@ -728,7 +728,7 @@ def principal_axes(matrices: typing.Any) -> tuple[numpy.typing.NDArray[numpy.flo
     """
 def reference(scene: Scene, order: typing.SupportsInt | typing.SupportsIndex, tolerance: typing.SupportsFloat | typing.SupportsIndex, max_steps: typing.SupportsInt | typing.SupportsIndex) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], int]:
     """
-    omega, attitude and steps of a scene by Taylor series in long double: what to hold others against.
+    omega, attitude and steps of a scene by Taylor series in long double, as a reference.
     """
 def shape_records() -> list[typing.Any]:
     """

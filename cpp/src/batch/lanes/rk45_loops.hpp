@@ -4,6 +4,7 @@
 
 #include "batch/lanes/pass.hpp"
 #include "batch/lanes/rk45_block.hpp"
+#include "polhode/math/detail/functions.hpp"
 #include "polhode/math/detail/sincos_unfused.hpp"
 #include "polhode/ode/detail/step_control.hpp"
 #include "polhode/ode/tableaus/dormand_prince54.hpp"
@@ -18,14 +19,17 @@ using Mask = math::Mask<Wide>;
 
 POLHODE_INLINE bool any(Mask mask) { return bits(mask) != 0; }
 
-/// The same as in GravityGradient: polynomials, and the library's functions beyond their range, lane by lane.
+/// The same as in GravityGradient: polynomials, and beyond their range one lane after another.
 POLHODE_INLINE void sincos_lanes(Wide angle, Wide& sine, Wide& cosine) {
   math::sincos_unfused(angle, sine, cosine);
   const Mask within = abs(angle) <= Wide(math::most_unfused_angle);
   if (bits(within) == (1u << Wide::width) - 1) return;
   alignas(64) double a[Wide::width], s[Wide::width], c[Wide::width];
   angle.store(a);
-  for (int i = 0; i < Wide::width; ++i) s[i] = __builtin_sin(a[i]), c[i] = __builtin_cos(a[i]);
+  for (int i = 0; i < Wide::width; ++i) {
+    const math::SinCosPair far = math::sincos(a[i]);
+    s[i] = far.sin, c[i] = far.cos;
+  }
   sine = select(within, sine, Wide::load(s)), cosine = select(within, cosine, Wide::load(c));
 }
 
