@@ -76,10 +76,10 @@ TEST_CASE("elementary functions are within 0.55 ulp of 40-digit values") {
     ++count[truth.name];
   }
   CHECK(count.size() == 14);
-  for (const auto& [name, lines] : count) {
-    CAPTURE(name);
-    CHECK(lines > 100);
-    CHECK(worst[name] > 0.4);   // the table has hard cases
+  for (const auto& function : count) {
+    CAPTURE(function.first);
+    CHECK(function.second > 100);
+    CHECK(worst[function.first] > 0.4);   // the table has hard cases
   }
 }
 
