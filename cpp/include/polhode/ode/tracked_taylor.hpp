@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "polhode/math/detail/coin.hpp"
-#include "polhode/math/detail/functions.hpp"
 #include "polhode/ode/taylor.hpp"
 
 namespace polhode::ode {
@@ -31,20 +30,25 @@ concept TrackedProblem = SeriesProblem<P> && requires(const P& problem, const do
   problem.measure_error(y, y, out);
 };
 
-/// Taylor steps that propagate an estimate of their error: e, the distance of a twin solution from y.
+/// Taylor steps that propagate two estimates of their error.
 ///
-/// The twin takes the same steps. In each step it loses 2.5 times the estimated truncation error, and it starts from
-/// inputs that are rounded once more. e is small and obeys the equations linearised about y, so that a few terms of its
-/// series suffice. These are the differences of the series of y + scale e and of y. If the requested error is below
-/// 1e-6, `scale` enlarges it to 1e-6. (Transport of local errors by the linearised equations: Hairer, Norsett & Wanner
-/// 1993, I.13 and II.8, for estimates of the global error.)
+/// `loss_` is the sum of what the steps have lost, with its signs: it cancels where the true losses cancel. The loss of a
+/// step comes from the defect of its polynomial P at the end, -(P' - f(P)) h / (order + 1): the terms of a series point
+/// anywhere, but the defect has the sign of the loss (measured: 0.9 to 1.4 of it, docs/notes/certificates.md).
+/// `spread_` is what rounding may have made of the inputs and of each step, and a tenth of each loss. It starts from
+/// perturbed inputs, follows perturbed constants, and grows in its own direction, so that it never cancels.
+///
+/// Both are small and obey the equations linearised about y. So a few terms of their series suffice, which are the
+/// differences of the series of y + scale e and of y. If the requested error is below 1e-6, `scale` enlarges it to 1e-6.
+/// (Transport of local errors by the linearised equations: Hairer, Norsett & Wanner 1993, I.13 and II.8, for estimates of
+/// the global error. Defects: Enright 2000, Numer. Algorithms 25, 137.)
 template <TrackedProblem P>
 class TrackedTaylor final : public Taylor::Stepper<P> {
   static constexpr int W = series_width;
-  static constexpr int error_terms = 7;         // enough for a step's effect on the error to a part in a thousand
-  static constexpr double safety = 2.5;         // on the truncation error of a step
-  static constexpr double aligned = 0.1;        // the part of it that is added along the present error
-  static constexpr double rounding = 0x1p-54;   // rounding error of y in a step, whose sums are compensated
+  static constexpr int error_terms = 12;        // with 7, a few parts in ten thousand are missing in each step
+  static constexpr double safety = 1.5;         // on the loss of a step
+  static constexpr double unsigned_part = 0.1;  // of the loss, that the spread gets too
+  static constexpr double rounding = 0x1p-53;   // of y in a step, whose sums are compensated
   using Base = Taylor::Stepper<P>;
 
  public:
@@ -56,8 +60,8 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
         trace_(trace),
         scale_(find_scale(trace)),
         t0_(t0) {
-    for (int i = 0; i < W; ++i) error_[i] = (coin_.toss() ? 1.0 : -1.0) * compute_perturbation(trace) * y0[i];
-    measure(0.0);
+    for (int i = 0; i < W; ++i) spread_[i] = (coin_.toss() ? 1.0 : -1.0) * compute_perturbation(trace) * y0[i];
+    measure();
     old_[0] = now_[0], old_[1] = now_[1];
   }
 
@@ -69,7 +73,7 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   StepResult advance(double t_end) override {
     const StepResult result = Base::advance(t_end);
     if (result != StepResult::accepted) return result;
-    propagate_error();
+    propagate_errors();
     if (std::max(now_[0] / largest_, now_[1]) > trace_.most * trace_.asked) {
       trace_.given_up = std::abs(this->t_ - t0_);
       return StepResult::not_finite;
@@ -92,28 +96,45 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
  private:
   static double find_scale(const ErrorTrace& trace) { return std::max(1.0, 1e-6 / trace.asked); }
 
-  void propagate_error() {
-    const int order = this->order_, terms = trace_.all_terms ? order : std::min(order - 1, error_terms);
-    const double* rows = this->rows_;
+  void propagate_errors() {
     const double s = ((this->time_.hi - this->time_old_.hi) + (this->time_.lo - this->time_old_.lo)) / this->unit_old_;
-    alignas(64) double twin[W], propagated[W];
-    for (int i = 0; i < W; ++i) twin[i] = this->y_old_[i] + error_[i];
-    perturbed_.compute_series(this->time_old_, this->unit_old_, twin, twin, terms, twin_rows_);
-    for (int k = W; k < W * (terms + 1); ++k) twin_rows_[k] -= rows[k];
-    series_kernels().evaluate(twin_rows_, terms, Base::zero, error_, &s, 1, propagated);
-    // The truncation error, from the largest of the last four terms: one or two of them may happen to be small.
-    double loss[W] = {}, sizes[3], power = scale_ * safety * shrink_ * math::power(std::abs(s), order);
-    for (int k = order; k > order - 4; --k, power *= shrink_ / std::abs(s)) {
-      for (int i = 0; i < W; ++i) loss[i] = std::max(loss[i], std::abs(rows[W * k + i]) * power);
-    }
-    for (int i = 0; i < W; ++i) {
-      loss[i] = std::copysign(loss[i], rows[W * order + i]);
-      error_[i] = propagated[i] + loss[i];
-    }
+    propagate(this->problem_, s, loss_);
+    propagate(perturbed_, s, spread_);
+    alignas(64) double loss[W];
+    double sizes[3];
+    compute_loss(s, loss);
+    for (int i = 0; i < W; ++i) loss_[i] += loss[i];
     this->problem_.measure_error(this->y_, loss, sizes);
-    restore();
+    restore(loss_);
+    restore(spread_);
+    grow_spread(scale_ * rounding + unsigned_part * find_relative_error(sizes));
     old_[0] = now_[0], old_[1] = now_[1];
-    measure(scale_ * rounding + aligned * find_relative_error(sizes));
+    measure();
+  }
+
+  /// A small error over the step, by the difference of two series.
+  void propagate(const P& problem, double s, double* error) {
+    const int terms = trace_.all_terms ? this->order_ : std::min(this->order_, error_terms);
+    alignas(64) double twin[W], propagated[W];
+    for (int i = 0; i < W; ++i) twin[i] = this->y_old_[i] + error[i];
+    problem.compute_series(this->time_old_, this->unit_old_, twin, twin, terms, twin_rows_);
+    for (int k = W; k < W * (terms + 1); ++k) twin_rows_[k] -= this->rows_[k];
+    series_kernels().evaluate(twin_rows_, terms, Base::zero, error, &s, 1, propagated);
+    std::copy_n(propagated, W, error);
+  }
+
+  /// The loss of the step in units of the scaled error, from the defect of its polynomial at the end.
+  void compute_loss(double s, double* loss) {
+    const int order = this->order_;
+    alignas(64) double slope[W];
+    for (int k = 1; k <= order; ++k) {   // the rows of P'
+      for (int i = 0; i < W; ++i) twin_rows_[W * (k - 1) + i] = k * this->rows_[W * k + i];
+    }
+    series_kernels().evaluate(twin_rows_, order - 1, twin_rows_, Base::zero, &s, 1, slope);
+    constexpr int fewest = Taylor::least_order;   // f is the first row; the kernels compute no fewer
+    this->problem_.compute_series(this->time_, this->unit_old_, this->y_, this->carry_, fewest, twin_rows_);
+    const double factor = -scale_ * safety * s / (order + 1);
+    for (int i = 0; i < W; ++i) loss[i] = factor * (slope[i] - twin_rows_[W + i]);
   }
 
   /// The larger of the two errors, that of the first part relative to its size.
@@ -121,44 +142,44 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     return std::max(sizes[0] > 0.0 ? sizes[1] / sizes[0] : 0.0, sizes[2]);
   }
 
-  /// Applies the correction after a step to the twin as well.
-  void restore() {
+  /// Applies the correction after a step to the erroneous solution as well.
+  void restore(double* error) {
     double twin[W], low[W];
     for (int i = 0; i < W; ++i) {
-      const math::DD sum = math::two_sum(this->y_[i], this->carry_[i] + error_[i]);
+      const math::DD sum = math::two_sum(this->y_[i], this->carry_[i] + error[i]);
       twin[i] = sum.hi, low[i] = sum.lo;
     }
     this->problem_.correct(this->time_, this->counts_.steps - 1, twin, low);
-    for (int i = 0; i < W; ++i) error_[i] = (twin[i] - this->y_[i]) + (low[i] - this->carry_[i]);
+    for (int i = 0; i < W; ++i) error[i] = (twin[i] - this->y_[i]) + (low[i] - this->carry_[i]);
   }
 
-  /// Measures the error, after adding to it.
-  /// @param growth  what to add, relative to y, along the present error: in another direction it might not grow, and
-  ///                opposite signs might cancel by chance
-  void measure(double growth) {
-    double out[3];
-    this->problem_.measure_error(this->y_, error_, out);
-    largest_ = std::max(largest_, out[0]);
-    const double relative = find_relative_error(out);
-    if (relative > 0.0 && relative < std::numeric_limits<double>::infinity()) {
-      const double factor = 1 + growth / relative;
-      for (double& e : error_) e *= factor;
-      out[1] *= factor, out[2] *= factor;
-    }
+  /// @param growth  what to add to the spread, relative to y, in its own direction
+  void grow_spread(double growth) {
+    double sizes[3];
+    this->problem_.measure_error(this->y_, spread_, sizes);
+    const double relative = find_relative_error(sizes);
+    if (!(relative > 0.0 && relative < std::numeric_limits<double>::infinity())) return;
+    for (double& u : spread_) u *= 1 + growth / relative;
+  }
+
+  void measure() {
+    double lost[3], spread[3];
+    this->problem_.measure_error(this->y_, loss_, lost);
+    this->problem_.measure_error(this->y_, spread_, spread);
+    largest_ = std::max(largest_, lost[0]);
+    const double rates = lost[1] + spread[1], angle = lost[2] + spread[2];
     // An oscillating error is small at times, so its size is held for a few steps.
-    now_[0] = std::max(out[1] / scale_, 0.7 * now_[0]);
-    now_[1] = std::max(out[2] / scale_, 0.7 * now_[1]);
-    if (!(out[1] + out[2] < 1e300)) now_[0] = now_[1] = std::numeric_limits<double>::infinity();
+    now_[0] = std::max(rates / scale_, 0.7 * now_[0]);
+    now_[1] = std::max(angle / scale_, 0.7 * now_[1]);
+    if (!(rates + angle < 1e300)) now_[0] = now_[1] = std::numeric_limits<double>::infinity();
   }
 
   const P& perturbed_;
   ErrorTrace& trace_;
   double scale_, t0_;
-  // the ratio of successive terms by the rule for the step
-  double shrink_ = math::fast_pow(this->tolerances_.rtol, 1.0 / (this->order_ - 1));
   double largest_ = 0.0, now_[2] = {}, old_[2] = {}, good_until_ = 0.0;
   math::Coin coin_;
-  alignas(64) double error_[W] = {};
+  alignas(64) double loss_[W] = {}, spread_[W] = {};
   alignas(64) double twin_rows_[W * (most_series_order + 1)] = {};
 };
 
