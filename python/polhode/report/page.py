@@ -96,8 +96,8 @@ def render(
     sections += [("atlas", "Where methods fail")] * bool(atlas) + [("motion", "The motions")] * bool(motions)
     sections += [("machine", "Machine and versions")]
     count = sum(point["status"] == "answered" for scene in content["scenes"] for point in scene["points"])
-    lead = (f"{count} answers on {len(content['scenes'])} scenes, each held against a reference of more digits: "
-            "the error of every sample beside the time it took, in one run on one machine.")
+    lead = (f"{count} results on {len(content['scenes'])} scenes, each compared with a reference of more digits. "
+            "Errors and times are from one run on one machine.")
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     return environment.from_string(_text("page.html.j2")).render(
         title="polhode: speed, accuracy, and where methods fail" if atlas else "polhode: speed and accuracy", lead=lead,

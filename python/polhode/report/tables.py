@@ -90,7 +90,7 @@ def machine(content: dict[str, Any]) -> list[Row]:
             ["Python", here["python"]]]
     rows += [[f"polhode {key}", str(value)] for key, value in build.items()]
     rows += [[name, version] for name, version in content["versions"].items()]
-    rows += [[f"{name}, not here", how] for name, how in content["missing"].items()]
+    rows += [[f"{name}, not installed", how] for name, how in content["missing"].items()]
     return rows
 
 

@@ -52,7 +52,7 @@ def read(root: Node, file: pathlib.Path) -> Robot:
               for m in asset.children("mesh")}
     model = Model(file, compiler, defaults, meshes)
     found = {element.tag for element in root.element.iter()} & set(UNREAD)
-    notes += [f"<{tag}> is not read: what it adds is not judged" for tag in UNREAD if tag in found]
+    notes += [f"<{tag}> is not read: its additions are not judged" for tag in UNREAD if tag in found]
     links: list[Link] = []
     left = [(node, "main") for world in root.children("worldbody") for node in world.children()]
     while left:
@@ -154,7 +154,7 @@ def _body(node: Node, style: str, model: Model, index: int) -> Link:
     inertial = node.child("inertial")
     if compiler.from_geometry == "true" or (compiler.from_geometry == "auto" and inertial is None):
         if inertial is not None:
-            link.notes.append("inertiafromgeom: MuJoCo does not use the <inertial> that is there")
+            link.notes.append("inertiafromgeom: MuJoCo ignores the given <inertial>")
         _from_geoms(link, solids)
         return link
     if inertial is None:
@@ -179,7 +179,7 @@ def _inertial(link: Link, node: Node, compiler: Compiler) -> None:
         raise node.wrong("diaginertia or fullinertia is missing")
     moments = np.linalg.eigvalsh(link.matrix) if np.isfinite(link.matrix).all() else np.zeros(3)
     if compiler.balance and moments[2] > moments[0] + moments[1]:
-        link.notes.append(f"balanceinertia: MuJoCo makes all three moments {moments.mean():.4g} and says nothing")
+        link.notes.append(f"balanceinertia: MuJoCo silently makes all three moments {moments.mean():.4g}")
     if 0 <= link.mass < compiler.least_mass:
         link.notes.append(f"boundmass: MuJoCo takes {compiler.least_mass:g} kg")
     if moments[0] < compiler.least_inertia:
