@@ -87,7 +87,8 @@ def test_past_the_horizon_of_float64_solve_says_how_far_it_holds(accuracy):
     assert motion.t[errors > accuracy][0] - said <= 70
     # doubles at their best are lost at 219 to 260 s, by luck; at 246 s before any method was tuned
     if accuracy == 0.1:
-        assert 246 - 36 <= said <= 246   # a certificate is on the safe side of it
+        # A certificate is on the safe side of it: 197 s, since its spread never cancels (210 s while it could).
+        assert 246 - 60 <= said <= 246
 
 
 @pytest.mark.parametrize(("name", "family", "text"), [("euler", "long", "burst"), ("leapfrog", "gimbal", "burst"),

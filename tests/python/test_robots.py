@@ -196,7 +196,7 @@ def test_mjcf_masses_from_geoms(write):
     text = mjcf('<body name="b"><inertial pos="0 0 0" mass="1" diaginertia="1 1 9"/><geom size="0.1" mass="3"/></body>',
                 'inertiafromgeom="true"')
     status, links = judged(write("b.xml", text))
-    assert status == 0 and links["b"]["mass"] == pytest.approx(3) and "does not use" in links["b"]["notes"][0]
+    assert status == 0 and links["b"]["mass"] == pytest.approx(3) and "ignores the given" in links["b"]["notes"][0]
     end = mjcf('<body name="b"><geom type="capsule" fromto="0 0 1 1 0 1" size="0.1"/></body>')
     capsule = ph.shapes.capsule(1.0, 0.1, 1.0)
     status, links = judged(write("c.xml", end))
