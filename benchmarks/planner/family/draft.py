@@ -1,0 +1,67 @@
+"""A scene in the making. Kinds change a draft; at the end it becomes a scene, in units of its own."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+import polhode as ph
+
+
+@dataclass
+class Draft:
+    """Times and windows are in spans until the end, so that a kind may still change the span."""
+
+    moments: np.ndarray
+    omega: np.ndarray
+    attitude: np.ndarray
+    pace: float                                     # rate that torques and the span are measured by [rad/s]
+    turns: float                                    # span x pace / 2 pi
+    grid: np.ndarray
+    torques: list = field(default_factory=list)     # (torque, its windows or None)
+    axes: ph.Rotation | None = None                 # of the principal axes in the body
+    late: float = 0.0                               # time of the start, in spans
+    want: tuple = ("omega", "attitude")
+    inertia_unit: float = 1.0
+    time_unit: float = 1.0
+
+    @property
+    def span(self):
+        return 2 * np.pi * self.turns / self.pace
+
+    @property
+    def push(self):
+        """The torque that would change the body's motion within a radian."""
+        return self.moments.max() * self.pace ** 2
+
+    def add(self, torque, windows=None):
+        self.torques.append((torque, windows))
+
+    def finish(self, name):
+        moments, span = self.inertia_unit * self.moments, self.time_unit * self.span
+        inertia, omega = moments, self.omega
+        if self.axes is not None:
+            R = self.axes.as_matrix()
+            tensor = R @ np.diag(moments) @ R.T
+            inertia, omega = (tensor + tensor.T) / 2, R @ omega
+        t0 = self.late * span
+        torques = []
+        for torque, windows in self.torques:
+            torque = scale(torque, self.inertia_unit, self.time_unit)
+            torques.append(torque if windows is None else ph.torques.During(torque, t0 + span * np.asarray(windows)))
+        return ph.Scene(inertia=inertia, omega=omega / self.time_unit, attitude=self.attitude, torques=torques, t0=t0,
+                        times=t0 + span * self.grid, want=self.want, name=name)
+
+
+def scale(torque, inertia, time):
+    """The same torque in other units: what was 1 kg m^2 and 1 s becomes `inertia` and `time`."""
+    match torque:
+        case ph.torques.Constant():
+            return ph.torques.Constant(np.asarray(torque.torque) * (inertia / time ** 2), torque.frame)
+        case ph.torques.Gravity():
+            return ph.torques.Gravity(torque.weight * (inertia / time ** 2), torque.arm)
+        case ph.torques.GravityGradient():
+            return ph.torques.GravityGradient(torque.mean_motion / time, torque.phase)
+        case ph.torques.Damping():
+            return ph.torques.Damping(np.asarray(torque.matrix) * (inertia / time))
+        case ph.torques.Custom():
+            return ph.torques.Custom(torque.function.scaled(inertia, time))
