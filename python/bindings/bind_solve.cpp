@@ -21,7 +21,7 @@ namespace {
 py::object view(const py::object& answer, const std::vector<double>& values, py::ssize_t columns, bool wanted = true) {
   if (!wanted) return py::none();
   const auto size = static_cast<py::ssize_t>(values.size());
-  if (columns == 1) return Array({size}, values.data(), answer);
+  if (columns == 1) return Array(size, values.data(), answer);
   return Array({size / columns, columns}, values.data(), answer);
 }
 
