@@ -16,7 +16,7 @@ $(shell mkdir -p build; find python/polhode -type f -not -name '*.py[ci]' | sort
 inputs := build/.names $(shell find CMakeLists.txt pyproject.toml cpp python/CMakeLists.txt python/bindings \
             tests/cpp/CMakeLists.txt scenes -type f 2>/dev/null)
 
-.PHONY: help demo test same-bits check-long install module clang sanitize stubs clean
+.PHONY: help demo test same-bits check-long install module clang sanitize aarch64 debian13 stubs clean
 .NOTPARALLEL:
 # An environment whose Python has gone is made anew.
 ifneq ($(shell $(VENV)/bin/python -c 'import pip; print("there")' 2>/dev/null),there)
@@ -81,6 +81,20 @@ sanitize: $(VENV)/.demo
 	  -DPOLHODE_SANITIZE=ON $$($(VENV)/bin/python .ci/eigen_dir.py --cmake) > /dev/null
 	@cmake --build build/sanitize -j $(JOBS) --target polhode_tests
 	@build/sanitize/tests/cpp/polhode_tests
+
+# The C++ tests for AArch64, emulated: among them that its answers have the bits of x86's baseline.
+aarch64: $(VENV)/.demo
+	@dpkg -s g++-aarch64-linux-gnu qemu-user > /dev/null 2>&1 || \
+	  apt-get install -y -qq --no-install-recommends g++-aarch64-linux-gnu qemu-user > /dev/null
+	@cmake -S . -B build/aarch64 -G Ninja -DCMAKE_BUILD_TYPE=Release -DPOLHODE_WERROR=ON -DPOLHODE_BUILD_TESTS=ON \
+	  -DCMAKE_TOOLCHAIN_FILE=$(CURDIR)/.ci/machines/aarch64.cmake -Ddoctest_DIR=/usr/lib/cmake/doctest \
+	  $$($(VENV)/bin/python .ci/eigen_dir.py --cmake | grep . || echo -DEigen3_DIR=/usr/share/eigen3/cmake) > /dev/null
+	@cmake --build build/aarch64 -j $(JOBS) --target polhode_tests | sed -n '/warning\|error/p'
+	@qemu-aarch64 -L /usr/aarch64-linux-gnu build/aarch64/tests/cpp/polhode_tests
+
+# Debian 13: GCC 14, Clang 19, Python 3.13, in a folder made by debootstrap (needs root).
+debian13:
+	@.ci/machines/debian13
 
 stubs: install
 	@$(PYTHON) tests/support/make_stubs.py
