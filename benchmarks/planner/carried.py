@@ -3,7 +3,7 @@
     python benchmarks/planner/carried.py [--seed 77] [--count 600]
 
 Prints how many bounds are false, the worst ratio of error to bound, how often the error is beyond what was asked, and
-the quantiles of bound over error. Errors of omega are relative to the largest rate of the samples.
+the quantiles of bound over error. Errors of omega are relative to the largest rate of the start and the samples.
 """
 
 import argparse
@@ -41,7 +41,7 @@ def draw(rng):
 
 def measure(scene, motion):
     omega, attitude, _ = _core.reference(scene, 24, 1e-20, 400_000)
-    rates = np.linalg.norm(motion.omega - omega, axis=1).max() / np.linalg.norm(omega, axis=1).max()
+    rates = np.linalg.norm(motion.omega - omega, axis=1).max() / motion.omega_scale
     apart = np.minimum(np.linalg.norm(motion.attitude - attitude, axis=1),
                        np.linalg.norm(motion.attitude + attitude, axis=1))
     return max(rates, (4 * np.arcsin(apart / 2)).max())

@@ -14,14 +14,15 @@ def attitude_error(attitude, reference):
     return float(np.max(4 * np.arcsin(np.minimum(1.0, np.minimum(near, far) / 2))))
 
 
-def rates_error(omega, reference):
-    """The largest error of omega, relative to the largest omega."""
-    return float(np.linalg.norm(omega - reference, axis=-1).max() / np.linalg.norm(reference, axis=-1).max())
+def rates_error(omega, reference, start=(0.0, 0.0, 0.0)):
+    """The largest error of omega, relative to the largest rate of the start and the samples."""
+    scale = max(np.linalg.norm(start), np.linalg.norm(reference, axis=-1).max())
+    return float(np.linalg.norm(omega - reference, axis=-1).max() / scale)
 
 
-def error(omega, attitude, reference):
+def error(omega, attitude, reference, start=(0.0, 0.0, 0.0)):
     """The error of a trajectory as docs/conventions.md defines it: the larger of the two."""
-    return max(rates_error(omega, reference["omega"]), attitude_error(attitude, reference["attitude"]))
+    return max(rates_error(omega, reference["omega"], start), attitude_error(attitude, reference["attitude"]))
 
 
 def truth(name):

@@ -19,6 +19,12 @@ constexpr std::size_t block = 64;  // bodies that are set up together, so that t
 
 bool finite(const double* values, std::size_t n) { return within(values, n); }
 
+/// Whether FreeMotion takes the moments with these rates; any positive ones are checked elsewhere.
+bool carries(const double* I, const double* omega) {
+  const bool turns = omega[0] != 0.0 || omega[1] != 0.0 || omega[2] != 0.0;
+  return !(std::min({I[0], I[1], I[2]}) > 0.0) || !turns || exact::carries_moments(I);
+}
+
 void check_moments(const double* I, std::size_t body) {
   const double largest = std::max({I[0], I[1], I[2]}), smallest = std::min({I[0], I[1], I[2]});
   if (!(smallest > 0.0)) {
@@ -124,6 +130,11 @@ class Run {
       all_finite[i] = (b_.tensor || finite(b_.moments + 3 * body, 3)) && finite(b_.omega + 3 * body, 3) &&
                       finite(b_.attitude + 4 * body, 4);
       if (!all_finite[i]) continue;
+      const Vector3d tensor_moments = b_.tensor ? b_.tensor->moments() : Vector3d::Zero();
+      if (!carries(b_.tensor ? tensor_moments.data() : b_.moments + 3 * body, b_.omega + 3 * body)) {
+        all_finite[i] = false;
+        continue;
+      }
       const double* t = rows_.times_of(body);
       check_times(t, b_.times, b_.own_times ? kernels.times.reach(t, b_.times) : reach_, check_body(b_, body), body);
     }

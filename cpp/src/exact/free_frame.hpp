@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "polhode/core/quat.hpp"
 #include "polhode/exact/detail/free_kernels.hpp"
 
@@ -8,6 +10,11 @@ namespace polhode::exact {
 
 /// e with the largest |v_i| in [2^e, 2^(e + 1)).
 int exponent_of(const Vector3d& v);
+
+/// Whether the ratio of the least moment to the largest is at least 2^-511: its square is then a normal float64.
+inline bool carries_moments(const double* I) {
+  return std::min({I[0], I[1], I[2]}) >= 0x1p-511 * std::max({I[0], I[1], I[2]});
+}
 
 /// 2^e v.
 Vector3d ldexp(const Vector3d& v, int e);

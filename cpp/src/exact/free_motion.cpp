@@ -91,6 +91,10 @@ void FreeMotion::set_up(const Vector3d& moments, const Matrix3d& R_BP, bool exac
     for (std::size_t c = 0; c < 4; ++c) frame_.attitude[4 * c + 3] = q[c];
     return;
   }
+  if (!exact::carries_moments(moments.data())) {
+    throw InvalidInput("inertia", "moments within the range of float64", vector_text(moments),
+                       "the least is below 1.5e-154 of the largest");
+  }
   time_exponent_ = exponent_of(omega_);
   moment_exponent_ = exponent_of(moments);
   frame_.time_scale = std::ldexp(1.0, time_exponent_);

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "polhode/math/detail/functions.hpp"
 #include "polhode/ode/tracked_taylor.hpp"
 
 namespace polhode {
@@ -19,11 +18,8 @@ Attempt run_carried(CountedRuns& runs, double rtol, double safety, double most, 
   motion.rtol_used = rtol;
   given_up = trace.given_up;
   if (!attempt.finished() || motion.t.empty()) return attempt;
-  double size = 0.0;
-  for (std::size_t i = 0; i + 2 < motion.omega.size(); i += 3) {
-    size = std::max(size, math::hypot(motion.omega[i], motion.omega[i + 1], motion.omega[i + 2]));
-  }
-  const double rates = motion.omega.empty() || trace.rate_error == 0.0 ? 0.0 : trace.rate_error / size;
+  const double rates =
+      motion.omega.empty() || trace.rate_error == 0.0 ? 0.0 : trace.rate_error / motion.omega_scale();
   const double error = std::max(rates, motion.attitude.empty() ? 0.0 : trace.attitude_error);
   // The carried error can grow without bound, but two attitudes differ by half a turn at most.
   attempt.error = safety * std::min(error, std::numbers::pi);

@@ -57,13 +57,13 @@ Attempt PairCertificate::run(double coarse, double fine) {
     motion.status = Status::stopped;
     motion.message = "stopped by the progress callback before the error was certified";
   } else if (other.status == Status::finished) {
-    const double difference = compute_distance(motion.t.size(), data(motion.omega), data(motion.attitude),
-                                               data(other.omega), data(other.attitude));
+    const double difference = compute_distance(motion.t.size(), scene.omega().norm(), data(motion.omega),
+                                               data(motion.attitude), data(other.omega), data(other.attitude));
     if (difference < unknown_error) attempt.error = safety_ * difference + formulas;
     if (!(attempt.error <= accuracy)) {
       attempt.holds_until =
-          find_divergence_time(motion.t.size(), motion.t.data(), scene.t0(), data(motion.omega), data(motion.attitude),
-                               data(other.omega), data(other.attitude), accuracy / safety_);
+          find_divergence_time(motion.t.size(), motion.t.data(), scene.t0(), scene.omega().norm(), data(motion.omega),
+                               data(motion.attitude), data(other.omega), data(other.attitude), accuracy / safety_);
     }
   }
   return attempt;

@@ -145,7 +145,7 @@ double compare_closed_forms(const Scene& scene, const ClosedForm& a, const Close
   for (std::size_t i = 0; i < n; ++i) t[i] = times[times.size() - 1 - i * ((times.size() - 1) / n)] - scene.t0();
   a.at(t, n, wa, qa);
   b.at(t, n, wb, qb);
-  return compute_distance(n, wa, qa, wb, qb);
+  return compute_distance(n, scene.omega().norm(), wa, qa, wb, qb);
 }
 
 constexpr double nudge = 0x1p-46;   // relative change of an input, to measure its effect

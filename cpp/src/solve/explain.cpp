@@ -55,7 +55,7 @@ double compute_condition(const Scene& scene, const ClosedForm& form) {
   double wa[3], wb[3], qa[4], qb[4];
   form.at(&t, 1, wa, qa);
   other->at(&t, 1, wb, qb);
-  return compute_distance(1, wa, qa, wb, qb) / 4;
+  return compute_distance(1, scene.omega().norm(), wa, qa, wb, qb) / 4;
 }
 
 void explain_exact(const Scene& scene, const Facts& facts, const ClosedForm& form, PlanReport& report) {

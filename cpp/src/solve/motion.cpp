@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "polhode/core/error.hpp"
+#include "polhode/math/detail/functions.hpp"
 #include "polhode/solve/closed_form.hpp"
 
 namespace polhode {
@@ -17,6 +18,21 @@ std::string_view to_text(Status status) {
     case Status::failed: return "failed";
   }
   return "failed";
+}
+
+double Motion::omega_scale() const {
+  double scale = math::hypot(start.omega[0], start.omega[1], start.omega[2]);
+  for (std::size_t i = 0; i + 2 < omega.size(); i += 3)
+    scale = std::max(scale, math::hypot(omega[i], omega[i + 1], omega[i + 2]));
+  return scale;
+}
+
+bool Motion::all_finite() const {
+  // A number times 0 is 0, or NaN if it is not finite: a sum without branches.
+  double sum = 0.0;
+  for (const double value : omega) sum += 0.0 * value;
+  for (const double value : attitude) sum += 0.0 * value;
+  return sum == 0.0;
 }
 
 State Motion::at(double time) const {

@@ -84,7 +84,8 @@ Motion solve_exact_pieces(const Decision& decision, const SolveOptions& options)
     const Motion other = run_planned(decision, perturb(Scene(std::move(parts))), comparison, 0.0, true);
     const auto data = [](const std::vector<double>& v) { return v.empty() ? nullptr : v.data(); };
     motion.error +=
-        1.5 * compute_distance(other.t.size(), data(omega), data(attitude), data(other.omega), data(other.attitude));
+        1.5 * compute_distance(other.t.size(), scene.omega().norm(), data(omega), data(attitude), data(other.omega),
+                               data(other.attitude));
   }
   ++motion.runs;
   motion.error_kind = motion.error <= motion.asked ? "bounded" : "limit";

@@ -73,7 +73,8 @@ def check_out(out: Any, names: tuple[str, ...], shape: tuple[int, ...]) -> dict[
 
 
 def _warn(poisoned: int, level: int) -> None:
-    warnings.warn(f"{poisoned} rows are NaN because their input is not finite", RuntimeWarning, stacklevel=level)
+    warnings.warn(f"{poisoned} rows are NaN because their input is not finite or beyond float64", RuntimeWarning,
+                  stacklevel=level)
 
 
 def _evaluate_one(

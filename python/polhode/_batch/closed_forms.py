@@ -66,7 +66,8 @@ def free_motion(
     Warns
     -----
     RuntimeWarning
-        Once, with their count, when rows came out NaN because their input is not finite.
+        Once, with their count, when rows came out NaN because their input is not finite, or because the least moment is
+        below 1.5e-154 of the largest.
 
     Notes
     -----

@@ -26,18 +26,29 @@ class Truth(NamedTuple):
     source: str
     uncertainty: float   # the larger of both parts, as `Errors.largest`
     floor: float | None  # how far rounding the scene's inputs moves the answer; None when not known
+    start_rate: float = 0.0   # of the scene [rad/s]
+
+    @property
+    def omega_scale(self) -> float:
+        """The largest rate of the start and the samples [rad/s], as `Motion.omega_scale`."""
+        return max(float(np.linalg.norm(self.omega, axis=1).max()), self.start_rate)
 
 
 class Errors(NamedTuple):
     """Largest errors over all samples."""
 
-    omega: float      # |omega - truth| / max |truth|
+    omega: float      # |omega - truth| / the largest rate of the start and the samples
     attitude: float   # angle of the rotation between the two attitudes [rad]
 
     @property
     def largest(self) -> float:
         """The larger one: NaN if either is."""
         return float(np.maximum(self.omega, self.attitude))
+
+
+def start_rate(scene: Scene) -> float:
+    """Return the size of omega at the start [rad/s]."""
+    return float(np.linalg.norm(scene.omega))
 
 
 def attitude_errors(attitude: Floats, truth: Truth) -> Floats:
@@ -54,8 +65,8 @@ def attitude_errors(attitude: Floats, truth: Truth) -> Floats:
 
 
 def compute_errors(omega: Floats, attitude: Floats, truth: Truth) -> Errors:
-    """Return the largest errors of an answer."""
-    size = np.linalg.norm(truth.omega, axis=1).max()
+    """Return the largest errors of an answer; omega's is relative to the largest rate of the start and the samples."""
+    size = truth.omega_scale
     with np.errstate(all="ignore"):   # an answer may hold anything
         rates = np.linalg.norm(omega - truth.omega, axis=1).max() / (size if size > 0 else 1.0)
         return Errors(float(rates), float(attitude_errors(attitude, truth).max()))
@@ -71,7 +82,8 @@ def _stored(scene: Scene) -> Truth | None:
         omega, attitude = table["omega"], table["attitude"]
     floors = json.loads((folder / "floors.json").read_text())[scene.name]
     floor = max(floors["omega"], floors["attitude"])
-    return Truth(omega, attitude, "stored", "113-bit Taylor series, confirmed by collocation", 3e-16, floor)
+    text = "113-bit Taylor series, confirmed by collocation"
+    return Truth(omega, attitude, "stored", text, 3e-16, floor, start_rate(scene))
 
 
 def _series(scene: Scene) -> Truth | None:
@@ -89,7 +101,7 @@ def _series(scene: Scene) -> Truth | None:
     if not all(np.isfinite(part).all() for run in (fine, *others) for part in run[:2]):
         return None
     text = f"Taylor series of order {ORDERS[0]} in long double, checked by orders {ORDERS[1]} and {ORDERS[2]}"
-    truth = Truth(fine[0], fine[1], "made", text, 0.0, None)
+    truth = Truth(fine[0], fine[1], "made", text, 0.0, None, start_rate(scene))
     apart = max(compute_errors(*other[:2], truth).largest for other in others)
     return truth._replace(uncertainty=4 * max(apart, float(np.finfo(float).eps)))
 
@@ -115,7 +127,8 @@ def _two_methods(scene: Scene, tightest: float) -> Truth:
         runs.append((motion.omega, motion.attitude))
     if len(runs) < 2:
         raise InvalidInput(f"{scene.name or 'scene'}: no reference can be made: {why}")
-    truth = Truth(*runs[0], "made", f"{texts[0]}, checked by {' and '.join(texts[1:])}", 0.0, None)
+    text = f"{texts[0]}, checked by {' and '.join(texts[1:])}"
+    truth = Truth(*runs[0], "made", text, 0.0, None, start_rate(scene))
     return truth._replace(uncertainty=2 * max(compute_errors(*run, truth).largest for run in runs[1:]))
 
 

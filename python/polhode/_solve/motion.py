@@ -57,7 +57,8 @@ class Motion:
         All zeros of the events, in the order of the integration.
     plan : Plan
     error : float
-        The error of all samples, as `accuracy` is defined in `solve`; NaN if not estimated.
+        The error of all samples, as `accuracy` is defined in `solve`; NaN if not estimated. Errors of the times of
+        events are not in it.
     error_kind : {"bounded", "expected", "limit", "not estimated"}
         "bounded": a certificate, or the rounding of a closed form, bounds the error. "expected": no certificate was
         requested. "limit": the error exceeds the accuracy, because float64 allows no smaller one.
@@ -104,6 +105,15 @@ class Motion:
         return Rotation.from_quat(self.attitude)
 
     @property
+    def omega_scale(self) -> float:
+        """The largest rate of the start and the samples [rad/s], by which errors of omega are divided."""
+        start = math.hypot(*self.scene.omega)
+        if self.omega is None or not self.omega.size:
+            return start
+        largest = float(np.abs(self.omega).max()) or 1.0   # their squares may leave the range of float64
+        return max(start, largest * float(np.linalg.norm(self.omega / largest, axis=1).max()))
+
+    @property
     def energy(self) -> Floats:
         """Kinetic plus potential energy at the samples, shape (n,) [J]."""
         self._need("omega", *(["attitude"] if any(t.traits["has_potential"] for t in self.scene.torques) else []))
@@ -139,12 +149,14 @@ class Motion:
 
     @property
     def success(self) -> bool:
-        """True if the run reached its end with the requested accuracy.
+        """True if the run reached its end with the requested accuracy, and every sample is finite.
 
         If the error is not estimated (``rtol`` or a fixed step), the drift of each invariant is compared with the
         requested tolerance instead.
         """
         if self.status not in ("finished", "event"):
+            return False
+        if not all(np.isfinite(part).all() for part in (self.omega, self.attitude) if part is not None):
             return False
         return not self._moved() if math.isnan(self.error) else self.error <= self.asked
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from .._harness.truth import Truth, find_truth
+from .._harness.truth import Truth, find_truth, start_rate
 from .._solve.motion import Floats
 from .._scene.scene import Scene
 
@@ -53,4 +53,5 @@ def truth_of(family: str, case: Case) -> Truth:
     if case.scene.name:
         return find_truth(case.scene)
     rows: npt.NDArray[np.float64] = stored(key(family, case))
-    return Truth(rows[:, :3], rows[:, 3:], "stored", "113-bit Taylor series or closed form in mpmath", 3e-16, None)
+    return Truth(rows[:, :3], rows[:, 3:], "stored", "113-bit Taylor series or closed form in mpmath", 3e-16, None,
+                 start_rate(case.scene))

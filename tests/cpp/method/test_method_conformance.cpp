@@ -44,9 +44,10 @@ State truth(const Scene& scene, double t) {
   return HeavyTop(scene.inertia_B(), weight_arm, scene.omega(), scene.attitude()).at(t);
 }
 
-/// The scenes' measure: |omega error| over the largest |omega|, and the angle between the attitudes.
+/// The scenes' measure: |omega error| over the largest |omega| of the start and the samples, and the angle between the
+/// attitudes.
 double compute_error(const Scene& scene, const Motion& motion) {
-  double rates = 0.0, size = 0.0, angle = 0.0;
+  double rates = 0.0, size = scene.omega().norm(), angle = 0.0;
   for (std::size_t i = 0; i < motion.t.size(); ++i) {
     const State exact = truth(scene, motion.t[i]);
     double near = 0.0, far = 0.0, e = 0.0;

@@ -54,6 +54,12 @@ struct Motion : Trajectory {
 
   /// The state at any time within the span, from dense output. @throws InvalidInput without dense=true.
   State at(double time) const;
+
+  /// The largest |omega| of the start and the samples [rad/s], by which errors of omega are divided.
+  double omega_scale() const;
+
+  /// True if every number of every sample is finite.
+  bool all_finite() const;
 };
 
 }  // namespace polhode
