@@ -17,6 +17,8 @@ py::dict describe_facts(const Facts& facts) {
   all["separatrix"] = facts.separatrix;
   all["span"] = facts.span();
   all["turns"] = facts.turns;
+  all["effort"] = facts.work();
+  all["call_seconds"] = facts.call_seconds;
   all["only_at_end"] = facts.only_at_end;
   all["sees_time"] = facts.torques.uses_time;
   all["sees_attitude"] = facts.torques.uses_attitude;
@@ -57,7 +59,12 @@ py::dict describe_piece(const PiecePlan& piece) {
 }
 
 py::dict make_report(const Scene& scene, const py::dict& options) {
-  const PlanReport report = explain_plan(scene, to_solve_options(options));
+  SolveOptions chosen = to_solve_options(options);
+  if (!chosen.progress) chosen.progress = make_progress(py::none());   // pilot runs heed Ctrl-C
+  const PlanReport report = [&] {
+    const py::gil_scoped_release nogil;   // Python callables take it back for themselves
+    return explain_plan(scene, chosen);
+  }();
   py::list candidates;
   for (const Candidate& candidate : report.candidates) candidates.append(describe_candidate(candidate));
   py::dict all;

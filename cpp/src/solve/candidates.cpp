@@ -14,15 +14,17 @@ namespace {
 
 // Costs of a closed form [s], by benchmarks/planner/fit.py.
 constexpr double free_start = 1.5e-6, free_sample = 8e-9, top_start = 3.6e-6, top_sample = 9e-9;
-// The cost of a run that carries its error, as a multiple of the run without.
-constexpr double carried_cost = 1.35, carried_cost_stiff = 1.9;
+// Decay x span from which an implicit method may be chosen: below, stability limits no explicit step.
+constexpr double least_implicit_stiffness = 50.0;
 
-/// Candidates that reach the accuracy are ordered by time, and come before the others, ordered by error.
-bool is_better(const Candidate& a, const Candidate& b, double accuracy) {
+/// Candidates that reach the accuracy are ordered by time, and come before the others, ordered by error. Where the
+/// user's own torques are called, they are ordered by these calls, so that no clock decides.
+bool is_better(const Candidate& a, const Candidate& b, double accuracy, bool by_calls) {
   const double enough = forecast_slack * accuracy;
   const bool a_reaches = a.predicted_error <= enough, b_reaches = b.predicted_error <= enough;
   if (a_reaches != b_reaches) return a_reaches;
-  return a_reaches ? a.predicted_seconds < b.predicted_seconds : a.predicted_error < b.predicted_error;
+  if (!a_reaches) return a.predicted_error < b.predicted_error;
+  return by_calls ? a.predicted_calls < b.predicted_calls : a.predicted_seconds < b.predicted_seconds;
 }
 
 }  // namespace
@@ -45,15 +47,12 @@ bool carries_attitude(const Scene& scene, const Facts& facts, const SolveOptions
   return scene.want().attitude || facts.torques.uses_attitude || !options.events.empty();
 }
 
-double find_seconds_per_call(const Scene& scene) {
-  double seconds = 0.0;
-  for (const AnyTorque& torque : scene.torques()) {
+bool calls_custom(const Scene& scene) {
+  return std::any_of(scene.torques().begin(), scene.torques().end(), [](const AnyTorque& torque) {
     const auto* during = std::get_if<torques::During>(&torque);
-    const bool custom = during != nullptr ? std::holds_alternative<torques::Custom>(during->torque())
-                                          : std::holds_alternative<torques::Custom>(torque);
-    if (custom) seconds += custom_call_seconds;
-  }
-  return seconds;
+    return during != nullptr ? std::holds_alternative<torques::Custom>(during->torque())
+                             : std::holds_alternative<torques::Custom>(torque);
+  });
 }
 
 Candidate evaluate_method(const Scene& scene, const Facts& facts, const SolveOptions& options,
@@ -75,21 +74,31 @@ Candidate evaluate_method(const Scene& scene, const Facts& facts, const SolveOpt
   candidate.why_not = compute_refusal(record.name, scene);
   if (!candidate.why_not.empty()) return candidate;
   const double accuracy = get_accuracy(options);
-  const double coarse = forecast.find_rtol(accuracy, facts.turns);
-  candidate.rtol = std::max(coarse / pair_ratio, record.least_rtol);
-  const double per_call = find_seconds_per_call(scene);
-  candidate.predicted_seconds = forecast.compute_seconds(candidate.rtol, facts.turns, facts.stiffness, per_call);
+  const double coarse = forecast.find_rtol(accuracy, facts.work());
+  const double fine = options.certify ? coarse / pair_ratio : forecast.find_median_rtol(accuracy / aim, facts.work());
+  candidate.rtol = std::max(fine, record.least_rtol);
   // The coarser run of the pair serves for comparison only.
   const double compared = std::max(coarse, pair_ratio * record.least_rtol);
-  if (options.certify && find_body_method(record.name).carries_error) {
-    candidate.predicted_seconds *= facts.is_stiff_for_series() ? carried_cost_stiff : carried_cost;
-  } else if (options.certify) {
-    candidate.predicted_seconds += forecast.compute_seconds(compared, facts.turns, facts.stiffness, per_call);
+  const bool carries_error = find_body_method(record.name).carries_error;
+  const double factor = find_factor(options.cost_factors, record.name);
+  const double samples = static_cast<double>(scene.times().size());
+  candidate.predicted_seconds = factor * solve_seconds;
+  const auto add_run = [&](double rtol, double share) {
+    const double steps = share * forecast.compute_steps(rtol, facts.work(), facts.stiffness);
+    const double calls = steps * forecast.calls_per_step;
+    candidate.predicted_calls += calls;
+    const double own = steps * forecast.compute_step_seconds(rtol) + samples * forecast.sample_seconds;
+    candidate.predicted_seconds += factor * own + calls * facts.call_seconds;
+  };
+  if (options.certify && carries_error) {
+    add_run(candidate.rtol, facts.is_stiff_for_series() ? carried_cost_stiff : carried_cost);
+  } else {
+    add_run(candidate.rtol, 1.0);
+    if (options.certify) add_run(compared, 1.0);
   }
-  candidate.predicted_seconds *= find_factor(options.cost_factors, record.name);
   // The certificate will claim the error of the coarser run.
   const double shown = options.certify ? compared : candidate.rtol;
-  candidate.predicted_error = forecast.compute_error(shown, facts.turns);
+  candidate.predicted_error = forecast.compute_error(shown, facts.work());
   return candidate;
 }
 
@@ -98,6 +107,7 @@ Candidate evaluate_closed_form(const Scene& scene, const ClosedForm& form, const
   Candidate candidate{.name = std::string(form.model()), .exact = true};
   candidate.predicted_error = compute_closed_form_error(scene, facts, form);
   candidate.predicted_seconds =
+      find_factor(options.cost_factors, candidate.name) * solve_seconds +
       predict_closed_form(candidate.name, static_cast<double>(scene.times().size()), options.cost_factors);
   return candidate;
 }
@@ -125,9 +135,10 @@ Candidate choose_method(const Scene& scene, const Facts& facts, const SolveOptio
   if (options.method) return evaluate_method(scene, facts, options, find_method(*options.method));
   std::optional<Candidate> best;
   for (const ode::MethodRecord& record : methods()) {
+    if (record.implicit && facts.stiffness < least_implicit_stiffness) continue;
     Candidate candidate = evaluate_method(scene, facts, options, record);
     if (!candidate.why_not.empty()) continue;
-    if (!best || is_better(candidate, *best, get_accuracy(options))) best = std::move(candidate);
+    if (!best || is_better(candidate, *best, get_accuracy(options), calls_custom(scene))) best = std::move(candidate);
   }
   if (!best) throw InvalidInput("scene", "integrable by at least one method", "one that every method refuses");
   return *best;

@@ -11,12 +11,17 @@ namespace polhode {
 
 inline constexpr double default_accuracy = 1e-9;
 inline constexpr double forecast_slack = 1.1;         ///< forecast errors up to this times the accuracy pass
+inline constexpr double aim = 10.0;                   ///< of a run without certificate: accuracy over forecast error
+inline constexpr double solve_seconds = 7e-6;         ///< of any call of solve from Python, with its plan
+inline constexpr double piece_seconds = 3e-6;         ///< to set up a run of one piece; the pilot run is one more
+/// The cost of a run that carries its error, as a multiple of the run without, by benchmarks/planner/fit.py.
+inline constexpr double carried_cost = 2.4, carried_cost_stiff = 3.0;
 inline constexpr double pair_ratio = 5.0;             ///< ratio of the tolerances of the two runs of a certificate
-inline constexpr double custom_call_seconds = 3e-7;    ///< of a user's own torque: between C and Python
 
 double get_accuracy(const SolveOptions& options);
 bool carries_attitude(const Scene& scene, const Facts& facts, const SolveOptions& options);
-double find_seconds_per_call(const Scene& scene);
+/// True if a torque of the user's own acts, which only the user knows the cost of.
+bool calls_custom(const Scene& scene);
 double find_factor(const CostFactors* factors, std::string_view name);
 
 Candidate evaluate_method(const Scene& scene, const Facts& facts, const SolveOptions& options,

@@ -36,7 +36,7 @@ class Certifier {
     const double turns = find_turns();
     double coarse = forecast.known() ? forecast.find_rtol(accuracy_, turns) : accuracy_ / 10;
     coarse = std::clamp(coarse, ratio_ * record().least_rtol, 1e-2);
-    if (!decision_.plan.certify) return expect(coarse / ratio_, turns);
+    if (!decision_.plan.certify) return expect(turns);
     return carries_error() ? certify_carried(coarse / ratio_) : certify_by_pairs(coarse);
   }
 
@@ -49,8 +49,8 @@ class Certifier {
   /// If a torque may spin the body up, a pilot run counts the revolutions. A method of adaptive order needs no pilot
   /// run, because a smaller tolerance costs it little.
   double find_turns() {
-    const double expected = decision_.facts.turns;
-    if (!decision_.facts.may_spin_up || record().adaptive_order) return expected;
+    const double expected = decision_.facts.work();
+    if (!decision_.facts.may_spin_up || decision_.facts.piloted || record().adaptive_order) return expected;
     SolveOptions limited;
     limited.max_steps = options_.max_steps;
     limited.progress = options_.progress;
@@ -117,9 +117,11 @@ class Certifier {
     }
   }
 
-  Motion expect(double rtol, double turns) {
+  /// Half of all scenes have a tenth of the accuracy's error, or less.
+  Motion expect(double turns) {
     const ode::Forecast& forecast = record().forecast;
-    rtol = std::max(rtol, record().least_rtol);
+    const double aimed = forecast.known() ? forecast.find_median_rtol(accuracy_ / aim, turns) : accuracy_ / 50;
+    const double rtol = std::clamp(aimed, record().least_rtol, 1e-2);
     best_.motion = runs_.run(decision_.scene, options_, rtol);
     best_.motion.rtol_used = rtol;
     if (best_.finished()) {

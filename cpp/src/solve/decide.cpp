@@ -2,6 +2,7 @@
 
 #include "polhode/core/error.hpp"
 #include "solve/candidates.hpp"
+#include "solve/custom_pilot.hpp"
 #include "solve/method_switch.hpp"
 #include "solve/options.hpp"
 #include "solve/plan_pieces.hpp"
@@ -43,7 +44,9 @@ Decision decide(const Scene& scene, const SolveOptions& options) {
     }
     if (options.method) throw_no_closed_form(decision.scene, decision.facts);
   }
+  pilot_custom(decision, options);
   if (!plan_damped(decision, options)) decision.plan = make_method_plan(decision.scene, decision.facts, options);
+  decision.plan.predicted_seconds += static_cast<double>(decision.pilot.derivatives) * decision.facts.call_seconds;
   return decision;
 }
 

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "polhode/ode/problem.hpp"
 #include "polhode/solve/closed_form.hpp"
 #include "polhode/solve/plan.hpp"
 #include "solve/pieces.hpp"
@@ -16,6 +17,7 @@ struct Decision {
   Pieces pieces = {};                      ///< empty if the span is not cut
   std::optional<ClosedForm> form = {};     ///< of the whole span
   double turns = 0.0;                      ///< revolutions of all pieces together
+  ode::Counts pilot = {};                  ///< what the pilot run of a user's own torque took
 };
 
 }  // namespace polhode

@@ -132,7 +132,9 @@ void explain_steps(const Scene& scene, const Facts& facts, const SolveOptions& o
              ? "The problem is stiff, so an implicit method takes longer steps."
              : "Stability limits explicit steps, which still cost less than an implicit method."));
   }
-  if (facts.may_spin_up) {
+  if (facts.piloted) {
+    reasons.push_back(format("A pilot run at a low accuracy counted %.3g turns.", facts.turns));
+  } else if (facts.may_spin_up) {
     reasons.push_back("The torque may spin the body up, so the number of turns is a guess.");
   }
   if (facts.separatrix < 1e-3) {
@@ -145,8 +147,10 @@ void explain_steps(const Scene& scene, const Facts& facts, const SolveOptions& o
   if (options.method) {
     reasons.push_back("Method " + plan.method + " was requested.");
   } else if (others > 0 && plan.pieces.empty()) {
-    reasons.push_back(format("%s is the cheapest of %d methods at this accuracy over %.3g turns.", plan.method.c_str(),
-                             others + 1, facts.turns));
+    reasons.push_back(format(calls_custom(scene)
+                                 ? "%s calls your torque least of %d methods at this accuracy over %.3g turns."
+                                 : "%s is the cheapest of %d methods at this accuracy over %.3g turns.",
+                             plan.method.c_str(), others + 1, facts.turns));
   }
   if (!plan.certify) {
     reasons.push_back("The error is expected, not bounded, because no certificate was requested.");

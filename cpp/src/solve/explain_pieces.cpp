@@ -17,13 +17,13 @@ Candidate evaluate_for_pieces(const Scene& scene, const Facts& facts, const Solv
   double stepped = 0.0, formulas = 0.0;
   for (const PiecePlan& piece : plan.pieces)
     (piece.method == "exact" ? formulas : stepped) += piece.method == "exact" ? piece.predicted_seconds : piece.turns;
-  const double per_call = find_seconds_per_call(scene);
   const auto predict = [&](double rtol) {
-    return record.forecast.compute_seconds(rtol, stepped, facts.stiffness, per_call);
+    return record.forecast.compute_seconds(rtol, stepped, facts.stiffness, facts.call_seconds);
   };
   const double compared = options.certify ? predict(pair_ratio * candidate.rtol) : 0.0;
   candidate.predicted_seconds =
-      (predict(candidate.rtol) + compared) * find_factor(options.cost_factors, record.name) + formulas;
+      (predict(candidate.rtol) + compared) * find_factor(options.cost_factors, record.name) + formulas +
+      solve_seconds + piece_seconds * static_cast<double>(plan.pieces.size()) * (options.certify ? 3 : 2);
   return candidate;
 }
 

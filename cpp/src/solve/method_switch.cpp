@@ -15,7 +15,10 @@ namespace {
 
 constexpr double least_stiffness = 300.0;   // decay x span; below it implicit steps never paid in the measurements
 constexpr double required_gain = 0.7;       // the switch must cost less than this part of the better method alone
-constexpr double pilot_share = 0.2;         // the pilot run may take this part of the steps of an explicit run
+constexpr double required_lead = 0.9;       // Radau alone must cost less than this part of Taylor alone
+constexpr double switch_rtol = 1e-3;         // of the pilot run
+constexpr double pilot_share = 0.2;         // the pilot run may take this part of the steps of an explicit run,
+constexpr double switch_pilot_steps = 2e4;    // and no more than these: some 10 ms
 constexpr double start_up_steps = 30.0;     // steps of Radau until its step has grown to its final length
 constexpr int log_samples = 80, per_decade = 8;   // logarithmic in time, to resolve a fast transient in any span
 constexpr int even_samples = 24;
@@ -40,9 +43,9 @@ std::optional<DampedRun> run_pilot(const Decision& decision, const SolveOptions&
   SolveOptions limited;
   limited.max_steps = most_steps;
   limited.progress = options.progress;
-  const double absolute = find_atol(radau_method.record, scene, pilot_rtol);
+  const double absolute = find_atol(radau_method.record, scene, switch_rtol);
   const Trajectory trajectory =
-      radau_method.integrate(Scene(std::move(parts)), to_run_options(limited, {pilot_rtol, absolute}));
+      radau_method.integrate(Scene(std::move(parts)), to_run_options(limited, {switch_rtol, absolute}));
   if (trajectory.status != Status::finished) return std::nullopt;
   const double start_rate = scene.omega().norm();
   const PilotRun pilot = measure_rotation(trajectory, scene.t0(), start_rate);
@@ -65,17 +68,22 @@ std::optional<DampedRun> run_pilot(const Decision& decision, const SolveOptions&
 bool plan_damped(Decision& decision, const SolveOptions& options) {
   const Scene& scene = decision.scene;
   const Facts& facts = decision.facts;
-  if (!method_is_free(options) || facts.before > 0 || facts.stiffness < least_stiffness) return false;
+  if (!method_is_free(options) || facts.before > 0 || !(facts.stiffness >= least_stiffness)) return false;
   if (!compute_refusal("taylor", scene).empty()) return false;
   const ode::MethodRecord &first = taylor_method.record, &second = radau_method.record;
   const ode::Forecast &explicitly = first.forecast, &implicitly = second.forecast;
+  // Where accuracy limits explicit steps from the start to the end, there is nothing to choose.
+  const double tightest = explicitly.find_rtol(get_accuracy(options), facts.turns);
+  const double accurate = explicitly.compute_steps(tightest, facts.turns, 0.0);
+  if (!facts.may_spin_up && facts.stiffness / explicitly.stability < 0.5 * accurate) return false;
+  const double most = std::min(pilot_share * facts.stiffness / explicitly.stability, switch_pilot_steps);
   const std::optional<DampedRun> run =
-      run_pilot(decision, options, static_cast<long>(pilot_share * facts.stiffness / explicitly.stability));
+      run_pilot(decision, options, std::min(static_cast<long>(most), options.max_steps));
   if (!run || run->t.empty()) return false;
 
   const double accuracy = get_accuracy(options), turns = run->angle / (2 * std::numbers::pi);
   const double coarse = explicitly.find_rtol(accuracy, turns), scale = implicitly.find_rtol(accuracy, turns) / coarse;
-  // Seconds for a unit of work. A certificate takes two runs.
+  // Seconds for a unit of work. The certificate of pieces, and of Radau, takes two runs.
   const auto cost_per_radian = [&](const ode::MethodRecord& record, double rtol) {
     const ode::Forecast& forecast = record.forecast;
     double seconds = 0.0;
@@ -104,23 +112,27 @@ bool plan_damped(Decision& decision, const SolveOptions& options) {
     if (t < end && total < best) best = total, when = t, before = spent;
   }
   // Rotation about a principal axis costs Radau no steps. The pilot run has counted the steps that are needed.
-  const double counted = step * run->steps * math::fast_pow(coarse * scale / pilot_rtol, -implicitly.power);
-  const double taylor_alone = spent + (end - t) * stable,
+  const double counted = step * run->steps * math::fast_pow(coarse * scale / switch_rtol, -implicitly.power);
+  // Taylor alone carries its error, in one run.
+  const double carried = options.certify ? 0.5 * carried_cost_stiff : 1.0;
+  const double taylor_alone = carried * (spent + (end - t) * stable),
                radau_alone = std::min(all * implicit_radian + start_up, counted);
   Plan& plan = decision.plan;
   decision.facts.turns = decision.turns = turns;
   plan = make_method_plan(scene, facts, options);
-  if (radau_alone < required_gain * taylor_alone && plan.method != second.name) {
+  const double pilot_seconds = run->steps * implicitly.step_seconds;
+  if (radau_alone < required_lead * taylor_alone && plan.method != second.name) {
     SolveOptions by_radau = options;
     by_radau.method = std::string(second.name);
     plan = make_method_plan(scene, facts, by_radau);
-    plan.predicted_seconds = radau_alone;
+    plan.predicted_seconds = solve_seconds + radau_alone;
   }
+  plan.predicted_seconds += pilot_seconds;
   if (!(best < required_gain * std::min(taylor_alone, radau_alone))) return true;
 
   const bool mostly_first = before >= 0.5 * best;
   plan.method = mostly_first ? first.name : second.name;
-  plan.predicted_seconds = best;
+  plan.predicted_seconds = solve_seconds + pilot_seconds + best;
   const double main_coarse = mostly_first ? coarse : coarse * scale;
   const ode::MethodRecord& main = mostly_first ? first : second;
   plan.rtol = std::max(main_coarse / pair_ratio, main.least_rtol);

@@ -7,6 +7,7 @@
 #include "method/method.hpp"
 #include "polhode/core/error.hpp"
 #include "solve/candidates.hpp"
+#include "solve/custom_pilot.hpp"
 #include "solve/exact_run.hpp"
 #include "solve/options.hpp"
 #include "solve/piece_runner.hpp"
@@ -16,7 +17,8 @@ namespace polhode {
 namespace {
 
 constexpr int rate_samples = 16;        // samples of |omega| in a piece, to estimate its revolutions
-constexpr long pilot_steps = 20'000;    // for one piece; a piece that needs more is planned from its start
+// Steps of the pilot run in one piece, and in all. Pieces that it does not reach are planned from the scene's start.
+constexpr long piece_pilot_steps = 20'000, all_pilot_steps = 100'000, custom_pilot_steps = 1000;
 
 /// Plans each piece when a pilot run reaches it.
 class PiecePlanner {
@@ -32,6 +34,8 @@ class PiecePlanner {
 
   void plan() {
     if (options_.method == "exact") require_closed_forms();
+    if (calls_custom(scene_)) call_seconds_ = measure_call_seconds(scene_);
+    left_ = calls_custom(scene_) ? custom_pilot_steps : all_pilot_steps;
     run_pilot();
     choose_tolerances();
     Plan& plan = decision_.plan;
@@ -40,10 +44,10 @@ class PiecePlanner {
             .state = carries_attitude(scene_, decision_.pieces, options_) ? "omega, attitude" : "omega",
             .accuracy = get_accuracy(options_),
             .certify = options_.certify,
-            .predicted_seconds = 0.0};
+            .predicted_seconds = solve_seconds + piece_seconds * static_cast<double>(pieces_.size())};
     decision_.facts = sum_facts();
     for (Piece* piece : pieces_) {
-      piece->plan.predicted_seconds *= options_.certify ? 2 : 1;
+      piece->plan.predicted_seconds = (piece->plan.predicted_seconds + piece_seconds) * (options_.certify ? 2 : 1);
       plan.predicted_seconds += piece->plan.predicted_seconds;
       decision_.turns += piece->plan.turns;
       plan.pieces.push_back(piece->plan);
@@ -53,6 +57,8 @@ class PiecePlanner {
     } else {
       const double compared = std::max(coarse_, pair_ratio * main_->least_rtol);
       plan.rtol = std::max(coarse_ / pair_ratio, main_->least_rtol);
+      if (!options_.certify)
+        plan.rtol = std::max(main_->forecast.find_median_rtol(get_accuracy(options_) / aim, turns_), main_->least_rtol);
       plan.predicted_error = main_->forecast.compute_error(options_.certify ? compared : plan.rtol, turns_);
     }
     std::sort(plan.pieces.begin(), plan.pieces.end(),
@@ -105,8 +111,9 @@ class PiecePlanner {
       return run_closed_form(part, facts, options, *form, make_exact_plan(part, *form, facts, options_));
     }
     SolveOptions limited = options;
-    limited.max_steps = pilot_steps;
+    limited.max_steps = std::max(1L, std::min({piece_pilot_steps, left_, options_.max_steps}));
     Motion motion(find_body_method(plan.method).integrate(part, to_run_options(limited, {pilot_rtol})));
+    left_ -= motion.stats.steps + motion.stats.rejected;
     if (motion.status == Status::finished)
       plan.turns = facts.turns = measure_rotation(motion, part.t0(), part.omega().norm()).revolutions();
     return motion;
@@ -172,7 +179,7 @@ class PiecePlanner {
 
   double predict(const ode::MethodRecord& record, double rtol, const Facts& facts) const {
     const double least = std::max(rtol, record.least_rtol);
-    return record.forecast.compute_seconds(least, facts.turns, facts.stiffness, find_seconds_per_call(scene_));
+    return record.forecast.compute_seconds(least, facts.turns, facts.stiffness, call_seconds_);
   }
 
   /// The facts of the whole span, from those of the pieces.
@@ -187,7 +194,7 @@ class PiecePlanner {
         acting.push_back(torque);
     }
     all.torques = summarize(acting);
-    all.turns = turns_, all.stiffness = 0.0, all.decay = 0.0, all.may_spin_up = false;
+    all.turns = turns_, all.stiffness = 0.0, all.decay = 0.0, all.may_spin_up = false, all.call_seconds = call_seconds_;
     for (const Facts& facts : facts_) {
       all.stiffness += facts.stiffness;
       all.decay = std::max(all.decay, facts.decay);
@@ -202,7 +209,8 @@ class PiecePlanner {
   std::vector<double> sorted_;
   std::vector<Facts> facts_;           // of the pieces that have been planned
   const ode::MethodRecord* main_ = nullptr;
-  double turns_ = 0.0, coarse_ = 0.0;
+  double turns_ = 0.0, coarse_ = 0.0, call_seconds_ = 0.0;
+  long left_ = 0;                      // steps of the pilot run
 };
 
 }  // namespace

@@ -56,9 +56,11 @@ class Plan:
     rtol : float
         The tolerance of the run that is returned; 0 for closed forms.
     predicted_error, predicted_seconds : float
-        The expected error, and the expected time [s] with every run of the certificate.
+        The expected error, and the expected time of `solve` [s] with its plan and every run of the certificate.
     facts : dict
-        The properties of the scene that determine the plan, dimensionless except "span" [s] and "decay" [1/s].
+        The properties of the scene that determine the plan, dimensionless except "span" [s], "decay" [1/s] and
+        "call_seconds" [s]. "effort" is the number of revolutions that take as many steps as the motion. "call_seconds"
+        is the measured time of a call of your own torques; no choice depends on it.
     candidates : tuple of Candidate
         All models and methods that were considered, exact models first.
     reasons, left_out : tuple of str

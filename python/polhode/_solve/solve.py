@@ -86,16 +86,17 @@ def solve(
     scene : Scene
     accuracy : float, optional
         The largest error of any sample, 0 < accuracy <= 1. The error of a sample is the larger of two: the error of
-        omega relative to the largest omega, and the angle of the attitude's error [rad]. The default is 1e-9 if no
-        tolerance is given. `motion.error` bounds the error, and `motion.success` compares it with the accuracy.
-        Excludes rtol and atol.
+        omega relative to the largest rate of the start and the samples (`motion.omega_scale`), and the angle of the
+        attitude's error [rad]. The default is 1e-9 if no tolerance is given. `motion.error` bounds the error, and
+        `motion.success` compares it with the accuracy. Excludes rtol and atol.
     plan : Plan, optional
         A result of `plan()`. It sets accuracy, method and certificate. An additional `method` replaces its method.
     method : str, optional
         A name of `methods()`, or "exact" for a closed form. The planner chooses if it is left out.
     certify : bool
         Bound the error of an integrated motion. The run itself propagates its error, or a second, coarser run measures
-        it. With False `motion.error` is the expected error, and `motion.error_kind` is "expected".
+        it. With False one run aims at a tenth of the accuracy. `motion.error` is then the median error of such scenes,
+        which no answer is promised to keep, and `motion.error_kind` is "expected".
     rtol : float, optional
         Relative tolerance of a step, instead of an accuracy. Rates are measured relative to their size, the quaternion
         relative to 1. The error of the samples is then not estimated.
@@ -111,7 +112,8 @@ def solve(
         Euler's equations with a quaternion, or Lagrange's in the textbook's z-x-z angles. The latter fail at theta = 0
         and pi.
     events : iterable of Event or callables
-        Functions whose zeros are located. A callable may have attributes `direction` and `terminal`.
+        Functions whose zeros are located. A callable may have attributes `direction` and `terminal`. The errors of
+        their times are not bounded.
     progress : callable, optional
         ``progress(reached, last)`` is called about twenty times a second. False ends the run, and the samples so far
         are returned.

@@ -19,11 +19,12 @@ struct Rk45 {
           "accuracies.",
       .source = "Dormand & Prince 1980, J. Comput. Appl. Math. 6, 19",
       .forecast = {.error_per_turn = 0.5,
-                   .margin = 2.0,
+                   .margin = 4.0,
                    .floor_per_turn = 1e-15,
                    .steps_per_radian = 0.2,
                    .power = 0.198,
                    .step_seconds = 1.7e-7,
+                   .sample_seconds = 2.4e-8,
                    .calls_per_step = 6,
                    .stability = 3.3},
   };

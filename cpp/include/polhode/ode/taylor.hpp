@@ -51,13 +51,14 @@ struct Taylor {
           "Taylor series of the solution by recurrences. The tolerance sets order and step. Best at tight accuracies.",
       .source = "Jorba & Zou 2005, Exp. Math. 14, 99",
       // margin: a decade of tolerance costs a few per cent here, a second attempt two runs.
-      .forecast = {.error_per_turn = 0.4,
-                   .margin = 10.0,
+      .forecast = {.error_per_turn = 0.125,
+                   .margin = 32.0,
                    .floor_per_turn = 2e-17,
                    .steps_per_radian = 0.62,
                    .power = 0.013,
-                   .step_seconds = 2.8e-7,
-                   .order_seconds = 9e-10,
+                   .step_seconds = 3.5e-7,
+                   .order_seconds = 1.1e-9,
+                   .sample_seconds = 2e-8,
                    .stability = 8.5},
   };
   static constexpr int least_order = 4;

@@ -18,8 +18,13 @@ struct Facts {
   bool may_spin_up = false;        ///< a torque may increase |omega| without bound, so `turns` is a guess
   double decay = 0.0;              ///< fastest rate at which the torques damp omega [1/s]
   double stiffness = 0.0;          ///< decay x span, which limits the steps of explicit methods
+  bool piloted = false;            ///< a pilot run has counted `turns`, `effort` and `stiffness`
+  double effort = 0.0;             ///< of a pilot run: the revolutions that take as many steps as this motion
+  double call_seconds = 0.0;       ///< measured time of a call of the user's own torques; 0 without them [s]
 
   double span() const { return before + after; }
+  /// The revolutions that count for steps and for their errors.
+  double work() const { return piloted ? effort : turns; }
   bool is_free() const { return torques.acting == 0; }
   /// True if stability limits the steps of a Taylor series, otherwise about an eighth of a revolution.
   bool is_stiff_for_series() const { return stiffness > 2 * turns; }

@@ -16,6 +16,7 @@ struct Candidate {
   std::string why_not = {};          ///< the reason why it cannot be used; empty if it can
   double predicted_error = 0.0;      ///< the error it would claim, at the tolerance it would use
   double predicted_seconds = 0.0;    ///< including every run of the certificate
+  double predicted_calls = 0.0;      ///< of the torques, including every run of the certificate
   double rtol = 0.0;                 ///< of the run that is returned; 0 for exact models
 };
 

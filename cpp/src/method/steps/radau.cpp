@@ -317,11 +317,15 @@ const BodyMethod radau_method{
             "Radau IIA of order 5 for the rates, with the attitude by Magnus' expansion. For stiff damping, where "
             "stability limits explicit steps.",
         .source = "Hairer & Wanner 1996, Solving ODEs II, sec. IV.8; Blanes, Casas & Ros 2000, BIT 40, 434",
-        .forecast = {.error_per_turn = 0.5,
+        .forecast = {.error_per_turn = 0.007,
+                     .error_power = 0.7,
+                     .margin = 2.0,
                      .floor_per_turn = 1e-15,
                      .steps_per_radian = 0.21,
                      .power = 0.165,
-                     .step_seconds = 4.5e-7},
+                     .step_seconds = 4.5e-7,
+                     .sample_seconds = 9e-8,
+                     .calls_per_step = 10},
     },
     &integrate_radau,
 };
