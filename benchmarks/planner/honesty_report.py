@@ -1,6 +1,7 @@
 """What honesty.py found, as numbers, as a table and as a page."""
 
 import math
+import pathlib
 
 import numpy as np
 from family import KINDS, draw, write_python
@@ -111,7 +112,8 @@ heyoka in long double. Claims close to false are judged again with 113 bits. The
 
 """
     lines = ["| " + " | ".join(row) + " |" for row in (HEADS, *list_cells(summary))]
-    return head + "\n".join([lines[0], "|---" * len(HEADS) + "|", *lines[1:]]) + "\n"
+    table = "\n".join([lines[0], "|---" * len(HEADS) + "|", *lines[1:]]) + "\n"
+    return head + table + pathlib.Path(__file__).with_name("variants.md").read_text()
 
 
 def list_worst(rows, seed, count):

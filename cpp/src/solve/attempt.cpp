@@ -1,5 +1,7 @@
 #include "solve/attempt.hpp"
 
+#include <algorithm>
+
 #include "solve/candidates.hpp"
 #include "solve/options.hpp"
 #include "solve/planned_run.hpp"
@@ -11,7 +13,17 @@ Motion CountedRuns::run(const Scene& scene, const SolveOptions& options, double 
   const double atol = options.atol.value_or(find_atol(method_.record, decision_.scene, rtol));
   Motion motion = decision_.pieces.size() == 0
                       ? Motion(method_.integrate(scene, to_run_options(options, {rtol, atol}, trace)))
-                      : run_planned(decision_, scene, options, rtol, perturb_joins);
+                      : run_planned(decision_, scene, options, rtol, perturb_joins, trace);
+  stats_ += motion.stats;
+  ++runs_;
+  return motion;
+}
+
+Motion CountedRuns::run_by(const BodyMethod& method, const Scene& scene, const SolveOptions& options, double rtol,
+                           long most_steps) {
+  SolveOptions limited = options;
+  limited.max_steps = std::min(options.max_steps, most_steps);
+  Motion motion(method.integrate(scene, to_run_options(limited, {std::max(rtol, method.record.least_rtol)})));
   stats_ += motion.stats;
   ++runs_;
   return motion;

@@ -32,6 +32,9 @@ class CountedRuns {
 
   Motion run(const Scene& scene, const SolveOptions& options, double rtol, bool perturb_joins = false,
              ode::ErrorTrace* trace = nullptr);
+  /// A run by another method, of a scene without pieces. It ends after `most_steps`.
+  Motion run_by(const BodyMethod& method, const Scene& scene, const SolveOptions& options, double rtol,
+                long most_steps);
 
  private:
   const Decision& decision_;

@@ -16,6 +16,7 @@ namespace {
 
 constexpr int pilot_intervals = 48;        // of the span, to count the revolutions
 constexpr double chaotic_safety = 2.5;     // after a first run whose error exceeds the accuracy
+constexpr double limit_safety = 3.0;       // of a refused run's error, which has grown far
 constexpr double give_up_factor = 30.0;    // times the accuracy: a run with a larger error is abandoned
 
 /// Repeats the run of one scene until its error is known and small enough.
@@ -23,9 +24,10 @@ class Certifier {
  public:
   Certifier(const Decision& decision, const SolveOptions& options)
       : decision_(decision), options_(options), runs_(decision, options), accuracy_(decision.plan.accuracy) {
+    if (!carries_error() && (record().implicit || decision_.pieces.size() > 0)) ratio_ = 3 * pair_ratio;
     // Below these accuracies rounding matters, and the difference of two runs is a less reliable measure.
     if (accuracy_ <= 2e-12) {
-      safety_ = carries_error() ? 4.0 : 5.0, ratio_ = 3 * pair_ratio;
+      safety_ = carries_error() ? 4.0 : 5.0, ratio_ *= 3;
     } else if (accuracy_ <= 1e-10) {
       safety_ = 2.0;
     }
@@ -43,8 +45,14 @@ class Certifier {
  private:
   const ode::MethodRecord& record() const { return runs_.method().record; }
 
-  /// Pieces are certified by a pair of runs of all pieces.
-  bool carries_error() const { return runs_.method().carries_error && decision_.pieces.size() == 0; }
+  /// A chain of pieces carries its error if each piece does; a closed form does (carry_through.hpp).
+  bool carries_error() const {
+    const std::vector<const Piece*> pieces = decision_.pieces.all();
+    return runs_.method().carries_error && std::all_of(pieces.begin(), pieces.end(), [](const Piece* piece) {
+             const std::string& name = piece->plan.method;
+             return name == "exact" || find_body_method(name).carries_error;
+           });
+  }
 
   /// If a torque may spin the body up, a pilot run counts the revolutions. A method of adaptive order needs no pilot
   /// run, because a smaller tolerance costs it little.
@@ -149,10 +157,11 @@ class Certifier {
       motion.error_kind = "bounded";
       note(carries_error() ? "certified: the truncation and rounding errors of all steps, propagated to the end, stay "
                              "within the bound"
-                           : "certified: a coarser run, with inputs changed by two units in the last place, stays "
+                           : "certified: a coarser run, with inputs changed by eight units in the last place, stays "
                              "within the bound");
     } else {
       motion.error_kind = "limit";
+      motion.error = best_.error *= limit_safety;
       note(describe_limit());
     }
     return finish();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "polhode/ode/tracked_taylor.hpp"
@@ -22,7 +23,8 @@ Attempt run_carried(CountedRuns& runs, double rtol, double safety, double most, 
       motion.omega.empty() || trace.rate_error == 0.0 ? 0.0 : trace.rate_error / motion.omega_scale();
   const double error = std::max(rates, motion.attitude.empty() ? 0.0 : trace.attitude_error);
   // The carried error can grow without bound, but two attitudes differ by half a turn at most.
-  attempt.error = safety * std::min(error, std::numbers::pi);
+  constexpr double floor = 8 * std::numeric_limits<double>::epsilon();   // of samples, whatever the steps
+  attempt.error = safety * std::min(error, std::numbers::pi) + floor;
   attempt.holds_until = attempt.error <= accuracy ? unknown_error : trace.holds_until;
   return attempt;
 }

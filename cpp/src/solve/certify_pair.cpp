@@ -1,7 +1,10 @@
 #include "solve/certify_pair.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "polhode/math/detail/functions.hpp"
 #include "solve/distance.hpp"
 #include "solve/perturb.hpp"
 
@@ -9,8 +12,18 @@ namespace polhode {
 namespace {
 
 constexpr std::size_t least_samples = 8;   // fewer differences may be small by chance
+constexpr int perturbed_units = 8;         // in the last place: more than the rounding of the finer run
+constexpr int stiff_order = 3;             // of an implicit method in a stiff body: its stage order
+constexpr double rounding_floor = 8.0;     // units of rounding that two runs may share
+constexpr double most_factor = 30.0;       // of runs with the same steps
+constexpr long most_steps_of_another = 20'000;
 
-const double* data(const std::vector<double>& values) { return values.empty() ? nullptr : values.data(); }
+const double* get_data(const std::vector<double>& values) { return values.empty() ? nullptr : values.data(); }
+
+double find_difference(double start_rate, const Motion& a, const Motion& b) {
+  return compute_distance(a.t.size(), start_rate, get_data(a.omega), get_data(a.attitude), get_data(b.omega),
+                          get_data(b.attitude));
+}
 
 Scene with_times(const Scene& scene, std::vector<double> times) {
   SceneParts parts = scene.parts();
@@ -38,7 +51,17 @@ PairCertificate::PairCertificate(CountedRuns& runs, double safety)
     times.insert(times.end(), more.begin(), more.end());
     longer_ = with_times(scene, std::move(times));
   }
-  perturbed_ = perturb(longer_ ? *longer_ : scene);
+  perturbed_ = perturb(longer_ ? *longer_ : scene, perturbed_units);
+}
+
+/// The factor between a difference and the error of the finer run. If the error falls by r from one run to the other,
+/// it is r / (1 - r) of the difference; six times that is claimed. r follows from the numbers of steps.
+double PairCertificate::find_factor(const Motion& fine, const Motion& coarse) const {
+  const ode::MethodRecord& record = runs_.method().record;
+  if (record.adaptive_order || runs_.decision().pieces.size() > 0) return safety_;
+  const double steps = static_cast<double>(coarse.stats.steps) / static_cast<double>(std::max(fine.stats.steps, 1L));
+  const double r = math::power(std::min(steps, 1.0), record.implicit ? stiff_order : record.order);
+  return std::clamp(6 * r / (1 - r), safety_, most_factor);
 }
 
 Attempt PairCertificate::run(double coarse, double fine) {
@@ -57,13 +80,27 @@ Attempt PairCertificate::run(double coarse, double fine) {
     motion.status = Status::stopped;
     motion.message = "stopped by the progress callback before the error was certified";
   } else if (other.status == Status::finished) {
-    const double difference = compute_distance(motion.t.size(), scene.omega().norm(), data(motion.omega),
-                                               data(motion.attitude), data(other.omega), data(other.attitude));
-    if (difference < unknown_error) attempt.error = safety_ * difference + formulas;
+    double factor = find_factor(motion, other);
+    double difference = find_difference(scene.omega().norm(), motion, other);
+    // Runs with the same steps share their error, and so may stiff ones. A run by another method does not.
+    const bool alike = factor == most_factor, stiff = runs_.method().record.implicit;
+    if ((alike || stiff) && runs_.decision().pieces.size() == 0) {
+      const BodyMethod& method = find_body_method(runs_.decision().plan.method == "dop853" ? "rk45" : "dop853");
+      const long most_steps = alike ? most_steps_of_another : 2 * motion.stats.steps + 100;
+      const Motion third = runs_.run_by(method, whole ? *perturbed_ : with_times(*perturbed_, motion.t),
+                                        comparison_options_, fine, most_steps);
+      if (third.status == Status::finished) {
+        difference = std::max(alike ? 0.0 : difference, find_difference(scene.omega().norm(), motion, third));
+        factor = safety_;
+      }
+    }
+    const double least = rounding_floor * std::numeric_limits<double>::epsilon();
+    if (difference < unknown_error) attempt.error = factor * difference + least + formulas;
     if (!(attempt.error <= accuracy)) {
       attempt.holds_until =
-          find_divergence_time(motion.t.size(), motion.t.data(), scene.t0(), scene.omega().norm(), data(motion.omega),
-                               data(motion.attitude), data(other.omega), data(other.attitude), accuracy / safety_);
+          find_divergence_time(motion.t.size(), motion.t.data(), scene.t0(), scene.omega().norm(),
+                               get_data(motion.omega), get_data(motion.attitude), get_data(other.omega),
+                               get_data(other.attitude), accuracy / factor);
     }
   }
   return attempt;

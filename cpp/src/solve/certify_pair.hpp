@@ -7,7 +7,7 @@
 namespace polhode {
 
 /// A pair of runs. The finer run has the inputs as given and is returned. The coarser run has every input changed by
-/// two units in the last place. Their difference contains the error of the coarser run and the effect of rounded
+/// eight units in the last place. Their difference contains the error of the coarser run and the effect of rounded
 /// inputs.
 class PairCertificate {
  public:
@@ -19,6 +19,8 @@ class PairCertificate {
   void drop_added_times(Motion& motion) const;
 
  private:
+  double find_factor(const Motion& fine, const Motion& coarse) const;
+
   CountedRuns& runs_;
   double safety_;
   SolveOptions comparison_options_;

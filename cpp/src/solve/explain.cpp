@@ -158,7 +158,7 @@ void explain_steps(const Scene& scene, const Facts& facts, const SolveOptions& o
     reasons.push_back("The error is certified in the same run, which propagates the error of each step to the end.");
   } else {
     reasons.push_back(
-        "A second, coarser run certifies the error. Each of its inputs is changed by two units in the last place.");
+        "A second, coarser run certifies the error. Each of its inputs is changed by eight units in the last place.");
   }
   if (plan.predicted_error > forecast_slack * plan.accuracy) {
     reasons.push_back(format("Rounding over so many turns may cause an error of %.0e. The result then says \"limit\".",

@@ -14,14 +14,15 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Changes numbers by two units in the last place, up or down at random.
+/// Changes numbers by some units in the last place, up or down at random.
 class Perturber {
  public:
-  explicit Perturber(std::uint64_t seed = 2026) : coin_(seed) {}
+  explicit Perturber(int units, std::uint64_t seed = 2026) : units_(units), coin_(seed) {}
 
   double operator()(double x) {
     const double end = coin_.toss() ? infinity : -infinity;
-    return x == 0.0 ? x : std::nextafter(std::nextafter(x, end), end);
+    for (int i = 0; i < units_ && x != 0.0; ++i) x = std::nextafter(x, end);
+    return x;
   }
   void apply(double& x) { x = (*this)(x); }
   void apply(Vector3d& v) {
@@ -34,11 +35,12 @@ class Perturber {
   void apply(std::string&) {}
 
  private:
+  int units_;
   math::Coin coin_;
 };
 
 /// Changes a number by a rule that depends on the number alone.
-double perturb_alone(double x) { return Perturber(std::bit_cast<std::uint64_t>(x))(x); }
+double perturb_alone(double x, int units) { return Perturber(units, std::bit_cast<std::uint64_t>(x))(x); }
 
 template <class Torque>
 Torque perturb_torque(const Torque& torque, Perturber& perturber) {
@@ -62,7 +64,7 @@ AnyTorque perturb_windows(const AnyTorque& torque, double first, double last, do
   const auto* during = std::get_if<torques::During>(&torque);
   if (during == nullptr) return torque;
   const auto perturb_end = [=](double t) {
-    return first < t && t < last && t != t0 ? perturb_alone(t) : t;
+    return first < t && t < last && t != t0 ? perturb_alone(t, 2) : t;
   };
   std::vector<torques::Window> windows = during->windows();
   double before = -infinity;
@@ -87,13 +89,13 @@ State perturb_state(const State& state, double units, int seed) {
   return perturbed;
 }
 
-Scene perturb(const Scene& scene) {
-  Perturber perturber;
+Scene perturb(const Scene& scene, int units) {
+  Perturber perturber(units);
   Matrix3d I = scene.inertia_B().matrix();
   const bool cut = has_windows(scene);   // then equal moments stay equal, because a piece may have a closed form
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j <= i; ++j)
-      I(i, j) = I(j, i) = cut ? perturb_alone(I(i, j)) : perturber(I(i, j));
+      I(i, j) = I(j, i) = cut ? perturb_alone(I(i, j), units) : perturber(I(i, j));
   SceneParts parts = scene.parts();
   parts.inertia_B = InertiaTensor::from_trusted(I, scene.inertia_B().physical());
   perturber.apply(parts.omega);

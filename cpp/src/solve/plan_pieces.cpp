@@ -135,11 +135,21 @@ class PiecePlanner {
                            std::lower_bound(sorted_.begin(), sorted_.end(), plan.begin);
       plan.predicted_seconds = predict_closed_form(plan.model, static_cast<double>(samples), options_.cost_factors);
     } else {
-      plan.method = choose_method(part, facts, options_).name;
+      plan.method = choose_piece_method(part, facts);
       if (options_.formulation == Formulation::lagrangian) plan.model = "lagrangian";
     }
     facts_.push_back(facts);
     return plan;
+  }
+
+  /// A chain is certified by one run if every piece carries its error, so such a method comes before one that is faster
+  /// for the piece alone. Stiff pieces keep their method.
+  std::string choose_piece_method(const Scene& part, const Facts& facts) const {
+    std::string name = choose_method(part, facts, options_).name;
+    const BodyMethod& method = find_body_method(name);
+    const bool keeps = options_.method || !options_.certify || method.carries_error || method.record.implicit;
+    const bool may = options_.formulation == Formulation::euler && compute_refusal("taylor", part).empty();
+    return keeps || !may ? name : "taylor";
   }
 
   /// The tolerance for all pieces together. An error in the rates of one piece is an error in the phase of all later

@@ -6,6 +6,7 @@
 #include "method/method.hpp"
 #include "polhode/core/error.hpp"
 #include "solve/candidates.hpp"
+#include "solve/carry_through.hpp"
 #include "solve/distance.hpp"
 #include "solve/exact_run.hpp"
 #include "solve/options.hpp"
@@ -35,29 +36,45 @@ void copy_plans(const std::vector<Piece>& from, std::vector<Piece>& to) {
 }  // namespace
 
 Motion run_planned(const Decision& decision, const Scene& scene, const SolveOptions& options, double rtol,
-                   bool perturb_joins) {
+                   bool perturb_joins, ode::ErrorTrace* trace) {
   Pieces pieces = cut(scene, decision.pieces.method_switches);
   copy_plans(decision.pieces.backward, pieces.backward);
   copy_plans(decision.pieces.forward, pieces.forward);
-  const auto run_piece = [&](const Scene& part, const Piece& piece, const SolveOptions& piece_options) -> Motion {
+  const auto run_one = [&](const Scene& part, const Piece& piece, const SolveOptions& piece_options) -> Motion {
     std::string name = piece.plan.method;
     if (name == "exact") {
       const Facts facts = compute_facts(part);
-      if (const std::optional<ClosedForm> form = find_closed_form(part, facts))
-        return run_closed_form(part, facts, piece_options, *form, make_exact_plan(part, *form, facts, piece_options));
+      if (const std::optional<ClosedForm> form = find_closed_form(part, facts)) {
+        const Plan plan = make_exact_plan(part, *form, facts, piece_options);
+        if (trace != nullptr) carry_through(part, plan.predicted_error, *trace);
+        return run_closed_form(part, facts, piece_options, *form, plan);
+      }
       name = choose_method(part, facts, piece_options).name;   // perturbed inputs may have no closed form
     }
     const BodyMethod& method = find_body_method(name);
     const double scaled = std::max(rtol * piece.plan.rtol_scale, method.record.least_rtol);
     const std::optional<Scene> at_rest = zero_negligible_rates(part, scene, scaled);
     const Scene& start = at_rest ? *at_rest : part;
-    Motion motion(
-        method.integrate(start, to_run_options(piece_options, {scaled, find_atol(method.record, scene, scaled)})));
+    Motion motion(method.integrate(
+        start, to_run_options(piece_options, {scaled, find_atol(method.record, scene, scaled)}, trace)));
     // The first step was below the spacing of the times.
     const bool stuck = motion.status == Status::failed && motion.stats.steps == 0;
     if (!stuck || name == "taylor" || !compute_refusal("taylor", start).empty()) return motion;
     const double least = taylor_method.record.least_rtol;
     return Motion(taylor_method.integrate(start, to_run_options(piece_options, {std::max(rtol, least)})));
+  };
+  const auto run_piece = [&](const Scene& part, const Piece& piece, const SolveOptions& piece_options) {
+    if (trace == nullptr) return run_one(part, piece, piece_options);
+    if (piece.begin == scene.t0()) {
+      const Quat& q = part.attitude();
+      const Vector3d& w = part.omega();
+      const double start[ode::series_width] = {w[0], w[1], w[2], 0.0, q.x, q.y, q.z, q.w};
+      trace->start(start);
+      trace->continued = true;
+    }
+    Motion motion = run_one(part, piece, piece_options);
+    trace->before += std::abs(piece.end - piece.begin);
+    return motion;
   };
   return run_pieces(scene, pieces, options, run_piece, perturb_joins);
 }

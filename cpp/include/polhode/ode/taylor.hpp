@@ -121,6 +121,7 @@ class Taylor::Stepper : public ode::Stepper {
     time_old_ = time_;
     unit_old_ = unit_;
     time_ = last ? math::DD(t_end) : time_ + h;
+    std::copy_n(y_, W, arrived_);
     problem_.correct(time_, counts_.steps, y_, carry_);
     t_old_ = time_old_.hi;
     t_ = time_.hi;
@@ -180,7 +181,7 @@ class Taylor::Stepper : public ode::Stepper {
   /// the radius of convergence, and the tolerance gives the usable part of it. Returns infinity if the last
   /// coefficients vanish, and NaN if the series is not finite.
   double expand() {
-    problem_.compute_series(time_, unit_, y_, carry_, order_, rows_);
+    problem_.compute_series(time_, unit_, y_, carry_, order_ + further_, rows_);
     double size[5][P::blocks], sum = 0.0;
     const int row[5] = {0, 1, 2, order_ - 1, order_};
     for (int k = 0; k < 5; ++k) {
@@ -220,6 +221,8 @@ class Taylor::Stepper : public ode::Stepper {
   math::DD time_, time_old_;
   double unit_ = 1.0, unit_old_ = 1.0;
   alignas(64) double y_[W] = {}, carry_[W] = {}, y_old_[W] = {}, carry_old_[W] = {};
+  int further_ = 0;                      ///< rows after those of the order, which no step uses
+  alignas(64) double arrived_[W] = {};   ///< the end of the last step, not corrected
   alignas(64) double rows_[W * (most_series_order + 1)] = {};
 
  private:

@@ -9,7 +9,8 @@
 
 namespace polhode::ode {
 
-/// The error of a run's samples, in the problem's measure. The first three members are input, the others output.
+/// The error of a run's samples, in the problem's measure. The first three members are input. The others are output of
+/// a run, and input of the next one if it continues from the first one's end.
 struct ErrorTrace {
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -20,6 +21,38 @@ struct ErrorTrace {
   double attitude_error = 0.0;     ///< largest error of the second part (attitude), an angle
   double holds_until = infinity;   ///< the span from the start in which the samples have the requested error
   double given_up = 0.0;           ///< the span from the start after which the run was given up; 0: it was not
+
+  bool continued = false;          ///< the next run starts where the last one ended, with the errors below
+  double before = 0.0;             ///< the span from the start to that of the next run
+  double largest = 0.0;            ///< the largest size of the first part so far
+  double good_until = 0.0;         ///< the span from the start to the last sample that has the requested error
+  double scale = 1.0;              ///< enlarges the two vectors
+  alignas(64) double loss[series_width] = {};     ///< what the steps have lost
+  alignas(64) double spread[series_width] = {};   ///< what rounding may have done
+
+  /// An error below 1e-6 is enlarged to 1e-6, so that differences of two solutions show it.
+  double first_scale() const { return std::max(1.0, 1e-6 / asked); }
+  /// The relative perturbation of constants: half a unit in the last place, enlarged.
+  double perturbation() const { return (continued ? scale : first_scale()) * 0x1p-53; }
+
+  /// The errors of a start: nothing is lost, and each component is perturbed up or down.
+  void start(const double* y0) {
+    math::Coin coin;
+    before = good_until = 0.0;
+    scale = first_scale();
+    std::fill_n(loss, series_width, 0.0);
+    for (int i = 0; i < series_width; ++i) spread[i] = (coin.toss() ? 0x1p-53 : -0x1p-53) * scale * y0[i];
+  }
+
+  /// Takes the errors of samples up to a span from the start.
+  void add(double rates, double attitude, double until) {
+    rate_error = std::max(rate_error, rates), attitude_error = std::max(attitude_error, attitude);
+    if (rate_error > asked * largest || attitude_error > asked) {
+      holds_until = std::min(holds_until, good_until);
+    } else {
+      good_until = until;
+    }
+  }
 };
 
 /// y' = f(t, y) with a measure of its errors.
@@ -32,50 +65,58 @@ concept TrackedProblem = SeriesProblem<P> && requires(const P& problem, const do
 
 /// Taylor steps that propagate two estimates of their error.
 ///
-/// `loss_` is the sum of what the steps have lost, with its signs: it cancels where the true losses cancel. The loss of a
-/// step comes from the defect of its polynomial P at the end, -(P' - f(P)) h / (order + 1): the terms of a series point
-/// anywhere, but the defect has the sign of the loss (measured: 0.9 to 1.4 of it, docs/notes/certificates.md).
+/// `loss_` is the sum of what the steps have lost, with its signs: it cancels where the true losses cancel. The loss of
+/// a step is the next terms of its series. They have the sign of the loss in each component and some per cent of error
+/// (docs/notes/certificates.md).
 /// `spread_` is what rounding may have made of the inputs and of each step, and a tenth of each loss. It starts from
-/// perturbed inputs, follows perturbed constants, and grows in its own direction, so that it never cancels.
+/// perturbed inputs, follows perturbed constants, and grows in its own direction, so that it never cancels. Random kicks
+/// by rounding are added, because its direction alone may be one that shrinks while others grow.
 ///
 /// Both are small and obey the equations linearised about y. So a few terms of their series suffice, which are the
-/// differences of the series of y + scale e and of y. If the requested error is below 1e-6, `scale` enlarges it to 1e-6.
-/// (Transport of local errors by the linearised equations: Hairer, Norsett & Wanner 1993, I.13 and II.8, for estimates of
-/// the global error. Defects: Enright 2000, Numer. Algorithms 25, 137.)
+/// differences of the series of y + scale e and of y. If the requested error is below 1e-6, `scale` enlarges it to
+/// 1e-6. Where the error grows far beyond the requested one, the scale shrinks, so that the differences stay linear.
+/// (Transport of local errors by the linearised equations: Hairer, Norsett & Wanner 1993, I.13 and II.8, for estimates
+/// of the global error.)
 template <TrackedProblem P>
 class TrackedTaylor final : public Taylor::Stepper<P> {
   static constexpr int W = series_width;
   static constexpr int error_terms = 12;        // with 7, a few parts in ten thousand are missing in each step
+  static constexpr int signed_terms = 16;       // of the loss, which cancels, so that its parts must be more accurate
+  static constexpr int loss_terms = 3;          // of the series after its order
   static constexpr double safety = 1.5;         // on the loss of a step
   static constexpr double unsigned_part = 0.1;  // of the loss, that the spread gets too
   static constexpr double rounding = 0x1p-53;   // of y in a step, whose sums are compensated
+  static constexpr double kick = 0x1p-51;       // of y in a step, in any direction
+  static constexpr double most_enlarged = 1e-3; // relative, of the vectors
+  static constexpr double join_rounding = 0x1p-51;   // of a state that one run hands to the next
   using Base = Taylor::Stepper<P>;
 
  public:
-  /// @param perturbed  the same problem with its constants perturbed by compute_perturbation(trace)
-  TrackedTaylor(const P& problem, const P& perturbed, double t0, const double* y0, double t_end,
+  /// @param lost       the same problem with the invariants of the start plus trace.loss
+  /// @param perturbed  the same with those of the start plus trace.spread, and constants perturbed by
+  ///                   trace.perturbation(); both starts are the problem's if the run continues none
+  TrackedTaylor(const P& problem, const P& lost, const P& perturbed, double t0, const double* y0, double t_end,
                 const Tolerances& tolerances, ErrorTrace& trace)
       : Base(problem, t0, y0, t_end, tolerances),
+        lost_(lost),
         perturbed_(perturbed),
         trace_(trace),
-        scale_(find_scale(trace)),
         t0_(t0) {
-    for (int i = 0; i < W; ++i) spread_[i] = (coin_.toss() ? 1.0 : -1.0) * compute_perturbation(trace) * y0[i];
-    measure();
+    this->further_ = std::min(loss_terms, most_series_order - this->order_);
+    if (!trace.continued) trace.start(y0);
+    std::copy_n(trace.loss, W, loss_);
+    std::copy_n(trace.spread, W, spread_);
+    if (trace.continued) grow_spread(y0, trace_.scale * join_rounding);
+    measure(y0);
     old_[0] = now_[0], old_[1] = now_[1];
-  }
-
-  /// The relative perturbation of the inputs: half a unit in the last place, enlarged by `scale`.
-  static double compute_perturbation(const ErrorTrace& trace) {
-    return find_scale(trace) * 0.5 * std::numeric_limits<double>::epsilon();
   }
 
   StepResult advance(double t_end) override {
     const StepResult result = Base::advance(t_end);
     if (result != StepResult::accepted) return result;
     propagate_errors();
-    if (std::max(now_[0] / largest_, now_[1]) > trace_.most * trace_.asked) {
-      trace_.given_up = std::abs(this->t_ - t0_);
+    if (std::max(now_[0] / trace_.largest, now_[1]) > trace_.most * trace_.asked) {
+      trace_.given_up = trace_.before + std::abs(this->t_ - t0_);
       return StepResult::not_finite;
     }
     return result;
@@ -84,37 +125,44 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   void interpolate_many(const double* times, std::size_t n, double* out) override {
     Base::interpolate_many(times, n, out);
     if (n == 0) return;
-    trace_.rate_error = std::max({trace_.rate_error, old_[0], now_[0]});
-    trace_.attitude_error = std::max({trace_.attitude_error, old_[1], now_[1]});
-    if (trace_.rate_error > trace_.asked * largest_ || trace_.attitude_error > trace_.asked) {
-      trace_.holds_until = std::min(trace_.holds_until, good_until_);
-    } else {
-      good_until_ = std::abs(times[n - 1] - t0_);
-    }
+    trace_.add(std::max(old_[0], now_[0]), std::max(old_[1], now_[1]), trace_.before + std::abs(times[n - 1] - t0_));
   }
 
  private:
-  static double find_scale(const ErrorTrace& trace) { return std::max(1.0, 1e-6 / trace.asked); }
-
   void propagate_errors() {
     const double s = ((this->time_.hi - this->time_old_.hi) + (this->time_.lo - this->time_old_.lo)) / this->unit_old_;
-    propagate(this->problem_, s, loss_);
-    propagate(perturbed_, s, spread_);
+    propagate(this->problem_, signed_terms, s, loss_);
+    propagate(perturbed_, error_terms, s, spread_);
     alignas(64) double loss[W];
     double sizes[3];
     compute_loss(s, loss);
     for (int i = 0; i < W; ++i) loss_[i] += loss[i];
-    this->problem_.measure_error(this->y_, loss, sizes);
-    restore(loss_);
-    restore(spread_);
-    grow_spread(scale_ * rounding + unsigned_part * find_relative_error(sizes));
+    this->problem_.measure_error(this->arrived_, loss, sizes);
+    grow_spread(this->arrived_, trace_.scale * rounding + unsigned_part * find_relative_error(sizes));
+    kick_spread(this->arrived_);
+    // Samples, and a run that continues this one, have the state before its correction.
     old_[0] = now_[0], old_[1] = now_[1];
-    measure();
+    measure(this->arrived_);
+    std::copy_n(loss_, W, trace_.loss);
+    std::copy_n(spread_, W, trace_.spread);
+    if (std::max(now_[0] / trace_.largest, now_[1]) * trace_.scale > most_enlarged) shrink();
+    restore(lost_, loss_);
+    restore(perturbed_, spread_);
+  }
+
+  /// A vector that grows beyond the linear range is made smaller.
+  void shrink() {
+    constexpr double part = 0x1p-10;
+    trace_.scale *= part;
+    for (int i = 0; i < W; ++i) {
+      loss_[i] *= part, spread_[i] *= part;
+      trace_.loss[i] *= part, trace_.spread[i] *= part;
+    }
   }
 
   /// A small error over the step, by the difference of two series.
-  void propagate(const P& problem, double s, double* error) {
-    const int terms = trace_.all_terms ? this->order_ : std::min(this->order_, error_terms);
+  void propagate(const P& problem, int most_terms, double s, double* error) {
+    const int terms = trace_.all_terms ? this->order_ : std::min(this->order_, most_terms);
     alignas(64) double twin[W], propagated[W];
     for (int i = 0; i < W; ++i) twin[i] = this->y_old_[i] + error[i];
     problem.compute_series(this->time_old_, this->unit_old_, twin, twin, terms, twin_rows_);
@@ -123,18 +171,14 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     std::copy_n(propagated, W, error);
   }
 
-  /// The loss of the step in units of the scaled error, from the defect of its polynomial at the end.
+  /// The loss of the step in units of the scaled error: the first terms that the step leaves out.
   void compute_loss(double s, double* loss) {
-    const int order = this->order_;
-    alignas(64) double slope[W];
-    for (int k = 1; k <= order; ++k) {   // the rows of P'
-      for (int i = 0; i < W; ++i) twin_rows_[W * (k - 1) + i] = k * this->rows_[W * k + i];
+    double power = trace_.scale * safety * math::power(s, this->order_);
+    std::fill_n(loss, W, 0.0);
+    for (int k = this->order_ + 1; k <= this->order_ + this->further_; ++k) {
+      power *= s;
+      for (int i = 0; i < W; ++i) loss[i] += power * this->rows_[W * k + i];
     }
-    series_kernels().evaluate(twin_rows_, order - 1, twin_rows_, Base::zero, &s, 1, slope);
-    constexpr int fewest = Taylor::least_order;   // f is the first row; the kernels compute no fewer
-    this->problem_.compute_series(this->time_, this->unit_old_, this->y_, this->carry_, fewest, twin_rows_);
-    const double factor = -scale_ * safety * s / (order + 1);
-    for (int i = 0; i < W; ++i) loss[i] = factor * (slope[i] - twin_rows_[W + i]);
   }
 
   /// The larger of the two errors, that of the first part relative to its size.
@@ -143,43 +187,49 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   }
 
   /// Applies the correction after a step to the erroneous solution as well.
-  void restore(double* error) {
+  void restore(const P& problem, double* error) {
     double twin[W], low[W];
     for (int i = 0; i < W; ++i) {
       const math::DD sum = math::two_sum(this->y_[i], this->carry_[i] + error[i]);
       twin[i] = sum.hi, low[i] = sum.lo;
     }
-    this->problem_.correct(this->time_, this->counts_.steps - 1, twin, low);
+    problem.correct(this->time_, this->counts_.steps - 1, twin, low);
     for (int i = 0; i < W; ++i) error[i] = (twin[i] - this->y_[i]) + (low[i] - this->carry_[i]);
   }
 
   /// @param growth  what to add to the spread, relative to y, in its own direction
-  void grow_spread(double growth) {
+  void grow_spread(const double* y, double growth) {
     double sizes[3];
-    this->problem_.measure_error(this->y_, spread_, sizes);
+    this->problem_.measure_error(y, spread_, sizes);
     const double relative = find_relative_error(sizes);
     if (!(relative > 0.0 && relative < std::numeric_limits<double>::infinity())) return;
-    for (double& u : spread_) u *= 1 + growth / relative;
+    for (int i = 0; i < W; ++i) spread_[i] *= 1 + growth / relative;
   }
 
-  void measure() {
+  /// Changes each component of the spread by rounding, up or down at random, so that it gets parts in every direction.
+  void kick_spread(const double* y) {
+    for (int i = 0; i < W; ++i) spread_[i] += (coin_.toss() ? kick : -kick) * trace_.scale * y[i];
+  }
+
+  void measure(const double* y) {
     double lost[3], spread[3];
-    this->problem_.measure_error(this->y_, loss_, lost);
-    this->problem_.measure_error(this->y_, spread_, spread);
-    largest_ = std::max(largest_, lost[0]);
+    this->problem_.measure_error(y, loss_, lost);
+    this->problem_.measure_error(y, spread_, spread);
+    trace_.largest = std::max(trace_.largest, lost[0]);
     const double rates = lost[1] + spread[1], angle = lost[2] + spread[2];
     // An oscillating error is small at times, so its size is held for a few steps.
-    now_[0] = std::max(rates / scale_, 0.7 * now_[0]);
-    now_[1] = std::max(angle / scale_, 0.7 * now_[1]);
+    now_[0] = std::max(rates / trace_.scale, 0.7 * now_[0]);
+    now_[1] = std::max(angle / trace_.scale, 0.7 * now_[1]);
     if (!(rates + angle < 1e300)) now_[0] = now_[1] = std::numeric_limits<double>::infinity();
   }
 
+  const P& lost_;
   const P& perturbed_;
   ErrorTrace& trace_;
-  double scale_, t0_;
-  double largest_ = 0.0, now_[2] = {}, old_[2] = {}, good_until_ = 0.0;
+  double t0_;
+  double now_[2] = {}, old_[2] = {};
   math::Coin coin_;
-  alignas(64) double loss_[W] = {}, spread_[W] = {};
+  alignas(64) double loss_[W], spread_[W];
   alignas(64) double twin_rows_[W * (most_series_order + 1)] = {};
 };
 

@@ -8,6 +8,7 @@
 #include "method/series/separatrix.hpp"
 #include "polhode/attitude/matrix.hpp"
 #include "polhode/core/simd.hpp"
+#include "polhode/math/detail/coin.hpp"
 #include "polhode/math/detail/functions.hpp"
 
 namespace polhode {
@@ -73,15 +74,7 @@ BodySeries::BodySeries(const Scene& scene, bool attitude) {
     const Vector3d seen = rotate(conjugate(q_WP), space_[0]);
     for (int i = 0; i < 3; ++i) start_[4 + i] = seen[i];
   }
-  if (terms_.variables == RateVariables::separatrix && scene.torques().empty()) {
-    const DD u(start_[0], start_carry_[0]), v(start_[1], start_carry_[1]), w(start_[2]);
-    // u' = b w2 u, v' = -b w2 v, w2' = c (v - u)(v + u): a = c / b
-    balance_ = terms_.product[2] / terms_.product[0];
-    kept_[0] = u * v, kept_[1] = DD(balance_) * (u * u + v * v) + w * w;
-    // Squares of 1e-160 and 1e160 rad/s leave the range of float64: no correction for such rates.
-    const double size = std::abs(kept_[1].hi);
-    free_ = size > 1e-240 && size < 1e240;
-  }
+  free_ = terms_.variables == RateVariables::separatrix && scene.torques().empty();
   find_invariants(scene);
   kernel_ = find_series_kernel(terms_, attitude_);
 }
@@ -91,7 +84,26 @@ void BodySeries::find_invariants(const Scene& scene) {
   vertical_ = !attitude_ && moment_P_ != Vector3d::Zero();
   const Sees sees = attitude_ ? Sees::attitude : vertical_ ? Sees::vertical : Sees::nothing;
   invariants_ = SeriesInvariants(scene, terms_, I_, moment_P_, gradients_, orbit_phase_, half_over_k_, sees);
-  invariants_.start(scene.t0(), start_, start_carry_);
+  keep_invariants(scene.t0());
+}
+
+void BodySeries::keep_invariants(double t0) {
+  invariants_.start(t0, start_, start_carry_);
+  if (!free_) return;
+  const DD u(start_[0], start_carry_[0]), v(start_[1], start_carry_[1]), w(start_[2]);
+  // u' = b w2 u, v' = -b w2 v, w2' = c (v - u)(v + u): a = c / b
+  balance_ = terms_.product[2] / terms_.product[0];
+  kept_[0] = u * v, kept_[1] = DD(balance_) * (u * u + v * v) + w * w;
+  // Squares of 1e-160 and 1e160 rad/s leave the range of float64: no correction for such rates.
+  const double size = std::abs(kept_[1].hi);
+  free_ = size > 1e-240 && size < 1e240;
+}
+
+BodySeries BodySeries::shifted(double t0, const double* error) const {
+  BodySeries other = *this;
+  for (int i = 0; i < dimension; ++i) other.start_[i] += error[i];
+  other.keep_invariants(t0);
+  return other;
 }
 
 void BodySeries::choose_variables(const Vector3d& w) {
@@ -187,24 +199,39 @@ void BodySeries::unpack(const double* rows, std::size_t n, double* omega, double
   }
 }
 
+void BodySeries::pack_error(double* error) const {
+  Vector3d w(error[0], error[1], error[2]);
+  Quat q{error[4], error[5], error[6], error[7]};
+  if (rotated_) w = R_BP_.transpose() * w, q = q * conjugate(q_PB_);
+  if (terms_.variables == RateVariables::separatrix) w = {w[2] - k_ * w[0], w[2] + k_ * w[0], w[1]};
+  std::copy_n(w.data(), 3, error);
+  error[4] = q.x, error[5] = q.y, error[6] = q.z, error[7] = q.w;
+}
+
+void BodySeries::unpack_error(double* error) const {
+  Vector3d w;
+  compute_rates(error, w.data());
+  Quat q{error[4], error[5], error[6], error[7]};
+  if (rotated_) w = R_BP_ * w, q = q * q_PB_;
+  std::copy_n(w.data(), 3, error);
+  error[4] = q.x, error[5] = q.y, error[6] = q.z, error[7] = q.w;
+}
+
 BodySeries BodySeries::perturbed(double part) const {
   BodySeries other = *this;
-  bool up = false;
-  const auto change = [&](double& x, double size) {
-    up = !up;
-    x += up ? part * size : -part * size;
-  };
+  math::Coin coin;
+  const auto change = [&](double& x, double size) { x += coin.toss() ? part * size : -part * size; };
   SeriesTerms& terms = other.terms_;
   const bool rounded = rotated_ && R_BP_.cwiseAbs().maxCoeff() < 1.0;
   for (int i = 0; i < 3; ++i) {
     change(terms.product[i], rounded ? std::max(std::abs(terms.product[i]), I_.maxCoeff() / I_[i]) : terms.product[i]);
   }
-  const auto change_column = [&](double* column) {
-    for (int i = 0; i < 3; ++i) change(column[i], column[i]);
-    up = !up;
+  const auto change_column = [&](double* column, double units = 1.0) {
+    for (int i = 0; i < 3; ++i) change(column[i], units * column[i]);
   };
   change_column(terms.torque);
-  for (auto& column : terms.damping) change_column(column);
+  // Products and a division round each entry, and in a direction without damping all of it is rounding.
+  for (auto& column : terms.damping) change_column(column, 8.0);
   for (auto& vector : terms.pull)
     for (auto& column : vector) change_column(column);
   for (auto& column : terms.tidal) change_column(column);

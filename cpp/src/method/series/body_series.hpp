@@ -43,9 +43,15 @@ class BodySeries {
   /// w_B and, if it is integrated, q_WB of n states.
   void unpack(const double* rows, std::size_t n, double* omega, double* attitude) const;
 
-  /// A copy with all constants changed by this part of each, up or down by a fixed rule. The constants of a full tensor
-  /// change by this part of the largest moment, because its principal axes are rounded.
+  /// Converts a small error of (omega_B, 0, q_WB) to one of the state, and back.
+  void pack_error(double* error) const;
+  void unpack_error(double* error) const;
+
+  /// A copy with all constants changed by this part of each, up or down by a fixed rule; those of damping by eight times
+  /// as much. The constants of a full tensor change by this part of the largest moment, because its axes are rounded.
   BodySeries perturbed(double part) const;
+  /// A copy that keeps the invariants of another start: this one plus an error of the state.
+  BodySeries shifted(double t0, const double* error) const;
   /// For a state and its small error: |w|, the error of w, and the error of the attitude as an angle.
   void measure_error(const double* y, const double* error, double* out) const;
 
@@ -68,6 +74,7 @@ class BodySeries {
   void choose_variables(const Vector3d& omega_P);
   void add_torques(const Scene& scene);
   void find_invariants(const Scene& scene);
+  void keep_invariants(double t0);   ///< those of the start
   void set_column(double* column, const Vector3d& torque_P) const;   ///< adds torque / inertia
   void correct_rates(double* y, double* carry) const;
   static void keep_unit(double* y, double* carry);

@@ -16,15 +16,25 @@ Trajectory integrate_taylor(const Scene& scene, const RunOptions& options) {
     series->unpack(rows, n, omega, attitude);
   };
   using Tracked = ode::TrackedTaylor<BodySeries>;
-  std::optional<BodySeries> perturbed;
-  if (options.trace != nullptr) perturbed = series->perturbed(Tracked::compute_perturbation(*options.trace));
+  ode::ErrorTrace* trace = options.trace;
+  std::optional<BodySeries> lost, perturbed;
+  if (trace != nullptr) {
+    perturbed = series->perturbed(trace->perturbation());
+    if (trace->continued) {
+      series->pack_error(trace->loss), series->pack_error(trace->spread);
+      lost = series->shifted(scene.t0(), trace->loss);
+      perturbed = perturbed->shifted(scene.t0(), trace->spread);
+    }
+  }
   const auto make = [&](const double* y, double t_end) -> std::unique_ptr<ode::Stepper> {
-    if (perturbed) {
-      return std::make_unique<Tracked>(*series, *perturbed, scene.t0(), y, t_end, options.tolerances, *options.trace);
+    if (trace != nullptr) {
+      return std::make_unique<Tracked>(*series, lost ? *lost : *series, *perturbed, scene.t0(), y, t_end,
+                                       options.tolerances, *trace);
     }
     return std::make_unique<ode::Taylor::Stepper<BodySeries>>(*series, scene.t0(), y, t_end, options.tolerances);
   };
   Trajectory trajectory = integrate(scene, options, series->start(), unpack, make);
+  if (trace != nullptr) series->unpack_error(trace->loss), series->unpack_error(trace->spread);
   trajectory.model = "euler", trajectory.state = series->describe_state();
   return trajectory;
 }

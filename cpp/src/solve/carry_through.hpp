@@ -1,0 +1,13 @@
+#pragma once
+
+#include "polhode/ode/tracked_taylor.hpp"
+#include "polhode/solve/closed_form.hpp"
+
+namespace polhode {
+
+/// Carries the errors of a trace through a piece that a closed form evaluates, to the last of its times. They are the
+/// differences of closed forms from perturbed starts. The trace's vectors are errors of (omega, 0, attitude).
+/// @param form_error  bound of the closed form's own error
+void carry_through(const Scene& piece, double form_error, ode::ErrorTrace& trace);
+
+}  // namespace polhode
