@@ -84,11 +84,12 @@ def test_past_the_horizon_of_float64_solve_says_how_far_it_holds(accuracy):
     truth = Truth(rows[:, :3], rows[:, 3:], "", "", 0.0, None)
     errors = np.maximum(rates, attitude_errors(motion.attitude, truth))
     assert errors[motion.t <= said].max() <= accuracy   # and what it returns is that good for so long
-    assert motion.t[errors > accuracy][0] - said <= 70
+    assert motion.t[errors > accuracy][0] - said <= 85   # 79 s at 1e-4
     # doubles at their best are lost at 219 to 260 s, by luck; at 246 s before any method was tuned
     if accuracy == 0.1:
-        # A certificate is on the safe side of it: 197 s, since its spread never cancels (210 s while it could).
-        assert 246 - 60 <= said <= 246
+        # A certificate is on the safe side of it. 180 s: errors are held to a third of the accuracy, as a limit is
+        # three times the estimate; 196 s without that, while at 1e-2 those 196 s were 12 s too many.
+        assert 246 - 75 <= said <= 246
 
 
 @pytest.mark.parametrize(("name", "family", "text"), [("euler", "long", "burst"), ("leapfrog", "gimbal", "burst"),

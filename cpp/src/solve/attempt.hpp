@@ -8,6 +8,7 @@
 namespace polhode {
 
 inline constexpr double unknown_error = std::numeric_limits<double>::infinity();
+inline constexpr double limit_safety = 3.0;   // of a refused run's error, and of how long the accuracy holds
 
 /// One run, or one pair of runs, and the error that it proves.
 struct Attempt {

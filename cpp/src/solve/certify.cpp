@@ -16,7 +16,6 @@ namespace {
 
 constexpr int pilot_intervals = 48;        // of the span, to count the revolutions
 constexpr double chaotic_safety = 2.5;     // after a first run whose error exceeds the accuracy
-constexpr double limit_safety = 3.0;       // of a refused run's error, which has grown far
 constexpr double give_up_factor = 30.0;    // times the accuracy: a run with a larger error is abandoned
 
 /// Repeats the run of one scene until its error is known and small enough.

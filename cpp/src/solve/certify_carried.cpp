@@ -13,6 +13,7 @@ Attempt run_carried(CountedRuns& runs, double rtol, double safety, double most, 
   const double accuracy = runs.decision().plan.accuracy;
   ode::ErrorTrace trace{.asked = accuracy / safety,
                         .most = most,
+                        .hold_margin = limit_safety,
                         .all_terms = runs.decision().facts.is_stiff_for_series()};
   Attempt attempt{.motion = runs.run(runs.decision().scene, runs.options(), rtol, false, &trace)};
   Motion& motion = attempt.motion;

@@ -100,7 +100,7 @@ Attempt PairCertificate::run(double coarse, double fine) {
       attempt.holds_until =
           find_divergence_time(motion.t.size(), motion.t.data(), scene.t0(), scene.omega().norm(),
                                get_data(motion.omega), get_data(motion.attitude), get_data(other.omega),
-                               get_data(other.attitude), accuracy / factor);
+                               get_data(other.attitude), accuracy / (limit_safety * factor));
     }
   }
   return attempt;

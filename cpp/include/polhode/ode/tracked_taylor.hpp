@@ -16,6 +16,7 @@ struct ErrorTrace {
 
   double asked = 1e-9;             ///< the requested error
   double most = infinity;          ///< the run is given up when its error exceeds `most` times `asked`
+  double hold_margin = 1.0;        ///< an error held for a while is to be this much below `asked`
   bool all_terms = false;          ///< the error gets all terms of the series, for steps that stability keeps short
   double rate_error = 0.0;         ///< largest error of the first part (rates), absolute
   double attitude_error = 0.0;     ///< largest error of the second part (attitude), an angle
@@ -47,7 +48,7 @@ struct ErrorTrace {
   /// Takes the errors of samples up to a span from the start.
   void add(double rates, double attitude, double until) {
     rate_error = std::max(rate_error, rates), attitude_error = std::max(attitude_error, attitude);
-    if (rate_error > asked * largest || attitude_error > asked) {
+    if (hold_margin * std::max(rate_error, attitude_error * largest) > asked * largest) {
       holds_until = std::min(holds_until, good_until);
     } else {
       good_until = until;
