@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "polhode/core/error.hpp"
+#include "polhode/core/float_state.hpp"
 #include "polhode/inertia/inertia_tensor.hpp"
 
 namespace polhode::inertia {
@@ -43,6 +44,7 @@ Matrix3d symmetrized(const Matrix3d& I_B, const char* where) {
         throw InvalidInput(where, "finite",
                            to_text(I_B(i, j)) + " at [" + std::to_string(i) + ", " + std::to_string(j) + "]");
       }
+      require_kept(I_B(i, j), where);
     }
   }
   const double largest = I_B.cwiseAbs().maxCoeff();

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "polhode/core/error.hpp"
+#include "polhode/core/float_state.hpp"
 
 namespace polhode {
 
@@ -15,6 +16,7 @@ Scene::Scene(SceneParts parts) {
   }
   for (int i = 0; i < 3; ++i) {
     if (!std::isfinite(parts.omega[i])) throw InvalidInput("scene.omega", "finite", to_text(parts.omega[i]));
+    require_kept(parts.omega[i], "scene.omega");
   }
   parts.attitude = make_attitude(parts.attitude);
   if (!std::isfinite(parts.t0)) throw InvalidInput("scene.t0", "finite", to_text(parts.t0));

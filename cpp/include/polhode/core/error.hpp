@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "polhode/core/detail/float_flags.hpp"
+
 namespace polhode {
 
 /// A value that no computation can start from; Python sees it as a ValueError.

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <cmath>
 
+#include "polhode/core/detail/float_flags.hpp"
+
 namespace polhode {
 
 using Eigen::Matrix3d;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "polhode/core/detail/float_flags.hpp"
+
 // The closed forms are templates over a number type N. `double` is one; vectors of 4 or 8 doubles, each in its own
 // namespace, and double-doubles over any of these are others. Such code may use + - * /, comparisons, and the few
 // functions below, which every number type overloads; it may not branch on a number.
