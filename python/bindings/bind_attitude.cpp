@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "convert.hpp"
+#include "gil.hpp"
 #include "polhode/attitude/detail/arrays.hpp"
 #include "polhode/attitude/kinematics.hpp"
 #include "polhode/attitude/matrix.hpp"
@@ -85,11 +86,9 @@ Array normalize(py::handle value, bool scalar_first) {
   const std::size_t n = rows(q, 4);
   const double* in = q.data();
   double* unit = out.mutable_data();
-  std::size_t refused;
-  {
-    py::gil_scoped_release nogil;
-    refused = arrays::normalize(n, in, unit);
-  }
+  const std::size_t refused = in_parts(n, [&](std::size_t begin, std::size_t count) {
+    return arrays::normalize(count, in + 4 * begin, unit + 4 * begin);
+  });
   if (refused == n) return out;
   require_finite(q, "quat");
   const double* p = in + 4 * refused;
@@ -134,26 +133,25 @@ Array from_euler(py::handle seq, py::handle value, bool degrees) {
   const std::size_t n = rows(angles, 3);
   const double* in = angles.data();
   double* out = q.mutable_data();
-  std::size_t refused;
-  {
-    py::gil_scoped_release nogil;
-    refused = arrays::quat_from_euler(sequence, n, in, unit_of(degrees), out);
-  }
+  const std::size_t refused = in_parts(n, [&](std::size_t begin, std::size_t count) {
+    return arrays::quat_from_euler(sequence, count, in + 3 * begin, unit_of(degrees), out + 4 * begin);
+  });
   if (refused != n) require_finite(angles, "angles");
   return q;
 }
 
 /// Rows (..., 4) to rows (..., tail) by a kernel that refuses nothing.
-template <class Out, class Kernel, class Result = py::array_t<Out, py::array::c_style | py::array::forcecast>>
+template <class Out, class Kernel, class Result = py::array_t<Out, plain>>
 Result convert(const Array& q, std::initializer_list<py::ssize_t> tail, const Kernel& kernel) {
   Result result(with_tail(q, 1, tail));
   const std::size_t n = rows(q, 4);
   const double* in = q.data();
   Out* out = result.mutable_data();
-  {
-    py::gil_scoped_release nogil;
-    kernel(n, in, out);
-  }
+  const std::size_t width = n == 0 ? 0 : static_cast<std::size_t>(result.size()) / n;
+  in_parts(n, [&](std::size_t begin, std::size_t count) {
+    kernel(count, in + 4 * begin, out + width * begin);
+    return count;
+  });
   return result;
 }
 
@@ -188,11 +186,9 @@ Array from_matrix(py::handle value) {
   const std::size_t n = rows(matrix, 9);
   const double* in = matrix.data();
   double* out = q.mutable_data();
-  std::size_t refused;
-  {
-    py::gil_scoped_release nogil;
-    refused = arrays::quat_from_matrix(n, in, out);
-  }
+  const std::size_t refused = in_parts(n, [&](std::size_t begin, std::size_t count) {
+    return arrays::quat_from_matrix(count, in + 9 * begin, out + 4 * begin);
+  });
   if (refused == n) return q;
   require_finite(matrix, "matrix");
   const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> found(in + 9 * refused);
@@ -206,11 +202,9 @@ Array from_rotvec(py::handle value, bool degrees) {
   const std::size_t n = rows(rotvec, 3);
   const double* in = rotvec.data();
   double* out = q.mutable_data();
-  std::size_t refused;
-  {
-    py::gil_scoped_release nogil;
-    refused = arrays::quat_from_rotation_vector(n, in, unit_of(degrees), out);
-  }
+  const std::size_t refused = in_parts(n, [&](std::size_t begin, std::size_t count) {
+    return arrays::quat_from_rotation_vector(count, in + 3 * begin, unit_of(degrees), out + 4 * begin);
+  });
   if (refused != n) require_finite(rotvec, "rotvec");
   return q;
 }
@@ -220,8 +214,11 @@ Array multiply(const Array& q_AB, const Array& q_BC) {
   Array q_AC(pair.shape);
   const double *a = pair.a.data(), *b = pair.b.data();
   double* out = q_AC.mutable_data();
-  py::gil_scoped_release nogil;
-  arrays::multiply(pair.n, a, pair.step_a, b, pair.step_b, out);
+  in_parts(pair.n, [&](std::size_t begin, std::size_t count) {
+    arrays::multiply(count, a + pair.step_a * begin, pair.step_a, b + pair.step_b * begin, pair.step_b,
+                     out + 4 * begin);
+    return count;
+  });
   return q_AC;
 }
 
@@ -230,11 +227,10 @@ Array apply(const Array& q, py::handle value, bool inverse) {
   Array rotated(pair.shape);
   const double *a = pair.a.data(), *v = pair.b.data();
   double* out = rotated.mutable_data();
-  std::size_t refused;
-  {
-    py::gil_scoped_release nogil;
-    refused = arrays::rotate(pair.n, a, pair.step_a, v, pair.step_b, inverse, out);
-  }
+  const std::size_t refused = in_parts(pair.n, [&](std::size_t begin, std::size_t count) {
+    return arrays::rotate(count, a + pair.step_a * begin, pair.step_a, v + pair.step_b * begin, pair.step_b, inverse,
+                          out + 3 * begin);
+  });
   if (refused != pair.n) require_finite(pair.b, "vectors");
   return rotated;
 }
@@ -253,8 +249,11 @@ Array body_rates_of(py::handle seq, py::handle angles, py::handle angle_rates) {
   Array omega(pair.shape);
   const double *a = pair.a.data(), *rates = pair.b.data();
   double* out = omega.mutable_data();
-  py::gil_scoped_release nogil;
-  arrays::body_rates(sequence, pair.n, a, pair.step_a, rates, pair.step_b, out);
+  in_parts(pair.n, [&](std::size_t begin, std::size_t count) {
+    arrays::body_rates(sequence, count, a + pair.step_a * begin, pair.step_a, rates + pair.step_b * begin, pair.step_b,
+                       out + 3 * begin);
+    return count;
+  });
   return omega;
 }
 
@@ -264,11 +263,10 @@ Array euler_rates_of(py::handle seq, py::handle angles, py::handle omega) {
   Array rates(pair.shape);
   const double *a = pair.a.data(), *w = pair.b.data();
   double* out = rates.mutable_data();
-  std::size_t refused;
-  {
-    py::gil_scoped_release nogil;
-    refused = arrays::euler_rates(sequence, pair.n, a, pair.step_a, w, pair.step_b, out);
-  }
+  const std::size_t refused = in_parts(pair.n, [&](std::size_t begin, std::size_t count) {
+    return arrays::euler_rates(sequence, count, a + pair.step_a * begin, pair.step_a, w + pair.step_b * begin,
+                               pair.step_b, out + 3 * begin);
+  });
   if (refused == pair.n) return rates;
   const double *angle = a + pair.step_a * refused, *w_B = w + pair.step_b * refused;
   euler_rates(sequence, {angle[0], angle[1], angle[2]}, {w_B[0], w_B[1], w_B[2]},

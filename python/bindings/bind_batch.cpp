@@ -1,4 +1,5 @@
 #include "convert.hpp"
+#include "gil.hpp"
 #include "polhode/batch/free_motion.hpp"
 #include "polhode/batch/heavy_top.hpp"
 #include "polhode/core/error.hpp"
@@ -40,7 +41,7 @@ std::size_t batch_free_motion(const py::object& inertia, const Array& omega, con
   Array moments;
   const auto batch = make_batch<FreeMotionBatch>(inertia, moments, omega, attitude, t);
   double *w = target(batch, omega_out, 3), *q = target(batch, attitude_out, 4);
-  py::gil_scoped_release nogil;
+  const WithoutGil nogil;
   return free_motion(batch, w, q, threads);
 }
 
@@ -51,7 +52,7 @@ std::size_t batch_heavy_top(const py::object& inertia, const Array& weight_arm, 
   auto batch = make_batch<HeavyTopBatch>(inertia, moments, omega, attitude, t);
   batch.weight_arm = weight_arm.data();
   double *w = target(batch, omega_out, 3), *q = target(batch, attitude_out, 4);
-  py::gil_scoped_release nogil;
+  const WithoutGil nogil;
   return heavy_top(batch, w, q, threads);
 }
 

@@ -1,61 +1,19 @@
 #include <pybind11/stl.h>
 
-#include <atomic>
-#include <chrono>
-#include <condition_variable>
-#include <mutex>
-#include <thread>
-
 #include "bind_solve_options.hpp"
 #include "convert.hpp"
+#include "gil.hpp"
+#include "gil.hpp"
 #include "polhode/batch/solve_many.hpp"
 #include "polhode/core/error.hpp"
 
 namespace polhode::python {
 namespace {
 
-/// Runs `work(stopped)` on a thread of its own and lets Ctrl-C end it: signals reach only Python's first thread.
-template <class Work>
-void run_interruptibly(const Work& work) {
-  std::atomic<bool> stopped{false};
-  std::mutex mutex;
-  std::condition_variable ended;
-  bool over = false;
-  std::exception_ptr failure;
-  std::thread runner([&] {
-    try {
-      work(stopped);
-    } catch (...) {
-      failure = std::current_exception();
-    }
-    const std::lock_guard lock(mutex);
-    over = true;
-    ended.notify_all();
-  });
-  bool interrupted = false;
-  {
-    py::gil_scoped_release nogil;
-    std::unique_lock lock(mutex);
-    while (!ended.wait_for(lock, std::chrono::milliseconds(50), [&] { return over; })) {
-      lock.unlock();
-      if (!interrupted) {
-        py::gil_scoped_acquire gil;
-        interrupted = PyErr_CheckSignals() != 0;
-        stopped = interrupted;
-      }
-      lock.lock();
-    }
-    lock.unlock();
-    runner.join();
-  }
-  if (interrupted) throw py::error_already_set();
-  if (failure) std::rethrow_exception(failure);
-}
-
 py::dict solve_batch(const py::list& scenes, const py::object& moments, const py::object& omega,
                      const py::object& attitude, std::size_t bodies, std::size_t times, const py::object& omega_out,
                      const py::object& attitude_out, const py::dict& given, int threads) {
-  SolveOptions options = to_solve_options(given);
+  const SolveOptions options = to_solve_options(given);
 
   // One scene for all with starts of its own for each body, or a scene for each.
   std::vector<const Scene*> list;
@@ -79,10 +37,10 @@ py::dict solve_batch(const py::list& scenes, const py::object& moments, const py
   };
   double *out_w = target(omega_out), *out_q = target(attitude_out);
   std::vector<ManyResult> results;
-  run_interruptibly([&](std::atomic<bool>& stopped) {
-    options.progress = [&stopped](double, double) { return !stopped; };
+  {
+    const WithoutGil nogil;
     results = solve_many(bodies, times, make_scene, options, out_w, out_q, threads);
-  });
+  }
   py::list status, message, methods;
   const auto n = static_cast<py::ssize_t>(bodies);
   Array reached(n), errors(n);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "convert.hpp"
+#include "gil.hpp"
 #include "polhode/core/state.hpp"
 
 // What the closed forms share on their way to Python.
@@ -30,7 +31,7 @@ py::typing::Tuple<Array, Array> at(const Motion& motion, py::handle t) {
   double *w = omega.mutable_data(), *q = attitude.mutable_data();
   const auto n = static_cast<std::size_t>(times.size());
   {
-    py::gil_scoped_release nogil;
+    const WithoutGil nogil;
     motion.at(in, n, w, q);
   }
   return py::make_tuple(omega, attitude);

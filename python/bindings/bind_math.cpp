@@ -3,6 +3,7 @@
 #include <pybind11/typing.h>
 
 #include "convert.hpp"
+#include "gil.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/math/elliptic.hpp"
 
@@ -21,6 +22,7 @@ void for_each(const double* m, const double* m1, py::ssize_t n, Use use) {
   if (n == 0) return;
   Parameter parameter(m[0], m1[0]);
   for (py::ssize_t i = 0; i < n; ++i) {
+    if (i % 1024 == 0) check_interrupt();
     if (i > 0 && (m[i] != m[i - 1] || m1[i] != m1[i - 1])) parameter = Parameter(m[i], m1[i]);
     use(i, parameter);
   }
@@ -34,7 +36,7 @@ py::typing::Tuple<Array, Array, Array> jacobi(const Array& u, const Array& m, co
   const double *pu = u.data(), *pm = m.data(), *pm1 = m1.data();
   double *ps = sn.mutable_data(), *pc = cn.mutable_data(), *pd = dn.mutable_data();
   {
-    py::gil_scoped_release nogil;
+    const WithoutGil nogil;
     for_each(pm, pm1, n, [=](py::ssize_t i, const Parameter& parameter) {
       const elliptic::Jacobi j = parameter.jacobi(pu[i]);
       ps[i] = j.sn, pc[i] = j.cn, pd[i] = j.dn;
@@ -50,7 +52,7 @@ Array complete(const Array& m, const Array& m1) {
   const double *pm = m.data(), *pm1 = m1.data();
   double* out = result.mutable_data();
   const py::ssize_t n = m.size();
-  py::gil_scoped_release nogil;
+  const WithoutGil nogil;
   for_each(pm, pm1, n, [=](py::ssize_t i, const Parameter& parameter) { out[i] = (parameter.*value)(); });
   return result;
 }

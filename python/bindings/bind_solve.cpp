@@ -6,7 +6,9 @@
 #include "bind_solve_options.hpp"
 #include "bind_solve_plan.hpp"
 #include "convert.hpp"
+#include "gil.hpp"
 #include "polhode/core/error.hpp"
+#include "polhode/core/interrupt.hpp"
 #include "polhode/solve/invariants.hpp"
 #include "polhode/method/lagrangian_problem.hpp"
 #include "polhode/method/euler_problem.hpp"
@@ -34,7 +36,7 @@ struct Answer {
 std::unique_ptr<Answer> solve_scene(const Scene& scene, const py::dict& given) {
   SolveOptions options = to_solve_options(given);
   if (!options.progress) options.progress = make_progress(py::none());
-  py::gil_scoped_release nogil;   // Python callables take it back for themselves
+  const WithoutGil nogil;   // Python callables take it back for themselves
   return std::unique_ptr<Answer>(new Answer{solve(scene, options), scene.want()});
 }
 
@@ -98,7 +100,7 @@ void bind_solve(py::module_& m) {
       .def("__call__", [](const Answer& answer, py::handle times) {
         const Motion& motion = answer.motion;
         const Array t = to_array(times, "motion(t)");
-        const auto n = t.size();
+        const auto n = static_cast<std::size_t>(t.size());
         std::vector<py::ssize_t> shape(t.shape(), t.shape() + t.ndim());
         auto with = [&](py::ssize_t last) {
           auto full = shape;
@@ -106,11 +108,17 @@ void bind_solve(py::module_& m) {
           return full;
         };
         Array omega(with(3)), attitude(with(4));
-        for (py::ssize_t i = 0; i < n; ++i) {
-          const State state = motion.at(t.data()[i]);
-          std::copy_n(state.omega.data(), 3, omega.mutable_data() + 3 * i);
-          double* q = attitude.mutable_data() + 4 * i;
-          q[0] = state.attitude.x, q[1] = state.attitude.y, q[2] = state.attitude.z, q[3] = state.attitude.w;
+        const double* in = t.data();
+        double *w = omega.mutable_data(), *q = attitude.mutable_data();
+        {
+          const WithoutGil nogil;
+          for (std::size_t i = 0; i < n; ++i) {
+            if (i % 1024 == 0) check_interrupt();
+            const State state = motion.at(in[i]);
+            std::copy_n(state.omega.data(), 3, w + 3 * i);
+            const double attitude_i[4] = {state.attitude.x, state.attitude.y, state.attitude.z, state.attitude.w};
+            std::copy_n(attitude_i, 4, q + 4 * i);
+          }
         }
         return py::make_tuple(omega, attitude);
       });
@@ -123,13 +131,24 @@ void bind_solve(py::module_& m) {
   m.def("energy", [](const Scene& scene, const Array& t, const Array& omega, const py::object& attitude) {
     Array energy(t.size());
     const Array q = attitude.is_none() ? Array(py::array::ShapeContainer{0}) : attitude.cast<Array>();
-    compute_energy(scene, rows(t), t.data(), omega.data(), attitude.is_none() ? nullptr : q.data(),
-                   energy.mutable_data());
+    const double *in = t.data(), *w = omega.data(), *turns = attitude.is_none() ? nullptr : q.data();
+    double* out = energy.mutable_data();
+    const std::size_t count = rows(t);
+    {
+      const WithoutGil nogil;
+      compute_energy(scene, count, in, w, turns, out);
+    }
     return energy;
   });
   m.def("angular_momentum", [](const Scene& scene, const Array& omega, const Array& attitude) {
     Array L({omega.shape(0), py::ssize_t{3}});
-    compute_angular_momentum(scene, rows(omega), omega.data(), attitude.data(), L.mutable_data());
+    const double *w = omega.data(), *q = attitude.data();
+    double* out = L.mutable_data();
+    const std::size_t count = rows(omega);
+    {
+      const WithoutGil nogil;
+      compute_angular_momentum(scene, count, w, q, out);
+    }
     return L;
   });
   m.def("drift", [](const Scene& scene, const Array& t, const py::object& omega, const py::object& attitude) {
@@ -139,17 +158,17 @@ void bind_solve(py::module_& m) {
     motion.t = fill(t);
     if (!omega.is_none()) motion.omega = fill(omega.cast<Array>());
     if (!attitude.is_none()) motion.attitude = fill(attitude.cast<Array>());
+    const WithoutGil nogil;
     return compute_drift(scene, motion);
   });
   m.def("reference", [](const Scene& scene, int order, double tolerance, long max_steps) {
     ReferenceOptions options{order, tolerance, max_steps, [] {
-      py::gil_scoped_acquire gil;
-      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+      check_signals();
       return true;
     }};
     Reference found;
     {
-      py::gil_scoped_release nogil;
+      const WithoutGil nogil;
       found = compute_reference(scene, options);
     }
     const auto n = static_cast<py::ssize_t>(scene.times().size());

@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "convert.hpp"
+#include "gil.hpp"
 #include "polhode/core/error.hpp"
 
 namespace polhode::python {
@@ -18,7 +19,7 @@ Formulation to_formulation(py::handle value) {
 /// From a polhode.Event. The closure holds a plain pointer, since it is copied without the GIL.
 SceneEvent to_event(py::handle event) {
   return {[event](const State& state) {
-            py::gil_scoped_acquire gil;
+            const WithGil gil;
             const py::object value = event.attr("function")(state.t, from_vector3(state.omega),
                                                             from_quat(state.attitude));
             return to_real(value, "the event's function");
@@ -80,8 +81,8 @@ SolveOptions to_solve_options(const py::dict& given) {
 
 Progress make_progress(py::handle callback) {
   return [callback](double reached, double last) {
-    py::gil_scoped_acquire gil;
-    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    const WithGil gil;
+    check_signals();
     if (callback.is_none()) return true;
     const py::object answer = callback(reached, last);
     return answer.is_none() || py::bool_(answer);

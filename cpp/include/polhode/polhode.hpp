@@ -11,6 +11,8 @@
 #include "polhode/batch/solve_many.hpp"
 #include "polhode/core/build_info.hpp"
 #include "polhode/core/error.hpp"
+#include "polhode/core/float_state.hpp"
+#include "polhode/core/interrupt.hpp"
 #include "polhode/core/version.hpp"
 #include "polhode/exact/free_motion.hpp"
 #include "polhode/exact/heavy_top.hpp"

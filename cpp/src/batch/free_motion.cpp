@@ -122,6 +122,7 @@ class Run {
 
  private:
   std::size_t do_block(std::size_t begin, std::size_t end) {
+    check_interrupt();
     const exact::FreeKernels& kernels = exact::free_kernels();
     const std::size_t n = end - begin;
     bool all_finite[block];

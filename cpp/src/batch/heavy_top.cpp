@@ -29,6 +29,7 @@ HeavyTop make_top(const HeavyTopBatch& b, std::size_t body) {
 std::size_t run(const HeavyTopBatch& b, const Rows& rows, std::size_t first, std::size_t last) {
   std::size_t poisoned = 0;
   for (std::size_t body = first; body < last; ++body) {
+    check_interrupt();
     const bool finite = (b.tensor || within(b.moments + 3 * body, 3)) && within(b.weight_arm + body, 1) &&
                         within(b.omega + 3 * body, 3) && within(b.attitude + 4 * body, 4);
     if (!finite) {

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "exact/time_parts.hpp"
+#include "polhode/core/interrupt.hpp"
 #include "polhode/exact/detail/time_grid.hpp"
 
 namespace polhode {
@@ -80,7 +82,10 @@ struct Rows {
   std::size_t each_run(std::size_t body, const Evaluate& evaluate) const {
     const double* own = times_of(body);
     if (finite || within(own, times)) {
-      evaluate(shared ? *shared : exact::TimeGrid(own, times), omega_of(body), attitude_of(body));
+      exact::each_part(shared ? *shared : exact::TimeGrid(own, times),
+                       [&](const exact::TimeGrid& part, std::size_t begin) {
+                         evaluate(part, omega_of(body, begin), attitude_of(body, begin));
+                       });
       return 0;
     }
     std::size_t poisoned = 0;

@@ -11,6 +11,7 @@
 #include "batch/lane_scheduler.hpp"
 #include "batch/parallel.hpp"
 #include "polhode/core/error.hpp"
+#include "polhode/core/interrupt.hpp"
 #include "solve/options.hpp"
 #include "solve/pieces.hpp"
 
@@ -47,8 +48,6 @@ const LaneMethod* find_lane_method(const SolveOptions& options) {
 std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeScene& make_scene,
                                    const SolveOptions& options, double* omega, double* attitude, int threads) {
   std::vector<ManyResult> results(n);
-  if (omega != nullptr) std::fill_n(omega, 3 * n * times, not_reached);
-  if (attitude != nullptr) std::fill_n(attitude, 4 * n * times, not_reached);
   if (options.dense || !options.events.empty()) {
     throw InvalidInput("solve_many", "used without dense output and events", "one of them", "solve() has them");
   }
@@ -60,14 +59,20 @@ std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeS
     if (!stopped && !options.progress(static_cast<double>(done.load()), static_cast<double>(n))) stopped = true;
     return !stopped.load();
   };
+  const auto go_on = [&](double reached, double last) {
+    check_interrupt();
+    return options.progress ? report(reached, last) : !stopped.load();
+  };
   SolveOptions single = options;
-  if (options.progress) single.progress = report;
+  single.progress = go_on;
 
+  std::vector<unsigned char> stored(n, 0);
   const auto store = [&](std::size_t body, const Scene& scene, const Motion& motion, bool lane) {
     store_rows(scene, motion, omega ? omega + 3 * times * body : nullptr,
                attitude ? attitude + 4 * times * body : nullptr);
     results[body] = {motion.status, motion.message, motion.plan.method, motion.t_reached, motion.error,
                      motion.stats.steps, succeeded(scene, motion), lane};
+    stored[body] = 1;
     ++done;
   };
   const auto guarded = [&](std::size_t body, const auto& work) {
@@ -88,6 +93,7 @@ std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeS
     for (std::size_t body = next++; body < n && !stopped; body = next++) {
       if (in_lanes[body] != 0) continue;
       guarded(body, [&] {
+        if (!go_on(0.0, 0.0)) return;   // a closed form ends before it asks
         const Scene scene = make_scene(body);
         store(body, scene, solve(scene, single), false);
       });
@@ -103,6 +109,7 @@ std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeS
       const std::size_t end = std::min(n, begin + chunk);
       for (std::size_t body = begin; body < end; ++body) {
         guarded(body, [&] {
+          check_interrupt();
           Scene scene = make_scene(body);
           check_options(scene, options);
           if (has_windows(scene) || !lanes->accepts(scene)) return;
@@ -111,7 +118,7 @@ std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeS
           bodies.push_back(body), in_lanes[body] = 1;
         });
       }
-      const auto stop_requested = [&] { return single.progress ? !single.progress(0.0, 0.0) : stopped.load(); };
+      const auto stop_requested = [&] { return !go_on(0.0, 0.0); };
       guarded(begin, [&] { run_in_lanes(jobs, step.tolerances, options.max_steps, stop_requested); });
       for (std::size_t i = 0; i < bodies.size(); ++i) {
         LaneJob& job = *jobs[i];
@@ -127,8 +134,10 @@ std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeS
   }
   if (std::ranges::find(in_lanes, 0) != in_lanes.end()) parallel_for(thread_limit, thread_limit, 1, solve_singly);
   for (std::size_t i = 0; stopped && i < n; ++i) {
-    if (results[i].message.empty())
-      results[i].status = Status::stopped, results[i].message = "not begun: stopped by the progress callback";
+    if (stored[i] != 0) continue;
+    results[i].status = Status::stopped, results[i].message = "not begun: stopped by the progress callback";
+    if (omega != nullptr) std::fill_n(omega + 3 * times * i, 3 * times, not_reached);
+    if (attitude != nullptr) std::fill_n(attitude + 4 * times * i, 4 * times, not_reached);
   }
   return results;
 }

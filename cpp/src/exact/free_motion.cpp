@@ -6,7 +6,9 @@
 #include <string>
 
 #include "exact/free_frame.hpp"
+#include "exact/time_parts.hpp"
 #include "polhode/core/error.hpp"
+#include "polhode/core/float_state.hpp"
 #include "polhode/math/detail/double_double.hpp"
 
 namespace polhode {
@@ -47,6 +49,7 @@ FreeMotion::FreeMotion(const Vector3d& moments, const Vector3d& omega, const Qua
 FreeMotion::FreeMotion(const InertiaTensor& inertia, const Vector3d& omega, const Quat& attitude)
     : inertia_(inertia), omega_(omega), attitude_(make_attitude(attitude)) {
   if (!omega.allFinite()) throw InvalidInput("omega", "finite", vector_text(omega));
+  for (const double rate : omega) require_kept(rate, "omega");
   if (!inertia.is_positive_definite()) {
     throw InvalidInput("inertia", "positive about every axis", "principal moments " + vector_text(inertia.moments()),
                        "a rod or a point has a zero moment, so its rate about that axis is undefined");
@@ -178,7 +181,9 @@ State FreeMotion::at(double t) const {
 }
 
 void FreeMotion::at(const double* t, std::size_t n, double* omega, double* attitude) const {
-  at(exact::TimeGrid(t, n), omega, attitude);
+  exact::each_part(exact::TimeGrid(t, n), [&](const exact::TimeGrid& part, std::size_t begin) {
+    at(part, omega ? omega + 3 * begin : nullptr, attitude ? attitude + 4 * begin : nullptr);
+  });
 }
 
 void FreeMotion::at(const exact::TimeGrid& times, double* omega, double* attitude) const {

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "polhode/core/error.hpp"
+#include "polhode/core/interrupt.hpp"
 #include "polhode/exact/free_motion.hpp"
 #include "polhode/math/detail/functions.hpp"
 
@@ -75,6 +76,7 @@ std::vector<double> FreeMotion::flip_times(double begin, double end) const {
     const double forward = rate.hi > 0.0 ? n : high - (n - low);
     const double t = std::ldexp(((DD(forward) - start) / rate).hi, -time_exponent_);
     if (begin <= t && t <= end) times.push_back(t);
+    if (times.size() % 65536 == 1) check_interrupt();
   }
   return times;
 }

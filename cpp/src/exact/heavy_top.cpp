@@ -8,7 +8,9 @@
 #include <string>
 
 #include "exact/heavy_top_start.hpp"
+#include "exact/time_parts.hpp"
 #include "polhode/core/error.hpp"
+#include "polhode/core/float_state.hpp"
 #include "polhode/exact/detail/heavy_top_kernels.hpp"
 #include "polhode/math/detail/functions.hpp"
 
@@ -127,6 +129,8 @@ void HeavyTop::set_up() {
   make_attitude(attitude_);  // refuses; the start itself is normalised in double-double
   require(std::isfinite(weight_arm_), "weight_arm", "finite", [&] { return to_text(weight_arm_); });
   require(omega_.allFinite(), "omega", "finite", [&] { return text(omega_); });
+  require_kept(weight_arm_, "weight_arm");
+  for (const double rate : omega_) require_kept(rate, "omega");
   const TopSymmetry body = symmetry_of(inertia_.matrix());
   axis_ = body.axis;
 
@@ -207,7 +211,9 @@ double HeavyTop::p_phi() const { return from_scaled(scaled_[1], scale_of_A_ + sc
 double HeavyTop::p_psi() const { return from_scaled(scaled_[2], scale_of_A_ + scale_of_rate_, "p_psi"); }
 
 void HeavyTop::at(const double* t, std::size_t n, double* omega, double* attitude) const {
-  at(exact::TimeGrid(t, n), omega, attitude);
+  exact::each_part(exact::TimeGrid(t, n), [&](const exact::TimeGrid& part, std::size_t begin) {
+    at(part, omega ? omega + 3 * begin : nullptr, attitude ? attitude + 4 * begin : nullptr);
+  });
 }
 
 void HeavyTop::at(const exact::TimeGrid& times, double* omega, double* attitude) const {

@@ -7,6 +7,7 @@
 #include "inertia/mesh_faces.hpp"
 #include "inertia/mesh_surfaces.hpp"
 #include "polhode/core/error.hpp"
+#include "polhode/core/interrupt.hpp"
 
 // Every edge of a closed, oriented surface lies between two faces, which pass it in opposite directions. The sides of
 // the faces are sorted by their lower vertex (counting sort), then by the other vertex.
@@ -73,6 +74,7 @@ Faults classify_edges(const Corners& corners, const Mesh& mesh, Surfaces& surfac
   std::vector<std::size_t> start(mesh.vertex_count + 2, 0);
   const auto each_side = [&](const auto& visit) {
     for (std::size_t face = 0; face < mesh.face_count; ++face) {
+      if (face % inertia::faces_between_checks == 0) check_interrupt();
       const std::uint32_t* v = corners[face];
       if (is_degenerate(v)) continue;
       visit(v[0], v[1], face), visit(v[1], v[2], face), visit(v[2], v[0], face);
@@ -80,13 +82,16 @@ Faults classify_edges(const Corners& corners, const Mesh& mesh, Surfaces& surfac
   };
   for (std::size_t face = 0; face < mesh.face_count; ++face) faults.degenerate += is_degenerate(corners[face]);
   each_side([&](std::uint32_t from, std::uint32_t to, std::size_t) { ++start[std::min(from, to) + std::size_t{2}]; });
+  check_interrupt();
   for (std::size_t i = 2; i < start.size(); ++i) start[i] += start[i - 1];
+  check_interrupt();
   std::vector<std::uint64_t> sides(start.back());
   each_side([&](std::uint32_t from, std::uint32_t to, std::size_t face) {
     const std::uint64_t low = std::min(from, to), other = std::max(from, to);
     sides[start[low + 1]++] = other << 32 | static_cast<std::uint64_t>(face) << 1 | (from < to);
   });
   for (std::size_t vertex = 0; vertex < mesh.vertex_count; ++vertex) {
+    if (vertex % inertia::faces_between_checks == 0) check_interrupt();
     std::uint64_t* const begin = sides.data() + start[vertex];
     std::uint64_t* const end = sides.data() + start[vertex + 1];
     std::sort(begin, end);
@@ -104,7 +109,11 @@ std::size_t count_repeated(const Corners& corners, std::size_t faces) {
     keys[i] = {corners[i][0], corners[i][1], corners[i][2]};
     std::sort(keys[i].begin(), keys[i].end());
   }
-  std::sort(keys.begin(), keys.end());
+  std::size_t compared = 0;
+  std::sort(keys.begin(), keys.end(), [&](const auto& a, const auto& b) {
+    if (++compared % inertia::faces_between_checks == 0) check_interrupt();
+    return a < b;
+  });
   std::size_t repeated = 0;
   for (std::size_t i = 1; i < faces; ++i) repeated += keys[i] == keys[i - 1] && !is_degenerate(keys[i].data());
   return repeated;

@@ -1,10 +1,12 @@
 #include "inertia/mesh_faces.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
 
 #include "polhode/core/error.hpp"
+#include "polhode/core/interrupt.hpp"
 
 namespace polhode::inertia {
 namespace {
@@ -28,6 +30,7 @@ std::vector<std::uint32_t> first_at_place(const double* vertices, std::size_t co
   std::vector<std::uint32_t> table(std::bit_ceil(2 * count + 2), empty), first(count);
   const std::size_t mask = table.size() - 1;
   for (std::size_t i = 0; i < count; ++i) {
+    if (i % faces_between_checks == 0) check_interrupt();
     const double* p = vertices + 3 * i;
     first[i] = static_cast<std::uint32_t>(i);
     if (!(p[0] == p[0] && p[1] == p[1] && p[2] == p[2])) continue;  // NaN equals nothing
@@ -46,7 +49,12 @@ template <class Visit>
 void visit_indices(const Mesh& mesh, const Visit& visit) {
   std::visit(
       [&](const auto* faces) {
-        for (std::size_t i = 0; i < 3 * mesh.face_count; ++i) visit(i, static_cast<std::int64_t>(faces[i]));
+        const std::size_t count = 3 * mesh.face_count;
+        for (std::size_t begin = 0; begin < count; begin += faces_between_checks) {
+          check_interrupt();
+          const std::size_t end = std::min(count, begin + faces_between_checks);
+          for (std::size_t i = begin; i < end; ++i) visit(i, static_cast<std::int64_t>(faces[i]));
+        }
       },
       mesh.faces);
 }

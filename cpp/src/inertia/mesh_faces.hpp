@@ -8,6 +8,9 @@
 
 namespace polhode::inertia {
 
+/// Work on so many faces takes about a millisecond.
+inline constexpr std::size_t faces_between_checks = 32768;
+
 /// Throws InvalidInput, with the face, for an index that names no vertex, and for a mesh without faces.
 void require_indices(const Mesh& mesh);
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "polhode/core/error.hpp"
+#include "polhode/core/interrupt.hpp"
 #include "polhode/math/detail/functions.hpp"
 
 namespace polhode::inertia {
@@ -46,7 +47,8 @@ class FacesOf {
 double winding(const Vector3d& point, const std::uint32_t* face, const std::uint32_t* end, const Corners& corners,
                const Mesh& mesh) {
   double sum = 0;
-  for (; face != end; ++face) {
+  for (const std::uint32_t* const first = face; face != end; ++face) {
+    if (static_cast<std::size_t>(face - first) % faces_between_checks == 0) check_interrupt();
     const std::uint32_t* v = corners[*face];
     const Vector3d a = vertex(mesh, v[0]) - point, b = vertex(mesh, v[1]) - point, c = vertex(mesh, v[2]) - point;
     const double la = a.norm(), lb = b.norm(), lc = c.norm();
@@ -68,6 +70,7 @@ std::vector<Surface> measure(const Corners& corners, const Mesh& mesh, Surfaces&
   std::vector<std::uint32_t> place(mesh.face_count);
   std::vector<Surface> surfaces;
   for (std::uint32_t face = 0; face < mesh.face_count; ++face) {
+    if (face % faces_between_checks == 0) check_interrupt();
     const std::uint32_t* v = corners[face];
     if (is_degenerate(v)) continue;
     const std::uint32_t root = roots.root(face);

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "polhode/core/interrupt.hpp"
 #include "polhode/math/detail/functions.hpp"
 
 namespace polhode {
 namespace {
+
+constexpr std::size_t rows_between_checks = 4096;
 
 double compute_kinetic(const Matrix3d& I, const double* w) {
   double sum = 0.0;
@@ -34,6 +37,7 @@ void compute_energy(const Scene& scene, std::size_t n, const double* t, const do
                     double* energy) {
   static constexpr double identity[4] = {0, 0, 0, 1};
   for (std::size_t i = 0; i < n; ++i) {
+    if (i % rows_between_checks == 0) check_interrupt();
     const double* q = attitude != nullptr ? attitude + 4 * i : identity;
     energy[i] = compute_kinetic(scene.inertia_B().matrix(), omega + 3 * i);
     if (!scene.torques().empty()) energy[i] += compute_potential(scene, t[i], omega + 3 * i, q);
@@ -43,6 +47,7 @@ void compute_energy(const Scene& scene, std::size_t n, const double* t, const do
 void compute_angular_momentum(const Scene& scene, std::size_t n, const double* omega, const double* attitude,
                               double* L_W) {
   for (std::size_t i = 0; i < n; ++i) {
+    if (i % rows_between_checks == 0) check_interrupt();
     const double *w = omega + 3 * i, *q = attitude + 4 * i;
     const Vector3d L_B = scene.inertia_B().matrix() * Vector3d{w[0], w[1], w[2]};
     const Vector3d L = rotate({q[0], q[1], q[2], q[3]}, L_B);

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include "bind.hpp"
+#include "polhode/core/interrupt.hpp"
+
+// The lock of the interpreter around long work. A daemon thread may ask for it while Python ends. Python up to 3.13
+// then unwinds the thread, which no C++ destructor survives. Here the thread waits for the end of the process instead,
+// as it does from Python 3.14 on.
+namespace polhode::python {
+
+/// Holds the lock, on any thread.
+class WithGil {
+ public:
+  WithGil();
+  ~WithGil();
+  WithGil(const WithGil&) = delete;
+  WithGil& operator=(const WithGil&) = delete;
+
+ private:
+  PyGILState_STATE state_;
+};
+
+/// Work without the lock. Where that work calls check_interrupt, Ctrl-C ends it with KeyboardInterrupt.
+class WithoutGil {
+ public:
+  WithoutGil();
+  ~WithoutGil();
+  WithoutGil(const WithoutGil&) = delete;
+  WithoutGil& operator=(const WithoutGil&) = delete;
+
+ private:
+  InterruptGuard guard_;
+  PyThreadState* state_;
+};
+
+/// Lets Python's handlers of signals run. Throws what they raise.
+void check_signals();
+
+/// Calls kernel(begin, count) for rows [0, n) in parts, without the lock. The kernel returns `count`, or the first row
+/// of the part that it refuses. Returns n, or the first row that is refused.
+template <class Kernel>
+std::size_t in_parts(std::size_t n, const Kernel& kernel) {
+  constexpr std::size_t most = 32768;
+  const WithoutGil nogil;
+  for (std::size_t begin = 0; begin < n; begin += most) {
+    check_interrupt();
+    const std::size_t count = std::min(most, n - begin), refused = kernel(begin, count);
+    if (refused < count) return begin + refused;
+  }
+  return n;
+}
+
+}  // namespace polhode::python
