@@ -1,8 +1,9 @@
 #include <pybind11/stl.h>
 
-#include "bind.hpp"
+#include "convert.hpp"
 #include "polhode/core/build_info.hpp"
 #include "polhode/core/error.hpp"
+#include "polhode/core/float_state.hpp"
 #include "polhode/core/version.hpp"
 
 namespace polhode::python {
@@ -10,6 +11,12 @@ namespace polhode::python {
 void bind_core(py::module_& m) {
   m.attr("__version__") = POLHODE_VERSION;
   m.def("build_info", &build_info, "How the installed binary was built.");
+  m.def("flushes_to_zero", &flushes_to_zero, "Whether this thread takes numbers below 2.2e-308 for 0.");
+  m.def("require_kept",
+        [](const Array& array, const std::string& name) {
+          for (py::ssize_t i = 0; i < array.size(); ++i) require_kept(array.data()[i], name);
+        },
+        py::arg("array"), py::arg("name"), "Raises InvalidInput for a number that this thread takes for 0.");
   py::register_exception<InvalidInput>(m, "InvalidInput", PyExc_ValueError);
   py::register_exception<IntegrationFailure>(m, "IntegrationFailure", PyExc_RuntimeError);
 }

@@ -3,6 +3,7 @@
 
 #include "bind_exact.hpp"
 #include "convert.hpp"
+#include "gil.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/exact/free_motion.hpp"
 
@@ -13,7 +14,7 @@ FreeMotion make_free_motion(py::handle inertia, py::handle omega, py::handle att
   const Vector3d w = to_vector3(omega, "omega");
   const Quat q = to_attitude(attitude, "attitude");
   if (py::isinstance<InertiaTensor>(inertia)) return {inertia.cast<const InertiaTensor&>(), w, q};
-  return {to_vector3(inertia, "inertia"), w, q};
+  return {to_moments(inertia, "inertia"), w, q};
 }
 
 using Curve = Vector3d (FreeMotion::*)(double) const;
@@ -25,8 +26,11 @@ Array along(const FreeMotion& motion, py::handle t) {
   const double* in = times.data();
   double* out = points.mutable_data();
   const py::ssize_t n = times.size();
-  py::gil_scoped_release nogil;
-  for (py::ssize_t i = 0; i < n; ++i) Eigen::Map<Vector3d>(out + 3 * i) = (motion.*curve)(in[i]);
+  const WithoutGil nogil;
+  for (py::ssize_t i = 0; i < n; ++i) {
+    if (i % 1024 == 0) check_interrupt();
+    Eigen::Map<Vector3d>(out + 3 * i) = (motion.*curve)(in[i]);
+  }
   return points;
 }
 
@@ -109,7 +113,12 @@ ndarray, shape (..., 3)
       .def(
           "flip_times",
           [](const FreeMotion& motion, py::handle begin, py::handle end) {
-            const auto times = motion.flip_times(to_real(begin, "begin"), to_real(end, "end"));
+            const double first = to_real(begin, "begin"), last = to_real(end, "end");
+            std::vector<double> times;
+            {
+              const WithoutGil nogil;
+              times = motion.flip_times(first, last);
+            }
             Array result(static_cast<py::ssize_t>(times.size()));
             std::copy(times.begin(), times.end(), result.mutable_data());
             return result;
@@ -154,7 +163,14 @@ ndarray, shape (n,)
       });
   cls.def(py::pickle(
       [](const FreeMotion& f) { return py::make_tuple(f.inertia(), from_vector3(f.omega()), from_quat(f.attitude())); },
-      [](const py::tuple& s) { return make_free_motion(s[0], s[1], s[2]); }));
+      [](const py::tuple& state) {
+        return from_state("FreeMotion", state, 3, [](const py::tuple& s) {
+          const auto& inertia = s[0].cast<const InertiaTensor&>();
+          const Array q = to_array_with_tail(s[2], "attitude", {4});
+          return FreeMotion(inertia, to_vector3(s[1], "omega"),
+                            {q.data()[0], q.data()[1], q.data()[2], q.data()[3]});
+        });
+      }));
 }
 
 }  // namespace polhode::python

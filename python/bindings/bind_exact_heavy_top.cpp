@@ -17,8 +17,8 @@ HeavyTop make_heavy_top(py::handle inertia, py::handle weight_arm, py::handle om
   const Quat q = to_attitude(attitude, "attitude");
   if (py::isinstance<InertiaTensor>(inertia)) return {inertia.cast<const InertiaTensor&>(), arm, w, q};
   const Array array = to_array(inertia, "inertia");
-  if (array.ndim() == 2) return {InertiaTensor(to_matrix3(array, "inertia")), arm, w, q};
-  return {to_vector3(array, "inertia"), arm, w, q};
+  if (array.ndim() == 1 && array.shape(0) == 3) return {to_vector3(array, "inertia"), arm, w, q};
+  return {InertiaTensor(to_tensor(array, "inertia")), arm, w, q};
 }
 
 }  // namespace
@@ -110,10 +110,13 @@ InvalidInput
       [](const HeavyTop& top) {
         return py::make_tuple(top.inertia(), top.weight_arm(), from_vector3(top.omega()), from_quat(top.attitude()));
       },
-      [](const py::tuple& s) {
-        const Array q = to_array_with_tail(s[3], "attitude", {4});  // as it was: normalising again could move an ulp
-        return HeavyTop(s[0].cast<const InertiaTensor&>(), to_real(s[1], "weight_arm"), to_vector3(s[2], "omega"),
-                        {q.data()[0], q.data()[1], q.data()[2], q.data()[3]});
+      [](const py::tuple& state) {
+        return from_state("HeavyTop", state, 4, [](const py::tuple& s) {
+          const auto& inertia = s[0].cast<const InertiaTensor&>();
+          const Array q = to_array_with_tail(s[3], "attitude", {4});  // as it was: normalising again could move an ulp
+          return HeavyTop(inertia, to_real(s[1], "weight_arm"), to_vector3(s[2], "omega"),
+                          {q.data()[0], q.data()[1], q.data()[2], q.data()[3]});
+        });
       }));
 }
 

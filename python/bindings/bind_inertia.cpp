@@ -2,9 +2,11 @@
 #include <pybind11/stl.h>
 #include <pybind11/typing.h>
 
+#include <cmath>
 #include <optional>
 
 #include "convert.hpp"
+#include "gil.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/inertia/mass_properties.hpp"
 #include "polhode/inertia/shapes.hpp"
@@ -14,14 +16,6 @@ namespace polhode::python {
 void bind_inertia_mesh(py::module_& m, py::class_<MassProperties>& cls);  // bind_inertia_mesh.cpp
 
 namespace {
-
-const InertiaTensor& to_tensor(py::handle value, const char* name) {
-  if (!py::isinstance<InertiaTensor>(value)) {
-    throw InvalidInput(name, "an InertiaTensor", std::string(py::str(py::type::of(value))),
-                       "InertiaTensor(matrix) makes one of an array");
-  }
-  return value.cast<const InertiaTensor&>();
-}
 
 std::string array_text(const Array& array) { return py::cast<std::string>(py::str(array.attr("tolist")())); }
 
@@ -69,8 +63,10 @@ Made by :meth:`InertiaTensor.principal`.)");
         return py::make_tuple(from_vector3(p.moments), from_matrix3(p.axes), static_cast<int>(p.symmetry));
       },
       [](const py::tuple& state) {
-        return PrincipalAxes{to_vector3(state[0], "moments"), to_matrix3(state[1], "axes"),
-                             static_cast<Symmetry>(state[2].cast<int>() & 3)};
+        return from_state("PrincipalAxes", state, 3, [](const py::tuple& s) {
+          return PrincipalAxes{to_vector3(s[0], "moments"), to_matrix3(s[1], "axes"),
+                               static_cast<Symmetry>(s[2].cast<int>() & 3)};
+        });
       }));
 }
 
@@ -96,12 +92,12 @@ InvalidInput
     axis, the deficit in per cent and the likely cause.)");
   cls.attr("__module__") = "polhode";
   cls.def(py::init(
-              [](py::handle matrix, bool physical) { return InertiaTensor(to_matrix3(matrix, "inertia"), physical); }),
+              [](py::handle matrix, bool physical) { return InertiaTensor(to_tensor(matrix, "inertia"), physical); }),
           py::arg("matrix"), py::kw_only(), py::arg("physical") = true)
       .def_static(
           "from_moments",
           [](py::handle moments, bool physical) {
-            return InertiaTensor::from_moments(to_vector3(moments, "moments"), physical);
+            return InertiaTensor::from_moments(to_moments(moments, "moments"), physical);
           },
           py::arg("moments"), py::kw_only(), py::arg("physical") = true,
           R"(The tensor with these moments about the given axes, in their order: unsorted is fine.
@@ -169,7 +165,9 @@ rotation : Rotation or array_like, shape (4,)
       .def("__repr__", &to_repr)
       .def(py::pickle([](const InertiaTensor& t) { return py::make_tuple(from_matrix3(t.matrix()), t.physical()); },
                       [](const py::tuple& state) {
-                        return InertiaTensor::from_trusted(to_matrix3(state[0], "inertia"), state[1].cast<bool>());
+                        return from_state("InertiaTensor", state, 2, [](const py::tuple& s) {
+                          return InertiaTensor::from_trusted(to_matrix3(s[0], "inertia"), s[1].cast<bool>());
+                        });
                       }));
 }
 
@@ -196,7 +194,7 @@ InvalidInput
             if (py::isinstance<InertiaTensor>(inertia)) {
               return MassProperties(kilograms, com_B, inertia.cast<const InertiaTensor&>());
             }
-            return MassProperties(kilograms, com_B, InertiaTensor(to_matrix3(inertia, "inertia")));
+            return MassProperties(kilograms, com_B, InertiaTensor(to_tensor(inertia, "inertia")));
           }),
           py::arg("mass"), py::arg("com"), py::arg("inertia"))
       .def_static(
@@ -266,7 +264,9 @@ translation : array_like, shape (3,)
       .def(py::pickle(
           [](const MassProperties& p) { return py::make_tuple(p.mass(), from_vector3(p.com()), p.inertia()); },
           [](const py::tuple& state) {
-            return MassProperties(state[0].cast<double>(), to_vector3(state[1], "com"), to_tensor(state[2], "inertia"));
+            return from_state("MassProperties", state, 3, [](const py::tuple& s) {
+              return MassProperties(s[0].cast<double>(), to_vector3(s[1], "com"), s[2].cast<const InertiaTensor&>());
+            });
           }));
   bind_inertia_mesh(m, cls);
 }
@@ -324,7 +324,11 @@ void bind_shapes(py::module_& m) {
           throw InvalidInput("shape", "one with a volume", name, "a thin body: give its mass");
         const std::vector<double> numbers = shape_numbers(record, values);
         record.make(numbers.data());  // refuses what is no body
-        return static_cast<double>(record.volume(numbers.data() + 1));
+        const auto volume = static_cast<double>(record.volume(numbers.data() + 1));
+        if (!std::isfinite(volume)) {
+          throw InvalidInput(name, "of a volume within float64", to_text(volume), "choose a larger unit of length");
+        }
+        return volume;
       },
       py::arg("name"), py::arg("values"), "The volume of a body, from all its parameters, in the record's order.");
 }
@@ -341,8 +345,10 @@ py::typing::Tuple<Array, Array, py::int_> principal_axes(py::handle value) {
     double* const out_moments = moments.mutable_data();
     double* const out_axes = axes.mutable_data();
     const auto count = static_cast<std::size_t>(matrices.size() / 9);
-    py::gil_scoped_release nogil;
-    not_finite = compute_principal_axes(in, count, out_moments, out_axes);
+    in_parts(count, [&](std::size_t begin, std::size_t part) {
+      not_finite += compute_principal_axes(in + 9 * begin, part, out_moments + 3 * begin, out_axes + 9 * begin);
+      return part;
+    });
   }
   return py::make_tuple(moments, axes, not_finite);
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "convert.hpp"
+#include "gil.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/inertia/checks.hpp"
 
@@ -22,8 +23,10 @@ py::typing::Tuple<Array, py::array_t<std::uint8_t>> check_inertia(py::handle val
     double* const out_margins = margins.mutable_data();
     std::uint8_t* const out_flaws = flaws.mutable_data();
     const auto count = static_cast<std::size_t>(matrices.size() / 9);
-    py::gil_scoped_release nogil;
-    polhode::check_inertia(in, count, out_margins, out_flaws);
+    in_parts(count, [&](std::size_t begin, std::size_t part) {
+      polhode::check_inertia(in + 9 * begin, part, out_margins + begin, out_flaws + begin);
+      return part;
+    });
   }
   return py::make_tuple(margins, flaws);
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "convert.hpp"
+#include "gil.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/inertia/mesh.hpp"
 
@@ -13,7 +14,7 @@ namespace {
 
 /// Faces as they come, int32 or int64 without a copy, any other whole numbers as int64.
 py::array to_faces(py::handle value) {
-  constexpr int style = py::array::c_style | py::array::forcecast;
+  refuse_masked(value, "faces");
   py::array faces = py::array::ensure(value);
   if (!faces) {
     PyErr_Clear();
@@ -30,8 +31,8 @@ py::array to_faces(py::handle value) {
                        "shape " + std::string(py::str(faces.attr("shape"))),
                        faces.ndim() == 2 && faces.shape(1) == 4 ? "quadrilaterals? cut each in two" : "");
   }
-  if (kind == 'i' && faces.itemsize() == 4) return py::array_t<std::int32_t, style>::ensure(faces);
-  return py::array_t<std::int64_t, style>::ensure(faces);
+  if (kind == 'i' && faces.itemsize() == 4) return py::array_t<std::int32_t, plain>::ensure(faces);
+  return py::array_t<std::int64_t, plain>::ensure(faces);
 }
 
 /// The arrays, kept alive, and the view of them.
@@ -116,7 +117,7 @@ MassProperties properties_of(const Triangles& triangles, const Options& options)
   std::optional<MeshReport> report;
   MeshIntegrals integrals;
   {
-    py::gil_scoped_release nogil;
+    const WithoutGil nogil;
     if (options.check) report = check_mesh(mesh);
     integrals = integrate_mesh(mesh);
     if (options.flip && integrals.volume.hi < 0) integrals.flip();
@@ -239,7 +240,7 @@ InvalidInput
         const Mesh mesh = triangles.view();
         MeshReport report;
         {
-          py::gil_scoped_release nogil;
+          const WithoutGil nogil;
           report = check_mesh(mesh);
         }
         py::dict found;

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "polhode/core/error.hpp"
+#include "polhode/core/float_state.hpp"
 
 namespace polhode::python {
 namespace {
@@ -29,40 +30,99 @@ std::string tail_text(std::initializer_list<py::ssize_t> tail, const char* open)
   return text + ")";
 }
 
-Array exact_shape(py::handle value, const char* name, std::initializer_list<py::ssize_t> shape) {
-  Array array = to_array(value, name);
+bool has_shape(const Array& array, std::initializer_list<py::ssize_t> shape) {
   bool fits = array.ndim() == static_cast<py::ssize_t>(shape.size());
   py::ssize_t axis = 0;
   for (const auto size : shape) fits = fits && array.shape(axis++) == size;
-  if (!fits) throw InvalidInput(name, "an array of shape " + tail_text(shape, "("), "shape " + shape_text(array));
+  return fits;
+}
+
+Array exact_shape(py::handle value, const char* name, std::initializer_list<py::ssize_t> shape) {
+  Array array = to_array(value, name);
+  if (!has_shape(array, shape)) {
+    throw InvalidInput(name, "an array of shape " + tail_text(shape, "("), "shape " + shape_text(array));
+  }
   require_finite(array, name);
   return array;
 }
 
+/// As NumPy's own conversion, without leave for another type; InvalidInput for what is no array of numbers.
+py::object from_any(py::handle value, const char* name, py::handle dtype, int flags) {
+  auto& numpy = py::detail::npy_api::get();
+  dtype.inc_ref();   // the call takes it over
+  PyObject* array = numpy.PyArray_FromAny_(value.ptr(), dtype.ptr(), 0, 0,
+                                           py::detail::npy_api::NPY_ARRAY_ENSUREARRAY_ | flags, nullptr);
+  if (array != nullptr) return py::reinterpret_steal<py::object>(array);
+  py::error_already_set error;
+  if (error.matches(PyExc_MemoryError) || !error.matches(PyExc_Exception)) throw error;
+  throw InvalidInput(name, "an array of real numbers", std::string(py::str(py::type::of(value))));
+}
+
+/// With flush-to-zero the processor takes denormal numbers for 0.
+void refuse_flushed(const Array& array, const char* name) {
+  if (!flushes_to_zero()) return;
+  const double* data = array.data();
+  for (py::ssize_t i = 0; i < array.size(); ++i) require_kept(data[i], name);
+}
+
+/// What a caller likely meant by an inertia of another shape.
+const char* inertia_hint(const Array& array) {
+  if (array.ndim() == 1 && array.shape(0) == 6) {
+    return "six numbers? write the matrix [[Ixx, Ixy, Ixz], [Ixy, Iyy, Iyz], [Ixz, Iyz, Izz]], where the products of "
+           "inertia have their minus sign";
+  }
+  if (array.ndim() == 1 && array.shape(0) == 9) return "nine numbers in a row? reshape(3, 3) makes the matrix";
+  if (array.ndim() == 1 && array.shape(0) == 3) return "InertiaTensor.from_moments takes principal moments";
+  if (array.ndim() == 2 && array.shape(0) == 3 && array.shape(1) == 3) return "InertiaTensor(matrix) takes a matrix";
+  return "";
+}
+
+Array inertia_of_shape(py::handle value, const char* name, std::initializer_list<py::ssize_t> shape) {
+  const Array array = to_array(value, name);
+  if (has_shape(array, shape)) {
+    require_finite(array, name);
+    return array;
+  }
+  throw InvalidInput(name, "an array of shape " + tail_text(shape, "("), "shape " + shape_text(array),
+                     inertia_hint(array));
+}
+
+/// What a caller likely meant by an attitude of another shape.
+const char* attitude_hint(const Array& array) {
+  if (array.ndim() == 2 && array.shape(0) == 3 && array.shape(1) == 3) {
+    return "a rotation matrix? Rotation.from_matrix makes an attitude of it";
+  }
+  if (array.ndim() == 1 && array.shape(0) == 3) {
+    return "angles or a rotation vector? Rotation.from_euler or Rotation.from_rotvec makes an attitude of them";
+  }
+  return "";
+}
+
 }  // namespace
 
+// NumPy's conversion would take what stands under the mask.
+void refuse_masked(py::handle value, const char* name) {
+  auto& numpy = py::detail::npy_api::get();
+  if (!numpy.PyArray_Check_(value.ptr()) || Py_TYPE(value.ptr()) == numpy.PyArray_Type_) return;
+  if (!py::hasattr(value, "mask") || !py::hasattr(value, "filled")) return;
+  const py::module_ ma = py::module_::import("numpy.ma");
+  if (!ma.attr("is_masked")(value).cast<bool>()) return;
+  throw InvalidInput(name, "without masked entries",
+                     std::to_string(ma.attr("count_masked")(value).cast<long>()) + " of them",
+                     "leave them out, or give them a value by .filled()");
+}
+
 Array to_array(py::handle value, const char* name) {
-  py::array array;
-  try {
-    array = py::array::ensure(value);
-    if (!array) {
-      PyErr_Clear();
-      throw InvalidInput(name, "an array of real numbers", std::string(py::str(py::type::of(value))));
-    }
-  } catch (const py::error_already_set&) {
-    throw InvalidInput(name, "an array of real numbers", std::string(py::str(py::type::of(value))));
-  }
+  refuse_masked(value, name);
+  const auto array = py::reinterpret_borrow<py::array>(from_any(value, name, nullptr, 0));
   const char kind = array.dtype().kind();
   if (kind != 'f' && kind != 'i' && kind != 'u' && kind != 'b') {
     throw InvalidInput(name, "an array of real numbers",
                        "dtype " + std::string(py::str(static_cast<py::object>(array.dtype()))),
                        kind == 'O' ? "a ragged list, perhaps, or objects that are no numbers" : "");
   }
-  Array result = Array::ensure(array);
-  if (!result) {
-    PyErr_Clear();
-    throw InvalidInput(name, "an array of real numbers", std::string(py::str(py::type::of(value))));
-  }
+  const auto result = py::reinterpret_borrow<Array>(from_any(array, name, py::dtype::of<double>(), plain));
+  refuse_flushed(result, name);
   return result;
 }
 
@@ -102,12 +162,37 @@ Matrix3d to_matrix3(py::handle value, const char* name) {
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(array.data());
 }
 
-Quat to_attitude(py::handle value, const char* name) {
-  const py::object quat =
-      py::hasattr(value, "as_quat") ? value.attr("as_quat")() : py::reinterpret_borrow<py::object>(value);
-  const Array array = exact_shape(quat, name, {4});
+Vector3d to_moments(py::handle value, const char* name) {
+  const Array array = inertia_of_shape(value, name, {3});
+  return {array.data()[0], array.data()[1], array.data()[2]};
+}
+
+Matrix3d to_tensor(py::handle value, const char* name) {
+  const Array array = inertia_of_shape(value, name, {3, 3});
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(array.data());
+}
+
+Quat to_attitude(py::handle value, const char* name, int frames) {
+  const bool numbers = !py::hasattr(value, "as_quat");
+  const py::object quat = numbers ? py::reinterpret_borrow<py::object>(value) : value.attr("as_quat")();
+  const Array array = to_array(quat, name);
+  if (!has_shape(array, {4})) {
+    throw InvalidInput(name, "an array of shape (4,)", "shape " + shape_text(array), attitude_hint(array));
+  }
+  require_finite(array, name);
   const double* d = array.data();
+  if (numbers && d[0] == 1.0 && d[1] == 0.0 && d[2] == 0.0 && d[3] == 0.0) {
+    const std::string text =
+        std::string(name) +
+        ": (1, 0, 0, 0) is a half turn about x, as quaternions are (x, y, z, w) here. "
+        "Rotation.from_quat(..., scalar_first=True) reads (w, x, y, z); a Rotation gives no warning";
+    if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), frames) != 0) throw py::error_already_set();
+  }
   return make_attitude({d[0], d[1], d[2], d[3]});
+}
+
+void refuse_state(const char* name) {
+  throw InvalidInput(std::string(name) + ".__setstate__", "given what pickle saved", "another state");
 }
 
 Array from_vector3(const Vector3d& v) {

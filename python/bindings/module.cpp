@@ -1,4 +1,5 @@
 #include "bind.hpp"
+#include "calls.hpp"
 
 // The table of contents: one line a word, in the order in which they may use each other.
 PYBIND11_MODULE(_core, m, pybind11::mod_gil_not_used()) {
@@ -16,4 +17,5 @@ PYBIND11_MODULE(_core, m, pybind11::mod_gil_not_used()) {
   bind_solve(m);
   bind_batch(m);
   bind_batch_solve_many(m);
+  refuse_wrong_calls(m);
 }

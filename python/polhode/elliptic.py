@@ -12,20 +12,13 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._attitude.arrays import to_numbers
 
 __all__ = ["K", "jacobi", "nome"]
 
 
 def _flat(names: tuple[str, ...], values: tuple[npt.ArrayLike, ...]) -> tuple[tuple[int, ...], list[Any]]:
-    arrays = []
-    for name, value in zip(names, values, strict=True):
-        try:
-            array = np.asarray(value)
-        except ValueError:
-            array = np.empty(0, dtype=object)
-        if array.dtype.kind not in "fiub":
-            raise _core.InvalidInput(f"{name}: must be an array of real numbers, got dtype {array.dtype}")
-        arrays.append(array.astype(np.float64, copy=False))
+    arrays = [to_numbers(value, name) for name, value in zip(names, values, strict=True)]
     try:
         arrays = list(np.broadcast_arrays(*arrays))
     except ValueError:
@@ -35,7 +28,7 @@ def _flat(names: tuple[str, ...], values: tuple[npt.ArrayLike, ...]) -> tuple[tu
 
 
 def _pair(m: npt.ArrayLike, m1: npt.ArrayLike | None) -> tuple[npt.ArrayLike, npt.ArrayLike]:
-    return (m, 1.0 - np.asarray(m)) if m1 is None else (m, m1)
+    return (m, 1.0 - to_numbers(m, "m")) if m1 is None else (m, m1)
 
 
 def jacobi(u: npt.ArrayLike, m: npt.ArrayLike, m1: npt.ArrayLike | None = None) -> tuple[Any, Any, Any]:

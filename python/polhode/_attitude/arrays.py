@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
+import sys
 import warnings
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .. import _core
 from .._core import InvalidInput
 from .._core import attitude as _kernels
 
@@ -16,13 +19,20 @@ FloatArray = NDArray[np.float64]
 
 def to_numbers(value: Any, name: str) -> FloatArray:
     """Return a float64 array; NaN and inf pass."""
+    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
+        count = np.ma.getmaskarray(value).sum()
+        raise InvalidInput(f"{name}: must be without masked entries, got {count} of them (leave them out, or give them "
+                           "a value by .filled())")
     try:
         array = np.asarray(value)
     except ValueError:   # a ragged list
         array = np.empty(0, dtype=object)
     if array.dtype.kind not in "fiub":
         raise InvalidInput(f"{name}: must be an array of real numbers, got dtype {array.dtype}")
-    return array.astype(np.float64, copy=False)
+    numbers = array.astype(np.float64, copy=False)
+    if _core.flushes_to_zero():
+        _core.require_kept(numbers, name)
+    return numbers
 
 
 def to_vectors(value: Any, name: str) -> FloatArray:
@@ -58,6 +68,8 @@ def to_shape(num: int | None, shape: int | tuple[int, ...] | None) -> tuple[int,
     sizes = sizes if isinstance(sizes, tuple) else (sizes,)
     if not all(isinstance(size, (int, np.integer)) and size >= 0 for size in sizes):
         raise InvalidInput(f"{'shape' if num is None else 'num'}: must be whole numbers >= 0, got {sizes}")
+    if math.prod(sizes) > sys.maxsize // 32:   # four numbers each
+        raise MemoryError(f"{math.prod(sizes)} rotations need {32 * math.prod(sizes)} bytes")
     return sizes
 
 
