@@ -45,11 +45,12 @@ Array view(const std::vector<double>& values, const py::object& base) {
 InertiaTensor to_inertia(py::handle value, const char* name) {
   if (py::isinstance<InertiaTensor>(value)) return value.cast<const InertiaTensor&>();
   const Array array = to_array(value, name);
-  if (array.ndim() == 1) return InertiaTensor::from_moments(to_vector3(value, name));
-  return InertiaTensor(to_matrix3(value, name));
+  if (array.ndim() == 1 && array.shape(0) == 3) return InertiaTensor::from_moments(to_vector3(array, name));
+  return InertiaTensor(to_tensor(array, name));
 }
 
 void bind_scene(py::module_& m) {
+  // The Python class keeps the torques' objects, so that their functions live as long.
   py::class_<Scene>(m, "Scene")
       .def(py::init([](py::handle inertia, py::handle omega, py::handle attitude, const py::iterable& torques,
                        py::handle times, py::handle want, py::handle t0, const py::object& name) {
@@ -58,7 +59,7 @@ void bind_scene(py::module_& m) {
              for (const py::handle one : torques)
                list.push_back(to_torque(one, "scene.torques[" + std::to_string(list.size()) + "]"));
              return Scene(SceneParts{to_inertia(inertia, "scene.inertia"), to_vector3(omega, "scene.omega"),
-                                     to_attitude(attitude, "scene.attitude"), std::move(list), to_times(times),
+                                     to_attitude(attitude, "scene.attitude", 2), std::move(list), to_times(times),
                                      to_wanted(want), to_real(t0, "scene.t0"), name.cast<std::string>()});
            }),
            py::arg("inertia"), py::arg("omega"), py::arg("attitude"), py::arg("torques"), py::arg("times"),
@@ -66,12 +67,6 @@ void bind_scene(py::module_& m) {
       .def_property_readonly("inertia", &Scene::inertia_B)
       .def_property_readonly("omega", [](const Scene& scene) { return from_vector3(scene.omega()); })
       .def_property_readonly("attitude", [](const Scene& scene) { return from_quat(scene.attitude()); })
-      .def_property_readonly("torques",
-                             [](const Scene& scene) {
-                               py::list list;
-                               for (const AnyTorque& torque : scene.torques()) list.append(from_torque(torque));
-                               return py::tuple(list);
-                             })
       .def_property_readonly("times",
                              [](const py::object& self) { return view(self.cast<const Scene&>().times(), self); })
       .def_property_readonly("want",

@@ -9,8 +9,7 @@ namespace polhode::python {
 /// An InertiaTensor, three principal moments in the body axes, or a (3, 3) tensor.
 InertiaTensor to_inertia(py::handle value, const char* name);
 
-/// One torque of the list as the Python object of its class, and back.
-py::object from_torque(const AnyTorque& torque);
+/// The torque of a Python object. The object must outlive all copies of the torque.
 AnyTorque to_torque(py::handle value, const std::string& name);
 
 }  // namespace polhode::python

@@ -1,5 +1,6 @@
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <charconv>
 #include <tuple>
 
@@ -87,13 +88,35 @@ std::string docstring(const TorqueRecord& record) {
   return text;
 }
 
+/// What to write instead of a keyword that a torque does not have.
+std::string keyword_hint(const TorqueRecord& record, const std::string& keyword) {
+  if (record.name == "Gravity" && (keyword == "mass" || keyword == "m" || keyword == "g")) {
+    return "weight is the mass times g: Gravity(weight=mass * 9.80665, arm=...)";
+  }
+  py::list names;
+  for (const TorqueParameter& parameter : record.parameters) names.append(std::string(parameter.name));
+  const py::list near = py::module_::import("difflib").attr("get_close_matches")(keyword, names, 1);
+  return near.empty() ? "" : "did you mean '" + near[0].cast<std::string>() + "'?";
+}
+
+void refuse_unknown(const TorqueRecord& record, const py::kwargs& kwargs) {
+  for (const auto& item : kwargs) {
+    const std::string keyword = item.first.cast<std::string>();
+    const bool known = std::any_of(record.parameters.begin(), record.parameters.end(),
+                                   [&](const TorqueParameter& parameter) { return parameter.name == keyword; });
+    if (known) continue;
+    throw InvalidInput(std::string(record.name), "called as " + call_signature(record), "the keyword '" + keyword + "'",
+                       keyword_hint(record, keyword));
+  }
+}
+
 TorqueValues parse(const TorqueRecord& record, const py::args& args, const py::kwargs& kwargs) {
   TorqueValues values;
-  std::size_t used = 0;
   const std::string name(record.name);
   if (args.size() > record.parameters.size()) {
     throw InvalidInput(name, "called as " + call_signature(record), std::to_string(args.size()) + " arguments");
   }
+  refuse_unknown(record, kwargs);
   for (std::size_t i = 0; i < record.parameters.size(); ++i) {
     const TorqueParameter& parameter = record.parameters[i];
     const py::str key(parameter.name.data(), parameter.name.size());
@@ -103,21 +126,11 @@ TorqueValues parse(const TorqueRecord& record, const py::args& args, const py::k
     if (i < args.size()) {
       values.push_back(to_value(args[i], parameter, where));
     } else if (named) {
-      ++used;
       values.push_back(to_value(kwargs[key], parameter, where));
     } else if (parameter.fallback) {
       values.push_back(default_value(parameter));
     } else {
       throw InvalidInput(where, "given", "nothing", call_signature(record));
-    }
-  }
-  if (used != kwargs.size()) {
-    for (const auto& item : kwargs) {
-      bool known = false;
-      for (const TorqueParameter& parameter : record.parameters)
-        known |= parameter.name == item.first.cast<std::string>();
-      if (!known)
-        throw InvalidInput(name, "called as " + call_signature(record), "'" + item.first.cast<std::string>() + "'");
     }
   }
   return values;
@@ -210,14 +223,16 @@ void for_each_torque(Visitor&& visitor) {
 
 }  // namespace
 
-py::object from_torque(const AnyTorque& torque) {
-  return std::visit([](const auto& one) { return py::cast(one); }, torque);
-}
-
 AnyTorque to_torque(py::handle value, const std::string& name) {
   std::optional<AnyTorque> torque;
   for_each_torque([&]<class T>() {
-    if (py::isinstance<T>(value)) torque.emplace(value.cast<const T&>());
+    if (!py::isinstance<Bound<T>>(value)) return;
+    const auto& bound = value.cast<const Bound<T>&>();
+    if constexpr (std::is_same_v<T, Bound<T>>) {
+      torque.emplace(bound);
+    } else {
+      torque.emplace(bound.get());
+    }
   });
   if (!torque) {
     throw InvalidInput(name, "a torque of polhode.torques", std::string(py::str(py::type::of(value))),

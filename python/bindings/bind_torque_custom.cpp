@@ -1,9 +1,11 @@
 #include "bind_torque.hpp"
 
-#include <atomic>
 #include <cstdint>
+#include <cstring>
+#include <memory>
 
 #include "convert.hpp"
+#include "gil.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/torque/custom.hpp"
 
@@ -11,45 +13,6 @@ namespace polhode::python {
 namespace {
 
 using torques::Custom;
-
-/// An array lent to a callable and used again for its next call, unless the callable kept it (or a view of it).
-class LentArray {
- public:
-  explicit LentArray(py::ssize_t size) : size_(size) {}
-  void drop() { Py_XDECREF(free_.exchange(nullptr)); }   ///< with the GIL held
-
-  /// Taken out while it is lent, so that neither a call within the call nor another thread can write into it.
-  py::object take(const double* values) {
-    py::object array = py::reinterpret_steal<py::object>(free_.exchange(nullptr));
-    if (!array) array = Array(size_);
-    std::copy_n(values, size_, static_cast<double*>(py::reinterpret_borrow<py::array>(array).mutable_data()));
-    return array;
-  }
-  void give_back(py::object array) {
-    if (array.ref_count() == 1) Py_XDECREF(free_.exchange(array.release().ptr()));
-  }
-
- private:
-  py::ssize_t size_;
-  std::atomic<PyObject*> free_{nullptr};
-};
-
-/// What Python gave, kept alive with the torque. Its references are dropped with the GIL held.
-struct Owner {
-  py::object function, potential, data;
-  Custom::Claims claims;
-  LentArray omega{3}, attitude{4};
-
-  ~Owner() {
-    if (!Py_IsInitialized()) {
-      function.release(), potential.release(), data.release();
-      return;
-    }
-    py::gil_scoped_acquire gil;
-    function = py::object(), potential = py::object(), data = py::object();
-    omega.drop(), attitude.drop();
-  }
-};
 
 /// Three floats in a tuple or list, or a float64 array of three: without the way through NumPy's general conversion.
 bool read_plainly(py::handle result, double* torque) {
@@ -63,15 +26,15 @@ bool read_plainly(py::handle result, double* torque) {
     return true;
   }
   if (!py::isinstance<Array>(result)) return false;
-  const Array tau = py::reinterpret_borrow<Array>(result);
+  const auto tau = py::reinterpret_borrow<py::array>(result);
   if (tau.ndim() != 1 || tau.shape(0) != 3) return false;
-  std::copy_n(tau.data(), 3, torque);
+  std::memcpy(torque, tau.data(), 3 * sizeof(double));   // at any address
   return true;
 }
 
 void call_python(double t, const double* omega, const double* attitude, double* torque, void* data) {
-  py::gil_scoped_acquire gil;
-  Owner& owner = *static_cast<Owner*>(data);
+  const WithGil gil;
+  OwnCustom& owner = *static_cast<OwnCustom*>(data);
   py::object w = owner.omega.take(omega), q = owner.attitude.take(attitude);
   const py::float_ time(t);
   PyObject* arguments[] = {nullptr, time.ptr(), w.ptr(), q.ptr()};
@@ -92,8 +55,8 @@ void call_python(double t, const double* omega, const double* attitude, double* 
 }
 
 double call_python_potential(double t, const double* attitude, void* data) {
-  py::gil_scoped_acquire gil;
-  const Owner& owner = *static_cast<const Owner*>(data);
+  const WithGil gil;
+  const OwnCustom& owner = *static_cast<const OwnCustom*>(data);
   Array q(4);
   std::copy_n(attitude, 4, q.mutable_data());
   return to_real(owner.potential(t, q), "the torque's potential");
@@ -120,14 +83,11 @@ bool is_compiled(py::handle function) {
          (py::hasattr(py::type::of(function), "_flags_") && py::hasattr(py::type::of(function), "_restype_"));
 }
 
-Custom make_custom(const py::object& function, bool uses_time, bool uses_attitude, bool uses_rates,
-                   const py::object& potential, const py::object& data) {
-  auto owner = std::make_shared<Owner>();
-  owner->function = function;
-  owner->potential = potential;
-  owner->data = data;
-  const Custom::Claims claims{uses_time, uses_attitude, uses_rates};
-  owner->claims = claims;
+std::unique_ptr<OwnCustom> make_custom(const py::object& function, bool uses_time, bool uses_attitude, bool uses_rates,
+                                       const py::object& potential, const py::object& data) {
+  auto own = std::make_unique<OwnCustom>();
+  own->function = function, own->potential = potential, own->data = data;
+  own->claims = {uses_time, uses_attitude, uses_rates};
   if (is_compiled(function)) {
     const std::uintptr_t address = find_address(function);
     const std::uintptr_t user = data.is_none() ? 0 : data.cast<std::uintptr_t>();
@@ -138,8 +98,9 @@ Custom make_custom(const py::object& function, bool uses_time, bool uses_attitud
       }
       compiled_potential = reinterpret_cast<Custom::Potential>(find_address(potential));
     }
-    return Custom(reinterpret_cast<Custom::Function>(address), reinterpret_cast<void*>(user), claims,
-                  compiled_potential, owner);
+    own->torque.emplace(reinterpret_cast<Custom::Function>(address), reinterpret_cast<void*>(user), own->claims,
+                        compiled_potential);
+    return own;
   }
   if (!PyCallable_Check(function.ptr())) {
     throw InvalidInput("Custom.function", "callable as function(t, omega, attitude)",
@@ -153,15 +114,13 @@ Custom make_custom(const py::object& function, bool uses_time, bool uses_attitud
     throw InvalidInput("Custom.data", "left out for a Python callable", std::string(py::repr(data)),
                        "only a compiled function receives the pointer");
   }
-  void* pointer = owner.get();
-  return Custom(&call_python, pointer, claims, potential.is_none() ? nullptr : &call_python_potential,
-                std::move(owner));
+  own->torque.emplace(&call_python, own.get(), own->claims, potential.is_none() ? nullptr : &call_python_potential);
+  return own;
 }
 
-py::tuple get_custom_state(const Custom& torque) {
-  const Owner& owner = *static_cast<const Owner*>(torque.owner().get());
-  return py::make_tuple(owner.function, owner.claims.uses_time, owner.claims.uses_attitude, owner.claims.uses_rates,
-                        owner.potential, owner.data);
+py::tuple get_custom_state(const OwnCustom& own) {
+  return py::make_tuple(own.function, own.claims.uses_time, own.claims.uses_attitude, own.claims.uses_rates,
+                        own.potential, own.data);
 }
 
 constexpr const char* custom_doc =
@@ -193,25 +152,33 @@ InvalidInput
 
 }  // namespace
 
+py::object LentArray::take(const double* values) {
+  py::object array = py::reinterpret_steal<py::object>(free_.exchange(nullptr));
+  if (!array) array = Array(size_);
+  std::copy_n(values, size_, static_cast<double*>(py::reinterpret_borrow<py::array>(array).mutable_data()));
+  return array;
+}
+
 void bind_torque_custom(py::module_& m) {
-  py::class_<Custom> type(m, "Custom", custom_doc);
+  py::class_<OwnCustom> type(m, "Custom", custom_doc, py::custom_type_setup(&show_references<OwnCustom>));
   type.def(py::init(&make_custom), py::arg("function"), py::kw_only(), py::arg("uses_time") = true,
            py::arg("uses_attitude") = true, py::arg("uses_rates") = true, py::arg("potential") = py::none(),
            py::arg("data") = py::none());
-  type.def_property_readonly("function",
-                             [](const Custom& torque) -> py::object { return get_custom_state(torque)[0]; });
-  type.def_property_readonly("traits", [](const Custom& torque) {
-    return describe_traits(torque.traits());
+  type.def_property_readonly("function", [](const OwnCustom& own) { return own.function; });
+  type.def_property_readonly("traits", [](const OwnCustom& own) {
+    return describe_traits(own.get().traits());
   });
-  type.def("__repr__", [](const Custom& torque) {
-    return "polhode.torques.Custom(" + std::string(py::repr(get_custom_state(torque)[0])) + ")";
+  type.def("__repr__", [](const OwnCustom& own) {
+    return "polhode.torques.Custom(" + std::string(py::repr(own.function)) + ")";
   });
-  type.def("__eq__", [](const Custom& a, const py::object& b) {
-    return py::isinstance<Custom>(b) && get_custom_state(a).equal(get_custom_state(b.cast<const Custom&>()));
+  type.def("__eq__", [](const OwnCustom& a, const py::object& b) {
+    return py::isinstance<OwnCustom>(b) && get_custom_state(a).equal(get_custom_state(b.cast<const OwnCustom&>()));
   });
-  type.def("__hash__", [](const Custom& torque) { return py::hash(get_custom_state(torque)[0]); });
-  type.def(py::pickle(&get_custom_state, [](const py::tuple& s) {
-    return make_custom(s[0], s[1].cast<bool>(), s[2].cast<bool>(), s[3].cast<bool>(), s[4], s[5]);
+  type.def("__hash__", [](const OwnCustom& own) { return py::hash(own.function); });
+  type.def(py::pickle(&get_custom_state, [](const py::tuple& state) {
+    return from_state("Custom", state, 6, [](const py::tuple& s) {
+      return make_custom(s[0], s[1].cast<bool>(), s[2].cast<bool>(), s[3].cast<bool>(), s[4], s[5]);
+    });
   }));
 }
 

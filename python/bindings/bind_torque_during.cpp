@@ -1,3 +1,5 @@
+#include <memory>
+
 #include "bind_scene.hpp"
 #include "bind_torque.hpp"
 #include "convert.hpp"
@@ -41,11 +43,11 @@ py::tuple from_windows(const During& torque) {
   return windows;
 }
 
-py::object get_torque(const During& torque) {
-  return from_torque(std::visit([](const auto& one) { return AnyTorque(one); }, torque.torque()));
+std::unique_ptr<OwnDuring> make_during(const py::object& torque, py::handle windows) {
+  return std::unique_ptr<OwnDuring>(new OwnDuring{torque, During(to_lasting(torque), to_windows(windows))});
 }
 
-py::tuple get_during_state(const During& torque) { return py::make_tuple(get_torque(torque), from_windows(torque)); }
+py::tuple get_during_state(const OwnDuring& own) { return py::make_tuple(own.inner, from_windows(own.torque)); }
 
 constexpr const char* during_doc =
     R"doc(During(torque, windows)
@@ -71,28 +73,29 @@ InvalidInput
 }  // namespace
 
 void bind_torque_during(py::module_& m) {
-  py::class_<During>(m, "During", during_doc)
-      .def(py::init([](const py::object& torque, const py::object& windows) {
-             return During(to_lasting(torque), to_windows(windows));
-           }),
-           py::arg("torque"), py::arg("windows"))
-      .def_property_readonly("torque", &get_torque, "The torque that acts.")
-      .def_property_readonly("windows", &from_windows, "tuple of (begin, end) [s], in the order of time.")
-      .def_property_readonly(
-          "traits", [](const During& torque) { return describe_traits(torque.traits()); },
-          "dict: uses_time, uses_attitude, uses_rates, has_potential.")
+  py::class_<OwnDuring>(m, "During", during_doc, py::custom_type_setup(&show_references<OwnDuring>))
+      .def(py::init(&make_during), py::arg("torque"), py::arg("windows"))
+      .def_property_readonly("torque", [](const OwnDuring& own) { return own.inner; }, "The torque that acts.")
+      .def_property_readonly("windows", [](const OwnDuring& own) { return from_windows(own.torque); },
+                             "tuple of (begin, end) [s], in the order of time.")
+      .def_property_readonly("traits", [](const OwnDuring& own) { return describe_traits(own.torque.traits()); },
+                             "dict: uses_time, uses_attitude, uses_rates, has_potential.")
       .def("__repr__",
-           [](const During& torque) {
-             return "polhode.torques.During(" + std::string(py::repr(get_torque(torque))) +
-                    ", windows=" + std::string(py::repr(from_windows(torque))) + ")";
+           [](const OwnDuring& own) {
+             return "polhode.torques.During(" + std::string(py::repr(own.inner)) +
+                    ", windows=" + std::string(py::repr(from_windows(own.torque))) + ")";
            })
       .def("__eq__",
-           [](const During& a, const py::object& b) {
-             return py::isinstance<During>(b) && get_during_state(a).equal(get_during_state(b.cast<const During&>()));
+           [](const OwnDuring& a, const py::object& b) {
+             return py::isinstance<OwnDuring>(b) &&
+                    get_during_state(a).equal(get_during_state(b.cast<const OwnDuring&>()));
            })
-      .def("__hash__", [](const During& torque) { return py::hash(get_during_state(torque)); })
-      .def(py::pickle(&get_during_state,
-                      [](const py::tuple& state) { return During(to_lasting(state[0]), to_windows(state[1])); }));
+      .def("__hash__", [](const OwnDuring& own) { return py::hash(get_during_state(own)); })
+      .def(py::pickle(&get_during_state, [](const py::tuple& state) {
+        return from_state("During", state, 2, [](const py::tuple& s) {
+          return make_during(py::reinterpret_borrow<py::object>(s[0]), s[1]);
+        });
+      }));
 }
 
 }  // namespace polhode::python

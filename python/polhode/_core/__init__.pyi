@@ -618,9 +618,6 @@ class Scene:
     def times(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
     @property
-    def torques(self) -> tuple[typing.Any, ...]:
-        ...
-    @property
     def want(self) -> tuple[typing.Any, ...]:
         ...
 class CostFactors:
@@ -698,6 +695,10 @@ def exact_models() -> list[typing.Any]:
     """
     The closed forms: name, doc, source.
     """
+def flushes_to_zero() -> bool:
+    """
+    Whether this thread takes numbers below 2.2e-308 for 0.
+    """
 def generalised_forces(arg0: typing.Any, arg1: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
     ...
 def make_shape(name: str, values: collections.abc.Sequence[typing.Any]) -> MassProperties:
@@ -729,6 +730,10 @@ def principal_axes(matrices: typing.Any) -> tuple[numpy.typing.NDArray[numpy.flo
 def reference(scene: Scene, order: typing.SupportsInt | typing.SupportsIndex, tolerance: typing.SupportsFloat | typing.SupportsIndex, max_steps: typing.SupportsInt | typing.SupportsIndex) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], int]:
     """
     omega, attitude and steps of a scene by Taylor series in long double, as a reference.
+    """
+def require_kept(array: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], name: str) -> None:
+    """
+    Raises InvalidInput for a number that this thread takes for 0.
     """
 def shape_records() -> list[typing.Any]:
     """

@@ -44,7 +44,8 @@ class Scene(_core.Scene):
         For bad input, with the parameter and the requirement.
     """
 
-    __slots__ = ()
+    __slots__ = ("_torques",)
+    _torques: tuple[Any, ...]
 
     def __init__(
         self,
@@ -60,7 +61,14 @@ class Scene(_core.Scene):
     ) -> None:
         if not isinstance(torques, Iterable):
             torques = (torques,)
-        super().__init__(inertia, omega, attitude, torques, times, want, t0, name)
+        kept = tuple(torques)
+        super().__init__(inertia, omega, attitude, kept, times, want, t0, name)
+        self._torques = kept   # the compiled scene holds plain pointers to their functions
+
+    @property
+    def torques(self) -> tuple[Any, ...]:
+        """The torques, as they were given."""
+        return self._torques
 
     @classmethod
     def load(cls, source: str | os.PathLike[str]) -> Scene:
@@ -89,7 +97,7 @@ class Scene(_core.Scene):
 
     def replace(self, **changes: Any) -> Scene:
         """Return a scene with some parts changed, by the names of the constructor."""
-        return type(self)(**{**self._parts(), **changes})
+        return _restore(type(self), {**self._parts(), **changes}, "attitude" not in changes)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _restore, (type(self), self._parts())
@@ -113,8 +121,18 @@ class Scene(_core.Scene):
                 f"{times.size} times from {times.min():g} to {times.max():g} s)")
 
 
-def _restore(cls: type[Scene], parts: dict[str, Any]) -> Scene:
-    return cls(**parts)
+class _Attitude:
+    """An attitude that was taken before: it gives no warning again."""
+
+    def __init__(self, quat: npt.NDArray[np.float64]) -> None:
+        self._quat = quat
+
+    def as_quat(self) -> npt.NDArray[np.float64]:
+        return self._quat
+
+
+def _restore(cls: type[Scene], parts: dict[str, Any], kept: bool = True) -> Scene:
+    return cls(**({**parts, "attitude": _Attitude(parts["attitude"])} if kept else parts))
 
 
 def scene_folder() -> pathlib.Path:
