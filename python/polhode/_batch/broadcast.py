@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -26,10 +26,21 @@ def to_rows(value: Any, name: str, width: int | None) -> Array:
     return array
 
 
+def to_attitudes(value: Any, level: int) -> Array:
+    """Return attitudes of shape (..., 4); warn if they look like (w, x, y, z)."""
+    array = to_rows(value, "attitude", 4)
+    if not hasattr(value, "as_quat") and array.size and (array == (1.0, 0.0, 0.0, 0.0)).all():
+        warnings.warn("attitude: (1, 0, 0, 0) is a half turn about x, as quaternions are (x, y, z, w) here. "
+                      "Rotation.from_quat(..., scalar_first=True) reads (w, x, y, z); a Rotation gives no warning",
+                      UserWarning, stacklevel=level)
+    return array
+
+
 def check_want(want: str | Sequence[str]) -> tuple[str, ...]:
     """Return the requested names, in the caller's order."""
-    names = (want,) if isinstance(want, str) else tuple(want)
-    if not names or any(name not in WIDTHS for name in names) or len(set(names)) != len(names):
+    names = (want,) if isinstance(want, str) else tuple(want) if isinstance(want, Iterable) else ()
+    known = all(isinstance(name, str) and name in WIDTHS for name in names)
+    if not names or not known or len(set(names)) != len(names):
         raise InvalidInput(f"want: must be one or both of 'omega' and 'attitude', got {want!r}")
     return names
 
@@ -58,7 +69,7 @@ def check_out(out: Any, names: tuple[str, ...], shape: tuple[int, ...]) -> dict[
     """Return the caller's arrays by name; none if `out` is not given."""
     if out is None:
         return {}
-    given = (out,) if isinstance(out, np.ndarray) else tuple(out)
+    given = (out,) if isinstance(out, np.ndarray) or not isinstance(out, Iterable) else tuple(out)
     if len(given) != len(names):
         raise InvalidInput(f"out: must be one array for each of {names}, got {len(given)}")
     targets = {}
@@ -70,6 +81,16 @@ def check_out(out: Any, names: tuple[str, ...], shape: tuple[int, ...]) -> dict[
             raise InvalidInput(f"out: must be a writeable float64 array of shape {wanted} for {name}, got {found}")
         targets[name] = array
     return targets
+
+
+def _in_place(target: Any, others: Iterable[Any]) -> bool:
+    """Return True if results can be written into `target` while the other arrays are read and written.
+
+    As in NumPy, an output that overlaps an input or another output gets a copy of results computed apart.
+    """
+    if target is None or not (target.flags.c_contiguous and target.flags.aligned):
+        return False
+    return not any(other is not target and np.may_share_memory(target, other) for other in others)
 
 
 def _warn(poisoned: int, level: int) -> None:
@@ -90,7 +111,7 @@ def _evaluate_one(
     results: dict[str, Any] = {}
     for name in names:
         target = targets.get(name)
-        fits = target is not None and target.flags.c_contiguous
+        fits = _in_place(target, [*parameters, t, *targets.values()])
         results[name] = target if fits else np.empty((*t.shape, WIDTHS[name]))
     flat = [array[None] for array in parameters]
     poisoned = kernel(*flat, t.reshape(-1), results.get("omega"), results.get("attitude"))
@@ -147,10 +168,10 @@ def evaluate(
         flat_t = np.ascontiguousarray(spread_t[(0,) * len(bodies)]).reshape(n_times)
 
     results: dict[str, Any] = {}
-    in_place = order == sorted(order)
+    others = [*(array for array, _ in parameters), t, *targets.values()]
     for name in names:
         target = targets.get(name)
-        if target is not None and in_place and target.flags.c_contiguous:
+        if order == sorted(order) and _in_place(target, others):
             results[name] = target
         else:
             results[name] = np.empty((*body_shape, *time_shape, WIDTHS[name]))
@@ -174,6 +195,6 @@ def check_threads(threads: int | None) -> int:
     """Return the number of threads; 0 means all of the machine."""
     if threads is None:
         return 0
-    if isinstance(threads, bool) or not isinstance(threads, (int, np.integer)) or threads < 1:
-        raise InvalidInput(f"threads: must be a positive whole number, got {threads!r}")
+    if isinstance(threads, bool) or not isinstance(threads, (int, np.integer)) or not 1 <= threads < 2**31:
+        raise InvalidInput(f"threads: must be a positive whole number below 2^31, got {threads!r}")
     return int(threads)

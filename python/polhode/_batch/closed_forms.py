@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from .. import _core
 from .._core import InertiaTensor
-from .broadcast import Array, check_threads, evaluate, to_rows
+from .broadcast import Array, check_threads, evaluate, to_attitudes, to_rows
 
 
 def _split(inertia: InertiaTensor | npt.ArrayLike) -> tuple[tuple[InertiaTensor, ...], list[tuple[Array, int]]]:
@@ -74,7 +74,7 @@ def free_motion(
     The formulas of :class:`FreeMotion`; see docs/exact.md.
     """
     workers = check_threads(threads)
-    speeds, attitudes = to_rows(omega, "omega", 3), to_rows(attitude, "attitude", 4)
+    speeds, attitudes = to_rows(omega, "omega", 3), to_attitudes(attitude, 3)
     times = to_rows(t, "t", None)
     common, own = _split(inertia)
 
@@ -137,7 +137,7 @@ def heavy_top(
     The formulas of :class:`HeavyTop`; see docs/heavy_top.md.
     """
     workers = check_threads(threads)
-    speeds, attitudes = to_rows(omega, "omega", 3), to_rows(attitude, "attitude", 4)
+    speeds, attitudes = to_rows(omega, "omega", 3), to_attitudes(attitude, 3)
     times = to_rows(t, "t", None)
     arms = to_rows(weight_arm, "weight_arm", None)
 

@@ -10,10 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _core
-from .._attitude.rotation import Rotation
 from .._scene.scene import Scene
 from .._solve.motion import Floats
-from .broadcast import WIDTHS, check_threads
+from .._solve.solve import check_max_steps
+from .broadcast import WIDTHS, check_threads, to_attitudes, to_rows
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,10 +57,7 @@ class Motions:
 
 
 def _rows(value: Any, width: int, name: str) -> Floats:
-    try:
-        array = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        raise _core.InvalidInput(f"{name}: must be an array of numbers, got {type(value).__name__}") from None
+    array = to_attitudes(value, 4) if name == "attitude" else to_rows(value, name, None)
     if array.ndim not in (1, 2) or array.shape[-1] != width:
         raise _core.InvalidInput(f"{name}: must be of shape ({width},) or (bodies, {width}), got {array.shape}")
     return array
@@ -115,9 +112,10 @@ def solve_many(
     """
     starts: tuple[Floats | None, Floats | None, Floats | None] = (None, None, None)
     if isinstance(scenes, Scene):
-        given = {"inertia": (inertia, 3), "omega": (omega, 3),
-                 "attitude": (attitude.as_quat() if isinstance(attitude, Rotation) else attitude, 4)}
-        arrays = {name: _rows(value, width, name) for name, (value, width) in given.items() if value is not None}
+        arrays = {}
+        for name, value, width in (("inertia", inertia, 3), ("omega", omega, 3), ("attitude", attitude, 4)):
+            if value is not None:
+                arrays[name] = _rows(value, width, name)
         sizes = {array.shape[0] for array in arrays.values() if array.ndim == 2}
         if len(sizes) != 1:
             raise _core.InvalidInput(
@@ -141,12 +139,10 @@ def solve_many(
             if scene.times.size != listed[0].times.size or scene.want != listed[0].want:
                 raise _core.InvalidInput(f"scenes[{i}]: must have as many times as scenes[0] and the same want")
     workers = check_threads(threads)
-    if not isinstance(max_steps, (int, np.integer)):
-        raise _core.InvalidInput(f"max_steps: must be a whole number, got {max_steps!r}")
     times = listed[0].times.size if listed else 0
     want = listed[0].want if listed else ("omega", "attitude")
     out = {name: np.empty((bodies, times, width)) if name in want else None for name, width in WIDTHS.items()}
     options = {"accuracy": accuracy, "method": method, "rtol": rtol, "atol": atol, "step": step,
-               "max_steps": int(max_steps)}
+               "max_steps": check_max_steps(max_steps)}
     found = _core._solve_many(listed, *starts, bodies, times, out["omega"], out["attitude"], options, workers)
     return Motions(omega=out["omega"], attitude=out["attitude"], **found)

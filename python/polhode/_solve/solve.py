@@ -63,6 +63,13 @@ def _take(plan: Plan, accuracy: float | None, method: str | None, rtol: float | 
     return plan.accuracy, method if method is not None else own, certify and plan.certify, asked
 
 
+def check_max_steps(max_steps: int) -> int:
+    """Return the number as an int that the core can take."""
+    if isinstance(max_steps, bool) or not isinstance(max_steps, (int, np.integer)) or not -(2**63) <= max_steps < 2**63:
+        raise _core.InvalidInput(f"max_steps: must be a whole number below 2^63, got {max_steps!r}")
+    return int(max_steps)
+
+
 def solve(
     scene: Scene,
     accuracy: float | None = None,
@@ -133,13 +140,11 @@ def solve(
         events = (events,)
     if not isinstance(events, (tuple, list, Iterable)):
         raise _core.InvalidInput(f"events: must be events or callables, got {events!r}")
-    if not isinstance(max_steps, (int, np.integer)):
-        raise _core.InvalidInput(f"max_steps: must be a whole number, got {max_steps!r}")
     if plan is not None:
         accuracy, method, certify, formulation = _take(plan, accuracy, method, rtol, atol, step, certify, formulation)
     answer = _core.solve(scene, {
         "accuracy": accuracy, "method": method, "rtol": rtol, "atol": atol, "step": step, "certify": bool(certify),
-        "max_steps": int(max_steps), "dense": bool(dense), "formulation": str(formulation),
+        "max_steps": check_max_steps(max_steps), "dense": bool(dense), "formulation": str(formulation),
         "events": [_event(item) for item in events], "progress": progress, "cost_factors": factors()})
     asked = None if method is None and formulation == "euler" else {"method": method, "formulation": formulation}
     return Motion(scene, answer, asked)
