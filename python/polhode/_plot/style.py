@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from .. import _files
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -101,5 +103,6 @@ def save(figure: Figure, folder: pathlib.Path, name: str) -> list[pathlib.Path]:
     """Write PNG and SVG, and return their paths."""
     paths = [folder / f"{name}.{suffix}" for suffix in ("png", "svg")]
     for path in paths:
-        figure.savefig(path, metadata={"Date": None} if path.suffix == ".svg" else None)
+        with _files.whole(path) as draft:
+            figure.savefig(draft, metadata={"Date": None} if path.suffix == ".svg" else None)
     return paths

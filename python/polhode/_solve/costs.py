@@ -10,8 +10,11 @@ import pathlib
 import sys
 import time
 
-from .. import _core
+from .. import _core, _files
 from .._build import processor
+
+
+LONGEST = 1_000_000   # bytes of the file, which takes a few hundred
 
 
 def cache_file() -> pathlib.Path:
@@ -38,18 +41,20 @@ def _read() -> tuple[dict[str, float], str]:
     shipped = "as shipped, not measured on this machine"
     file = cache_file()
     try:
-        text = file.read_text()
-    except FileNotFoundError:
+        file.lstat()
+    except OSError:
         return {}, f"{shipped} (polhode calibrate does that)"
-    except (OSError, UnicodeDecodeError) as error:
-        return {}, f"{shipped}: {file} cannot be read ({type(error).__name__})"
+    try:
+        text = _files.read(file, LONGEST)
+    except _core.InvalidInput as error:
+        return {}, f"{shipped}: {error}"
     try:
         content = json.loads(text)
         factors = {str(name): float(value) for name, value in content["factors"].items()}
         version, machine = content["polhode"], content["machine"]
         if not all(math.isfinite(value) and value > 0 for value in factors.values()):
             raise ValueError("a factor is not positive")
-    except (ValueError, KeyError, TypeError, AttributeError):
+    except (ArithmeticError, AttributeError, LookupError, RecursionError, TypeError, ValueError):
         return {}, f"{shipped}: {file} is damaged and was ignored; run polhode calibrate"
     if version != _core.__version__ or machine != _machine():
         other = f"polhode {version}" if version != _core.__version__ else f"another machine ({machine})"
@@ -78,7 +83,5 @@ def keep(found: dict[str, float]) -> None:
     file = cache_file()
     content = {"polhode": _core.__version__, "machine": _machine(), "date": time.strftime("%Y-%m-%d"), "factors": found}
     file.parent.mkdir(parents=True, exist_ok=True)
-    temporary = file.with_suffix(f".{os.getpid()}")
-    temporary.write_text(json.dumps(content, indent=1))
-    temporary.replace(file)
+    _files.write(file, json.dumps(content, indent=1))
     _load.cache_clear()

@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable, Iterable
 from typing import Any
 
+from .. import _files
 from .._core import InvalidInput
 from . import pictures
 from .claims import find_broken
@@ -112,8 +113,8 @@ def atlas(
         files += [path.name for path in pictures.draw_matrix(everything, output)]
     files = sorted(files) + [f"{family.name}.json" for family in wanted] + ["atlas.json", "atlas.md"]
     content = document(everything, time.perf_counter() - start, find_broken(everything), files)
-    (output / "atlas.json").write_text(json.dumps(content, indent=1, allow_nan=False) + "\n", encoding="utf-8")
-    (output / "atlas.md").write_text(page(content), encoding="utf-8")
+    _files.write(output / "atlas.json", json.dumps(content, indent=1, allow_nan=False) + "\n")
+    _files.write(output / "atlas.md", page(content))
     return ordered, content
 
 

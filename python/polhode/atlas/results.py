@@ -9,6 +9,7 @@ import time
 from dataclasses import dataclass
 from typing import Any
 
+from .. import _files
 from .._core import build_info
 from .._harness.machine import machine, versions
 from .entrants import KINDS, WITNESS, entrants
@@ -90,9 +91,7 @@ def write_family(result: FamilyResult, folder: pathlib.Path) -> pathlib.Path:
     """Write a family's file whole or not at all."""
     path = folder / f"{result.family.name}.json"
     text = json.dumps(family_document(result), indent=1, allow_nan=False)
-    draft = path.with_suffix(".part")
-    draft.write_text(text + "\n", encoding="utf-8")
-    draft.replace(path)
+    _files.write(path, text + "\n")
     return path
 
 

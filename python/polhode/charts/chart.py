@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable, Iterable
 from typing import Any
 
+from .. import _files
 from .._core import InvalidInput
 from .._scene.files import find_scene, read_toml
 from .._scene.scene import Scene
@@ -122,5 +123,5 @@ def chart(
     files += pictures.overview(results, output) + pictures.limits(results, output)
     written = [path.name for path in files] + ["results.json"]
     content = document(results, time.perf_counter() - start, written, peers)
-    (output / "results.json").write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+    _files.write(output / "results.json", json.dumps(content, indent=1) + "\n")
     return results, content

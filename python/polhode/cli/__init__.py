@@ -1,22 +1,32 @@
 """The command line: `polhode run`, `plan`, `inertia`, `chart`, `atlas` and others.
 
-Exit status: 0 without a finding, 1 with a finding (such as a drift of an invariant, or an impossible body), 2 for bad
-input, with one line that says why.
+Exit status: 0 without a finding, 1 with a finding (such as a drift of an invariant, or an impossible body), or with
+a file or stdout that cannot be written, 2 for bad input; one line says why.
 """
 
 from __future__ import annotations
 
-import os
+import contextlib
 import sys
 from collections.abc import Sequence
 
+from . import streams
 
 EXTRA = ("typer", "rich")
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command and exit with its status."""
-    sys.exit(_run(arguments))
+    streams.open_missing()
+    status = _run(arguments)
+    try:
+        sys.stdout.flush()
+    except BrokenPipeError:
+        streams.drop_stdout()
+    except (OSError, ValueError) as error:   # a full disk; ValueError: already closed
+        streams.drop_stdout()
+        status = _say(f"stdout: {getattr(error, 'strerror', None) or error}", 1)
+    sys.exit(status)
 
 
 def _run(arguments: Sequence[str] | None) -> int:
@@ -29,9 +39,16 @@ def _run(arguments: Sequence[str] | None) -> int:
         if (error.name or "").partition(".")[0] not in EXTRA:
             raise
         return _say(f"the command line needs {error.name}: pip install 'polhode[cli]'", 2)
-    except BrokenPipeError:   # the reader has closed the pipe
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())   # because Python flushes again at exit
+    except streams.PipeClosed:
+        streams.drop_stdout()
         return 0
+    except SystemExit:
+        if type(sys.stdout).__name__ != "PacifyFlushWrapper":   # typer's mark of a closed pipe, with its status 1
+            raise
+        streams.drop_stdout()
+        return 0
+    except OSError as error:   # the system refused to write, since all that is read has its own messages
+        return _say(f"{error.filename or 'stdout'}: {error.strerror or error}", 1)
     except KeyboardInterrupt:
         return _say("interrupted", 130)
     except Exception as error:
@@ -43,5 +60,6 @@ def _run(arguments: Sequence[str] | None) -> int:
 
 
 def _say(text: str, status: int) -> int:
-    print(f"polhode: {text}", file=sys.stderr)
+    with contextlib.suppress(OSError):
+        print(f"polhode: {text}", file=sys.stderr)
     return status

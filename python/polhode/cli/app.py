@@ -12,6 +12,7 @@ from typing import Annotated, Any
 
 import typer
 
+from .. import _files
 from .._core import IntegrationFailure, InvalidInput, __version__
 from .._scene.scene import Scene
 from .._solve import calibrate as calibration
@@ -20,6 +21,7 @@ from .._solve.plan import plan as make_plan
 from .._solve.solve import methods as method_records
 from .._solve.solve import solve
 from . import files, show
+from .streams import PipeClosed
 
 app = typer.Typer(name="polhode", add_completion=False, no_args_is_help=True, rich_markup_mode=None,
                   pretty_exceptions_enable=False, context_settings={"help_option_names": ["-h", "--help"]},
@@ -41,6 +43,11 @@ def _command(function: Callable[..., int | None]) -> Callable[..., None]:
             status = 2
         except IntegrationFailure as error:
             print(f"polhode: {error}", file=sys.stderr)
+            status = 1
+        except BrokenPipeError:   # typer would end with status 1
+            raise PipeClosed from None
+        except MemoryError as error:
+            print(f"polhode: {str(error) or 'out of memory'}", file=sys.stderr)
             status = 1
         raise typer.Exit(status)
 
@@ -102,16 +109,17 @@ def run(
     with show.Bar("solving") as bar:
         motion = solve(Scene.load(scene), accuracy, method=method, rtol=rtol, atol=atol, step=step, max_steps=max_steps,
                        progress=bar.fraction)
+    if output is not None:   # before all that may fail at a closed or full stdout
+        files.write(output, motion)
+    if picture is not None:
+        with _files.whole(picture) as draft:
+            motion.plot().savefig(draft, dpi=160)
     if as_json:
         _print_json(files.to_json(motion))
     else:
         show.motion(motion)
-    if output is not None:
-        files.write(output, motion)
-        print(f"wrote {output}", file=sys.stderr if as_json else sys.stdout)
-    if picture is not None:
-        motion.plot().savefig(picture, dpi=160)
-        print(f"wrote {picture}", file=sys.stderr if as_json else sys.stdout)
+    for written in filter(None, (output, picture)):
+        print(f"wrote {written}", file=sys.stderr if as_json else sys.stdout)
     return 0 if motion.success else 1
 
 

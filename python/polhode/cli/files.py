@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from .. import _files
 from .._core import InvalidInput
 from .._solve.motion import Motion
 
@@ -46,11 +47,12 @@ def write(path: pathlib.Path, motion: Motion) -> None:
     """Write a motion in the format of the file's suffix. CSV numbers have all their digits."""
     arrays = _arrays(motion)
     if path.suffix == ".npz":
-        np.savez_compressed(path, **arrays)
+        with _files.whole(path) as draft:
+            np.savez_compressed(draft, **arrays)
     elif path.suffix == ".json":
-        path.write_text(json.dumps(to_json(motion)) + "\n", encoding="utf-8")
+        _files.write(path, json.dumps(to_json(motion)) + "\n")
     else:
         header = ",".join(column for name in arrays for column in COLUMNS[name])
         table = np.column_stack(list(arrays.values()))
         rows = (",".join(map(repr, row)) for row in table.tolist())
-        path.write_text("\n".join([header, *rows]) + "\n", encoding="utf-8")
+        _files.write(path, "\n".join([header, *rows]) + "\n")

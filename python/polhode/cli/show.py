@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import pathlib
 import sys
 import time
@@ -21,10 +22,17 @@ if TYPE_CHECKING:
 UNCUT = 100_000
 
 
+class _Console(Console):
+    """A console that leaves a closed pipe to the command, whatever the version of rich does about it."""
+
+    def on_broken_pipe(self) -> None:
+        raise BrokenPipeError
+
+
 def console(stderr: bool = False) -> Console:
     """Return a console on the present stdout or stderr."""
     stream = sys.stderr if stderr else sys.stdout
-    return Console(file=stream, highlight=False, markup=False, width=None if stream.isatty() else UNCUT)
+    return _Console(file=stream, highlight=False, markup=False, width=None if stream.isatty() else UNCUT)
 
 
 class Bar:
@@ -60,7 +68,8 @@ class Bar:
 
     def _line(self, text: str) -> None:
         if text != self._last:
-            print(text, file=sys.stderr, flush=True)
+            with contextlib.suppress(OSError):   # a full disk is no reason to stop the work
+                print(text, file=sys.stderr, flush=True)
             self._last = text
 
     def of(self, done: int, total: int, text: str) -> None:
@@ -86,12 +95,27 @@ class Bar:
 def _table(*columns: str, left: int = 1) -> Table:
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
     for index, column in enumerate(columns):
-        table.add_column(column, justify="left" if index < left else "right", no_wrap=not sys.stdout.isatty())
+        table.add_column(column, justify="left" if index < left else "right", no_wrap=not sys.stdout.isatty(),
+                         overflow="fold")   # no word is cut
     return table
 
 
 def _numbers(row: Any) -> list[str]:
     return [f"{value:.9g}" for value in row]
+
+
+def _narrow_tables(out: Console, names: list[str], rows: list[list[str]]) -> None:
+    """Print as many columns beside the first as fit the terminal, then the next ones: no number is cut."""
+    widths = [2 + max(len(name), *(len(row[k]) for row in rows)) for k, name in enumerate(names)]
+    rest = list(range(1, len(names)))
+    while rest:
+        fits = [k for count, k in enumerate(rest)
+                if widths[0] + sum(widths[j] for j in rest[:count + 1]) <= out.width] or rest[:1]
+        rest = rest[len(fits):]
+        table = _table(*(names[k] for k in [0, *fits]), left=0)
+        for row in rows:
+            table.add_row(*(row[k] for k in [0, *fits]))
+        out.print(table)
 
 
 def motion(result: Motion) -> None:
@@ -102,15 +126,14 @@ def motion(result: Motion) -> None:
     out.print(Text(f"{name}: {n} samples by {plan.method}, model {plan.model}, state {plan.state}"))
     names = ["t [s]"] + (["omega x", "y", "z [rad/s]"] if result.omega is not None else [])
     names += ["attitude x", "y", "z", "w"] if result.attitude is not None else []
-    table = _table(*names, left=0)
-    shown = range(n) if n <= 8 else [0, 1, 2, -1, n - 3, n - 2, n - 1]
-    for i in shown:
+    rows = []
+    for i in range(n) if n <= 8 else [0, 1, 2, -1, n - 3, n - 2, n - 1]:
         cells = ["..."] * len(names) if i < 0 else _numbers([result.t[i]])
         for array in (result.omega, result.attitude):
             if i >= 0 and array is not None:
                 cells += _numbers(array[i])
-        table.add_row(*cells)
-    out.print(table)
+        rows.append(cells)
+    _narrow_tables(out, names, rows)
     drift = ", ".join(f"{name.replace('_', ' ')} {value:.1e}" for name, value in result.drift.items())
     counts = ", ".join(f"{value:,} {name.removesuffix('s') if value == 1 else name}"
                        for name, value in result.stats.items() if isinstance(value, int) and value)

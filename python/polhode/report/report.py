@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Iterable
 from typing import Any
 
+from .. import _files
 from .._core import InvalidInput
 from .._scene.scene import Scene
 from .._solve.solve import solve
@@ -38,7 +39,8 @@ def motion_pictures(names: Iterable[Any], folder: pathlib.Path) -> list[page.Pic
     for name in names:
         scene = name if isinstance(name, Scene) else Scene.load(name)
         path = folder / f"motion-{scene.name}.png"   # of lines so long that an SVG would be large
-        solve(scene, accuracy=1e-9).plot().savefig(path, dpi=130)
+        with _files.whole(path) as draft:
+            solve(scene, accuracy=1e-9).plot().savefig(draft, dpi=130)
         found.append(page.picture(path, f"motion of {scene.name}", f"{scene.name}.",
                                   f"polhode run {scene.name} --plot {scene.name}.svg"))
     return found
@@ -103,6 +105,6 @@ def report(
     command = "polhode report" + " --full" * full
     text = page.render(content, home / "charts", motions=motions, atlas=atlas, command=command,
                        seconds=time.perf_counter() - start)
-    (home / SCRIPT).write_text(script, encoding="utf-8")
-    (home / PAGE).write_text(text, encoding="utf-8")
+    _files.write(home / SCRIPT, script)
+    _files.write(home / PAGE, text)
     return home / PAGE

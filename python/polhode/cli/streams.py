@@ -1,0 +1,38 @@
+"""The standard streams of the command, also where they are closed."""
+
+from __future__ import annotations
+
+import errno
+import io
+import os
+import sys
+
+
+class PipeClosed(Exception):
+    """The reader of stdout has seen enough."""
+
+
+class _Closed(io.TextIOBase):
+    """What stands for a stdout that is closed."""
+
+    def write(self, text: str) -> int:
+        raise OSError(errno.EBADF, os.strerror(errno.EBADF), "stdout")
+
+    def flush(self) -> None:
+        pass
+
+
+def open_missing() -> None:
+    """Give the program the streams that its caller closed, so that no file that it opens takes their place."""
+    while (number := os.open(os.devnull, os.O_RDWR)) < 3:
+        pass
+    os.close(number)
+    if sys.stdout is None:
+        sys.stdout = _Closed()
+    if sys.stderr is None:
+        sys.stderr = open(os.devnull, "w", encoding="utf-8")   # noqa: SIM115  it stays open
+
+
+def drop_stdout() -> None:
+    """Let Python's own flush at exit succeed."""
+    sys.stdout = open(os.devnull, "w", encoding="utf-8")   # noqa: SIM115  it stays open
