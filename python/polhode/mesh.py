@@ -10,12 +10,13 @@ import os
 import pathlib
 import re
 import struct
+import urllib.parse
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
+from . import _core, _files
 from ._core import InvalidInput
 
 __all__ = ["read", "report"]
@@ -46,14 +47,11 @@ def read(path: str | os.PathLike[str]) -> tuple[Vertices, Faces]:
     InvalidInput
         For a file that cannot be read, is truncated, or claims more data than it has.
     """
-    file = pathlib.Path(path)
+    file = _files.to_path(path, "path")
     kind = file.suffix.lower()
     if kind not in FORMATS:
         raise InvalidInput(f"{file}: must be a mesh file, one of {', '.join(FORMATS)}; got {kind or 'no suffix'!r}")
-    try:
-        data = file.read_bytes()
-    except OSError as error:
-        raise InvalidInput(f"{file}: cannot be read: {error.strerror}") from None
+    data = _files.read(file, _files.MESH if kind in (".stl", ".ply", ".glb", ".obj") else _files.TEXT)
     try:
         vertices, faces = _stl(data) if kind == ".stl" else _by_trimesh(file, data)
     except _Wrong as error:
@@ -142,17 +140,18 @@ def _by_trimesh(file: pathlib.Path, data: bytes) -> tuple[Vertices, Faces]:
     if kind == ".ply":
         _require_ply_claims(data)
     elif kind != ".obj":
-        _require_gltf_claims(kind, data)
+        _require_gltf_claims(kind, data, file)
     try:
         import trimesh
     except ImportError:
         raise _Wrong(f"{kind} files need trimesh: pip install 'polhode[mesh]'") from None
     try:
         # No tidying: what the file holds is what is judged.
-        loaded = trimesh.load(file, force="scene", process=False, maintain_order=True, skip_materials=True)
+        return _join(trimesh.load(file, force="scene", process=False, maintain_order=True, skip_materials=True))
+    except (MemoryError, _Wrong):
+        raise
     except Exception as error:   # a reader of foreign bytes may raise anything
         raise _Wrong(f"cannot be read as {kind[1:].upper()}: {type(error).__name__}: {error}") from None
-    return _join(loaded)
 
 
 def _join(scene: Any) -> tuple[Vertices, Faces]:
@@ -165,6 +164,8 @@ def _join(scene: Any) -> tuple[Vertices, Faces]:
             continue   # points, lines
         triangles = np.asarray(part.faces, np.int64) + count
         placed = np.asarray(part.vertices, np.float64)
+        if placed.ndim != 2 or placed.shape[1] != 3 or triangles.ndim != 2 or triangles.shape[1] != 3:
+            raise _Wrong(f"holds vertices of shape {placed.shape} and faces of shape {triangles.shape}: must be (n, 3)")
         if not np.array_equal(transform, np.eye(4)):
             placed = placed @ transform[:3, :3].T + transform[:3, 3]
             if np.linalg.det(transform[:3, :3]) < 0:
@@ -185,7 +186,7 @@ def _require_ply_claims(data: bytes) -> None:
                          f"{len(data)} bytes (cut short?)")
 
 
-def _require_gltf_claims(kind: str, data: bytes) -> None:
+def _require_gltf_claims(kind: str, data: bytes, file: pathlib.Path) -> None:
     """Refuse counts in a glTF file that its bytes do not support."""
     if kind == ".glb":
         if len(data) < 20 or data[:4] != b"glTF":
@@ -196,7 +197,7 @@ def _require_gltf_claims(kind: str, data: bytes) -> None:
         data = data[20:20 + chunk]
     try:
         content = json.loads(data)
-        _require_gltf_sense(content, len(data))
+        _require_gltf_sense(content, len(data), file)
     except (ValueError, AttributeError, KeyError, TypeError, RecursionError) as error:
         raise _Wrong(f"holds no glTF: {type(error).__name__}: {error}") from None
 
@@ -205,13 +206,29 @@ def _require_gltf_claims(kind: str, data: bytes) -> None:
 HARMLESS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_")
 
 
-def _require_gltf_sense(content: dict[str, Any], size: int) -> None:
+def _require_gltf_buffer(uri: str, file: pathlib.Path) -> None:
+    """Refuse data outside the folder of the file, and what is no regular file."""
+    if uri.startswith("data:"):
+        return
+    beside = file.parent.resolve()
+    named = (beside / urllib.parse.unquote(uri)).resolve()
+    if not named.is_relative_to(beside):
+        raise _Wrong(f"cannot be read as GLTF: it names {uri!r}, which lies outside its folder")
+    try:
+        _files.size_of(named, _files.MESH)
+    except InvalidInput as error:
+        raise _Wrong(f"cannot be read as GLTF: {error}") from None
+
+
+def _require_gltf_sense(content: dict[str, Any], size: int, file: pathlib.Path) -> None:
     """Refuse parts that trimesh would skip silently, and counts without data."""
     for accessor in content.get("accessors", []):
         if "sparse" in accessor:
             raise _Wrong("has sparse accessors, which are not read")
         if "bufferView" not in accessor and not 0 <= accessor["count"] <= size:
             raise _Wrong(f"claims {accessor['count']} entries of data that it does not hold")
+    for buffer in content.get("buffers", []):
+        _require_gltf_buffer(buffer.get("uri", "data:"), file)
     required = [name for name in content.get("extensionsRequired", []) if not name.startswith(HARMLESS)]
     if required:
         raise _Wrong(f"needs {', '.join(map(str, required))}, which is not read: export it without")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import pathlib
 import tomllib
@@ -10,11 +11,14 @@ from typing import Annotated, Any, Literal, Union
 
 import numpy as np
 
-from .. import torques
+from .. import _files, torques
 from .._core import InvalidInput
 from .bodies import attitude_of, body_inertia, body_model, place_meshes
 from .scene import Scene, scene_folder
 from .validation import euler_model, kinds, model, one_of, validate
+
+
+MOST_SAMPLES = 10_000_000   # of a span, so that a file of a few bytes does not claim the machine's memory
 
 
 def _check_start(start: Any) -> None:
@@ -38,7 +42,7 @@ def scene_model() -> Any:
     start = model("Start", _check_start, omega=(kind.vector | None, None), omega_deg=(kind.vector | None, None),
                    attitude=(kind.quaternion | None, None), euler=(euler_model() | None, None), t0=(kind.number, 0.0))
     times = model("Times", _check_times, span=(kind.number | None, None), values=(kind.numbers | None, None),
-                   samples=(Annotated[int, Field(ge=1)] | None, None))
+                   samples=(Annotated[int, Field(ge=1, le=MOST_SAMPLES)] | None, None))
     any_torque: Any = Union[tuple(_torque_models())]
     torque: Any = Annotated[any_torque, Field(discriminator="kind")]
     return model("SceneFile", name=(str, ""), title=(str, ""), about=(str, ""),
@@ -68,11 +72,11 @@ def _torque_models() -> list[Any]:
 
 def find_scene(source: str | os.PathLike[str]) -> pathlib.Path:
     """Return the path of a scene file, given as a path or as the name of a scene of polhode."""
-    path = pathlib.Path(source)
-    if path.is_file():
+    path = _files.to_path(source, "scene")
+    if _files.is_file(path):
         return path
     installed = scene_folder() / f"{path.name}.toml"
-    if path.parent == pathlib.Path() and not path.suffix and installed.is_file():
+    if path.parent == pathlib.Path() and not path.suffix and _files.is_file(installed):
         return installed
     names = ", ".join(sorted(p.stem for p in scene_folder().glob("*.toml")))
     raise InvalidInput(f"scene: must be a file, or one of {names}; got {str(source)!r}")
@@ -80,12 +84,13 @@ def find_scene(source: str | os.PathLike[str]) -> pathlib.Path:
 
 def read_toml(path: pathlib.Path) -> dict[str, Any]:
     """Return the content of a TOML file; raise InvalidInput with one line if it has an error."""
+    data = _files.read(path, _files.TEXT)
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        return tomllib.loads(data.decode("utf-8").replace("\r\n", "\n"))
+    except RecursionError:
+        raise InvalidInput(f"{path}: not TOML: tables or lists are nested too deep") from None
+    except ValueError as error:   # of TOML, of UTF-8, and of integers with thousands of digits
         raise InvalidInput(f"{path}: not TOML: {error}") from None
-    except OSError as error:
-        raise InvalidInput(f"{path}: cannot be read: {error.strerror}") from None
 
 
 def _torque(entry: Any) -> Any:
@@ -105,7 +110,11 @@ def make_scene(data: dict[str, Any], where: str = "scene") -> Scene:
     start, times = entry.start, entry.times
     grid = times.values
     if grid is None:
-        grid = np.linspace(start.t0, start.t0 + times.span, times.samples)
+        end = start.t0 + times.span
+        if not math.isfinite(end):
+            raise InvalidInput(f"{where}: times.span: must end at a finite time, got t0 {start.t0:g} and span "
+                               f"{times.span:g}")
+        grid = np.linspace(start.t0, end, times.samples)
     try:
         return Scene(
             inertia=body_inertia(entry.body),

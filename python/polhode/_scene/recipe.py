@@ -11,12 +11,16 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from .. import _files
 from .._core import InvalidInput
 from .files import read_toml
 from .scene import scene_folder
 from .validation import kinds, model, validate
 
 Floats = npt.NDArray[np.float64]
+
+
+MOST_BODIES = 10_000_000   # of a file; `draw` takes any number
 
 
 class Draw(NamedTuple):
@@ -55,6 +59,8 @@ class Recipe:
         ``numpy.random.default_rng(seed)`` gives whole arrays in this order: half sides, omega, t.
         """
         n = self.count if count is None else count
+        if isinstance(n, bool) or not isinstance(n, (int, np.integer)) or n < 0:
+            raise InvalidInput(f"count: must be a whole number of 0 or more, got {n!r}")
         rng = np.random.default_rng(self.seed)
         half_sides = rng.uniform(*self.half_sides, (n, 3))
         omega = rng.normal(*self.omega, (n, 3))
@@ -94,7 +100,7 @@ def recipe_model() -> Any:
     kind = kinds()
     half_sides = model("HalfSides", _positive, uniform=(kind.pair, ...))
     mass: Any = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-    count, seed = (Annotated[int, Field(ge=least)] for least in (1, 0))
+    count, seed = Annotated[int, Field(ge=1, le=MOST_BODIES)], Annotated[int, Field(ge=0)]
     body = model("RecipeBody", shape=(Literal["box"], ...), mass=(mass, ...), half_sides=(half_sides, ...))
     start = model("RecipeStart", omega=(model("Rates", _deviation, normal=(kind.pair, ...)), ...))
     times = model("RecipeTimes", _ordered("uniform"), uniform=(kind.pair, ...))
@@ -110,11 +116,11 @@ def load_recipe(source: str | os.PathLike[str]) -> Recipe:
     InvalidInput
         For a file that is missing or not TOML, and for a key that is unknown, missing or wrong, with its name.
     """
-    path = pathlib.Path(source)
+    path = _files.to_path(source, "recipe")
     folder = scene_folder() / "recipes"
-    if not path.is_file():
+    if not _files.is_file(path):
         installed = folder / f"{path.name}.toml"
-        if path.parent != pathlib.Path() or path.suffix or not installed.is_file():
+        if path.parent != pathlib.Path() or path.suffix or not _files.is_file(installed):
             names = ", ".join(sorted(p.stem for p in folder.glob("*.toml")))
             raise InvalidInput(f"recipe: must be a file, or one of {names}; got {str(source)!r}")
         path = installed

@@ -106,6 +106,6 @@ def validate(table: Any, data: dict[str, Any], where: str) -> Any:
     try:
         return table.model_validate(data)
     except _pydantic().ValidationError as error:
-        lines = [_explain(table, finding) for finding in error.errors()]
-        more = f" (and {len(lines) - 3} more)" if len(lines) > 3 else ""
-        raise InvalidInput(f"{where}: {'; '.join(lines[:3])}{more}") from None
+        lines = [_explain(table, finding) for finding in error.errors()[:3]]
+        more = f" (and {error.error_count() - 3} more)" if error.error_count() > 3 else ""
+        raise InvalidInput(f"{where}: {'; '.join(lines)}{more}") from None

@@ -6,6 +6,7 @@ import os
 import pathlib
 from collections.abc import Callable
 
+from ... import _files
 from ..._core import InvalidInput
 from . import mjcf, sdf, urdf
 from .link import Link, Robot
@@ -26,7 +27,7 @@ def read(path: str | os.PathLike[str]) -> Robot:
     InvalidInput
         For a file that cannot be read, is not XML, declares entities, or lacks a required part of a link.
     """
-    file = pathlib.Path(path)
+    file = _files.to_path(path, "path")
     root = parse(file)
     if (reader := _readers.get(root.tag)) is None:
         raise InvalidInput(f"{file}: must have the root <robot> (URDF), <mujoco> (MJCF) or <sdf>; got <{root.tag}>")

@@ -11,6 +11,7 @@ import warnings
 import numpy as np
 import numpy.typing as npt
 
+from ... import _files
 from ... import mesh as mesh_files
 from ... import shapes
 from ..._attitude.rotation import Rotation
@@ -117,4 +118,4 @@ def find(uri: str, beside: pathlib.Path) -> pathlib.Path | None:
         candidates += [root / "share" / rest for root in roots] + [folders[0] / inside]
     else:
         return None
-    return next((file for file in candidates if file.is_file()), None)
+    return next((file for file in candidates if _files.is_file(file)), None)

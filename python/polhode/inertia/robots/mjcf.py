@@ -24,13 +24,13 @@ UNREAD = ("include", "attach", "replicate", "composite", "flexcomp")
 class Compiler(NamedTuple):
     """What <compiler> says of inertia, and where the meshes are."""
 
-    degrees: bool = True
-    euler: str = "xyz"
-    from_geometry: str = "auto"
-    balance: bool = False
-    least_mass: float = 0.0
-    least_inertia: float = 0.0
-    meshes: str = ""
+    degrees: bool
+    euler: str
+    from_geometry: str
+    balance: bool
+    least_mass: float
+    least_inertia: float
+    meshes: str
 
 
 class Model(NamedTuple):
@@ -72,13 +72,14 @@ def _compiler(root: Node) -> tuple[Compiler, list[str]]:
     for node in root.children("compiler"):
         told |= node.element.attrib
     notes = []
-    if float(told.get("settotalmass", "-1")) > 0:
-        notes.append(f"settotalmass={told['settotalmass']}: MuJoCo scales masses and tensors; judged as written")
-    if told.get("coordinate", "local") != "local":
-        raise root.wrong("coordinate='global' is not read (nor by MuJoCo since 2.3.4)")
 
     def number(name: str) -> float:
         return float(to_numbers(told.get(name, "0"), 1, f"{root.where} <compiler>: {name}")[0])
+
+    if number("settotalmass") > 0:
+        notes.append(f"settotalmass={told['settotalmass']}: MuJoCo scales masses and tensors; judged as written")
+    if told.get("coordinate", "local") != "local":
+        raise root.wrong("coordinate='global' is not read (nor by MuJoCo since 2.3.4)")
 
     return Compiler(told.get("angle", "degree") == "degree", told.get("eulerseq", "xyz"),
                     told.get("inertiafromgeom", "auto"), told.get("balanceinertia") == "true", number("boundmass"),

@@ -9,12 +9,12 @@ from xml.etree.ElementTree import Element, ParseError
 import numpy as np
 import numpy.typing as npt
 
+from ... import _files
 from ..._core import InvalidInput
 
 Array = npt.NDArray[np.float64]
 
 LARGEST = 1e30         # number; squares and volumes of it are finite
-LONGEST = 64_000_000   # bytes; robots take thousands
 DEEPEST = 1000
 
 
@@ -91,12 +91,7 @@ def parse(file: pathlib.Path) -> Node:
         from defusedxml.ElementTree import fromstring  # type: ignore[import-untyped, unused-ignore]
     except ImportError:
         raise InvalidInput("robot files need defusedxml: pip install 'polhode[cli]'") from None
-    try:
-        if file.stat().st_size > LONGEST:
-            raise InvalidInput(f"{file}: must be below {LONGEST // 1_000_000} MB; got {file.stat().st_size} bytes")
-        data = file.read_bytes()
-    except OSError as error:
-        raise InvalidInput(f"{file}: cannot be read: {error.strerror}") from None
+    data = _files.read(file, _files.TEXT)
     try:
         root = fromstring(data, forbid_dtd=True)
     except DefusedXmlException:
