@@ -8,7 +8,7 @@ from corruptions import KNOWN
 from links import Link, numbers
 
 import polhode as ph
-from polhode.inertia import Flaw, check, diagnose
+from polhode.inertia import Flaw, check, diagnose, evidence
 
 BLOCK = np.diag((0.20, 0.40, 0.52))
 
@@ -208,3 +208,24 @@ def test_check_flags_what_is_not_finite_and_keeps_the_shape():
     assert check(np.zeros((3, 3))) == (0.0, 0) and check(np.zeros((0, 3, 3)))[0].shape == (0,)
     with pytest.raises(ph.InvalidInput):
         check(np.eye(2))
+
+
+def test_findings_carry_their_number():
+    """Moments k times as large as a mass within the box allows are 100 (k - 1) % too large; density likewise."""
+    extents = np.array([[-0.1, -0.2, -0.3], [0.1, 0.2, 0.3]])
+    found = diagnose(12.0, (0, 0, 0), np.diag((500.0, 400.0, 300.0)), extents=extents).findings[0]
+    factor = float(found.text.split()[1])
+    assert found.what == "extent" and found.per_cent == pytest.approx(100 * (factor - 1), rel=2e-3)
+    dense, thin = (diagnose(mass, (0, 0, 0), matrix).findings[0] for mass, matrix in (
+        (1000.0, np.diag((1e-6, 1e-6, 1.2e-6))), (1e-9, np.diag((1.0, 1.0, 1.2)))))
+    assert dense.what == thin.what == "density"
+    assert "denser than osmium" in dense.text and "thinner than air" in thin.text
+
+
+def test_products_at_the_level_of_rounding_say_nothing():
+    """A diagonal tensor whose products are rounding agrees with a diagonal reference by chance in no number."""
+    geometry = evidence.Geometry((), None, None, 0.0)
+    mass = np.array([1.0])
+    clean, rounded, full = (np.diag((1.0, 2.0, 2.5)) + part * (1 - np.eye(3)) for part in (0.0, 1e-7, 0.1))
+    count = [evidence._informative(matrix[None], mass, geometry) for matrix in (clean, rounded, full)]
+    assert count == [3.0, 3.0, 6.0]

@@ -138,3 +138,13 @@ def test_models_do_not_depend_on_units(power):
         plain = ph.solve(scene(name))
         assert scaled.plan.model == plain.plan.model and scaled.error == plain.error
         np.testing.assert_array_equal(scaled.omega, plain.omega)
+
+
+@pytest.mark.parametrize(("inertia", "why"), [
+    ((1, 1, 0.5), "the centre of mass is off the axis"), ((0.5, 1, 1), "the centre of mass is off the axis"),
+    ((1, 1.2, 1.3), "the closest two moments differ by 7.7 %"),
+])
+def test_the_plan_says_why_a_body_is_no_symmetric_top(inertia, why):
+    scene = ph.Scene(inertia=inertia, omega=(0, 0.1, 6), times=[1.0], torques=[ph.torques.Gravity(2, (0.1, 0.2, 1))])
+    top = next(one for one in ph.plan(scene).candidates if one.name == "heavy_top")
+    assert top.why_not.startswith(why)

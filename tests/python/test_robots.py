@@ -304,3 +304,37 @@ def test_shapes_without_size_are_named_not_fatal(write):
     status, links = judged(write("a.urdf", urdf(body, '<sphere radius="0"/>')))
     assert "not compared" in links["a"]["notes"][0]
     assert robots.read(write("b.urdf", urdf(body))).links[0].mass == 12
+
+
+def sdf(inertial, geometry):
+    return (f'<sdf version="1.9"><model name="m"><link name="a"><inertial>{inertial}</inertial>'
+            f'<visual name="v"><geometry>{geometry}</geometry></visual></link></model></sdf>')
+
+
+def test_meshes_of_sdf_files_are_compared(write):
+    body = ph.shapes.tetrahedron(3.0, CORNERS)
+    write("part.stl", stl(1000 * CORNERS, SIDES))
+    m = body.inertia.matrix
+    entries = "".join(f'<i{a}{b}>{float(m["xyz".index(a), "xyz".index(b)])!r}</i{a}{b}>'
+                      for a, b in ("xx", "xy", "xz", "yy", "yz", "zz"))
+    inertial = f'<pose>{" ".join(map(str, body.com))} 0 0 0</pose><mass>3</mass><inertia>{entries}</inertia>'
+    mesh = "<mesh><uri>part.stl</uri>{}</mesh>"
+    status, links = judged(write("a.sdf", sdf(inertial, mesh.format("<scale>0.001 0.001 0.001</scale>"))))
+    assert status == 0 and links["a"]["misfit"] < 1e-9 and not links["a"]["notes"]
+    status, links = judged(write("b.sdf", sdf(inertial, mesh.format(""))))
+    assert links["a"]["findings"][0]["cause"] == "units"
+    status, links = judged(write("c.sdf", sdf(inertial, "<polyline/>")))
+    assert status == 0 and links["a"]["notes"] == ["<polyline> is not read: not compared with it"]
+
+
+@pytest.mark.parametrize("text", ["x" * 300, "1 " * 300, "1e400", "nan"])
+def test_a_long_text_is_cut_in_a_message(write, text):
+    with pytest.raises(ph.InvalidInput, match="mass.* must be") as refused:
+        robots.read(write("a.urdf", urdf(f'<mass value="{text}"/>' + tensor(np.eye(3)))))
+    assert len(str(refused.value)) < 300 and ("..." in str(refused.value)) == (len(text) > 60)
+
+
+def test_numbers_of_the_compiler_of_mjcf_are_checked(write):
+    for name in ("settotalmass", "boundmass", "boundinertia"):
+        with pytest.raises(ph.InvalidInput, match=f"<compiler>: {name}: must be numbers, got 'heavy'"):
+            robots.read(write("a.xml", mjcf("", f'{name}="heavy"')))

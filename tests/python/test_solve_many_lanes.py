@@ -183,6 +183,15 @@ def test_units_make_no_difference(scale):
     assert distance(many.attitude, heavy.attitude) < 1e-8
 
 
+@pytest.mark.parametrize("rtol", [1e-4, 1e-8, 1e-12])
+def test_lanes_take_an_order_that_suits_the_tolerance(rtol):
+    """A low order would take many times the steps of solve(), whose order follows the tolerance, too."""
+    scene = ph.Scene.load("S4").replace(times=[20.0])
+    alone = ph.solve(scene, rtol=rtol, method="taylor").stats["steps"]
+    many = ph.solve_many([scene] * 8, rtol=rtol, method="taylor")
+    assert many.lanes.all() and 0.3 * alone < many.steps.max() < 3 * alone
+
+
 def test_stored_scenes_in_lanes_and_the_rest_by_themselves():
     scenes = [scene(name) for name in ("S4", "S5", "S6", "S9")]
     for one in scenes:
