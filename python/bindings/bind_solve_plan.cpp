@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include "bind_solve_options.hpp"
+#include "gil.hpp"
 #include "polhode/solve/closed_form.hpp"
 
 namespace polhode::python {
@@ -62,7 +63,7 @@ py::dict make_report(const Scene& scene, const py::dict& options) {
   SolveOptions chosen = to_solve_options(options);
   if (!chosen.progress) chosen.progress = make_progress(py::none());   // pilot runs heed Ctrl-C
   const PlanReport report = [&] {
-    const py::gil_scoped_release nogil;   // Python callables take it back for themselves
+    const WithoutGil nogil;   // Python callables take it back for themselves
     return explain_plan(scene, chosen);
   }();
   py::list candidates;
