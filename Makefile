@@ -52,7 +52,7 @@ demo: build/.installed
 	@$(PYTHON) -m polhode chart scenes/S*.toml --budget 60s -o demo
 
 test: install
-	@cmake --build $(BUILD) -j $(JOBS) --target polhode_tests polhode_headers_alone | sed -n '/warning\|error/p'
+	@cmake --build $(BUILD) -j $(JOBS) --target polhode_tests polhode_headers_alone | sed -n '/warning:\|error:/p'
 	@$(BUILD)/tests/cpp/polhode_tests
 	@$(PYTHON) -m pytest
 
@@ -72,7 +72,7 @@ module:
 clang: $(VENV)/.demo
 	@cmake -S . -B build/clang -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=clang++ -DPOLHODE_WERROR=ON \
 	  -DPOLHODE_UNITY=OFF -DPOLHODE_BUILD_TESTS=ON $$($(VENV)/bin/python .ci/eigen_dir.py --cmake) > /dev/null
-	@cmake --build build/clang -j $(JOBS) --target polhode_tests polhode_headers_alone | sed -n '/warning\|error/p'
+	@cmake --build build/clang -j $(JOBS) --target polhode_tests polhode_headers_alone | sed -n '/warning:\|error:/p'
 	@build/clang/tests/cpp/polhode_tests
 
 # The C++ tests under the address and undefined-behaviour sanitizers.
@@ -89,7 +89,7 @@ aarch64: $(VENV)/.demo
 	@cmake -S . -B build/aarch64 -G Ninja -DCMAKE_BUILD_TYPE=Release -DPOLHODE_WERROR=ON -DPOLHODE_BUILD_TESTS=ON \
 	  -DCMAKE_TOOLCHAIN_FILE=$(CURDIR)/.ci/machines/aarch64.cmake -Ddoctest_DIR=/usr/lib/cmake/doctest \
 	  $$($(VENV)/bin/python .ci/eigen_dir.py --cmake | grep . || echo -DEigen3_DIR=/usr/share/eigen3/cmake) > /dev/null
-	@cmake --build build/aarch64 -j $(JOBS) --target polhode_tests | sed -n '/warning\|error/p'
+	@cmake --build build/aarch64 -j $(JOBS) --target polhode_tests | sed -n '/warning:\|error:/p'
 	@qemu-aarch64 -L /usr/aarch64-linux-gnu build/aarch64/tests/cpp/polhode_tests
 
 # Debian 13: GCC 14, Clang 19, Python 3.13, in a folder made by debootstrap (needs root).
