@@ -1,0 +1,168 @@
+#include "solve/proof/enclose.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace polhode::proof {
+namespace {
+
+/// Follows the motion in one direction of time.
+class Run {
+ public:
+  Run(const Scene& scene, const Variables& variables, const EncloseOptions& options, double sign, Enclosure& result)
+      : scene_(scene), variables_(variables), options_(options), sign_(sign), result_(result),
+        errors_(start_radii(variables)), lost_(static_cast<std::size_t>(variables.size())) {
+    for (const Interval& y : variables.start()) state_.push_back(y.middle);
+    const std::vector<double>& times = scene.times();
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      if (sign_ > 0 ? times[i] >= scene.t0() : times[i] < scene.t0()) samples_.push_back(i);
+    }
+    std::stable_sort(samples_.begin(), samples_.end(),
+                     [&](std::size_t a, std::size_t b) { return sign_ * times[a] < sign_ * times[b]; });
+  }
+
+  void follow(const std::vector<Piece>& pieces) {
+    for (const Piece& piece : pieces) {
+      if (!follow(piece)) return;
+    }
+  }
+
+ private:
+  static std::vector<double> start_radii(const Variables& variables) {
+    std::vector<double> radii;
+    for (const Interval& y : variables.start()) radii.push_back(y.radius);
+    return radii;
+  }
+
+  /// The exact distance of a time from the start, in units of 1 / rate, along the run.
+  Interval distance(double t) const {
+    const Interval seconds(sign_ > 0 ? math::two_diff(t, scene_.t0()) : math::two_diff(scene_.t0(), t), 0.0);
+    return seconds * Interval(variables_.rate());
+  }
+
+  bool follow(const Piece& piece) {
+    const QuadraticSystem system = variables_.equations(piece.torques, sign_);
+    TaylorStep step(system, options_.step);
+    step.expect_rate(largest_rate_);
+    const Interval end = distance(piece.end);
+    if (end.is_zero()) {   // the start itself is asked for
+      if (step.expand(state_), !step.bound(0x1p-60, errors_)) return end_here("the start cannot be enclosed");
+      take_samples(step, 0x1p-60);
+      return true;
+    }
+    if (!end.is_bounded()) return end_here("the times are too far from the start");
+    while (true) {
+      const Interval left = end - now_;
+      if (!(left.upper() > 0.0)) break;
+      if (result_.steps >= options_.max_steps) return end_here("max_steps was reached");
+      if (result_.steps % 64 == 0 && options_.go_on && !options_.go_on(reached())) {
+        result_.stopped = true;
+        return end_here("it was stopped");
+      }
+      double length = step.expand(state_);
+      const double proposed = length;
+      const bool last = !(length < left.lower());
+      if (last) length = left.upper();
+      else length = round_down(std::min(length, 0.9 * left.lower()) < 0.5 * length ? 0.5 * left.lower() : length);
+      bool is_last = last;
+      while (!step.bound(length, errors_)) {
+        ++result_.rejected;
+        length = round_down(0.5 * length), is_last = false;
+        if (!(length > 1e-4 * std::min(proposed, left.upper())) || length < 0x1p-900)
+          return end_here("no bound on the next step was found: errors have grown too large");
+      }
+      if (const double widest = *std::max_element(step.spread().begin(), step.spread().end());
+          !(widest <= options_.widest * std::max(1.0, step.largest_rate())))
+        return end_here("the set of possible states has become too large");
+      take_samples(step, length);
+      advance(step, is_last ? left : Interval(length));
+      now_ = is_last ? end : now_ + Interval(length);
+      ++result_.steps;
+      if (is_last) break;
+    }
+    largest_rate_ = step.largest_rate();
+    (sign_ > 0 ? result_.end : result_.begin) = piece.end;
+    return true;
+  }
+
+  /// Few digits, so that sums of lengths are exact.
+  static double round_down(double length) {
+    int exponent;
+    const double part = std::frexp(length, &exponent);
+    return std::ldexp(std::floor(std::ldexp(part, 20)), exponent - 20);
+  }
+
+  double reached() const { return scene_.t0() + sign_ * now_.middle.hi / variables_.rate(); }
+
+  bool end_here(const char* why) {
+    // The steps so far reach a little further than a time rounded towards the start.
+    const double t = reached(), bound = t - sign_ * 0x1p-50 * (std::abs(t) + std::abs(scene_.t0()));
+    (sign_ > 0 ? result_.end : result_.begin) = sign_ > 0 ? std::max(bound, scene_.t0()) : std::min(bound, scene_.t0());
+    result_.ended = why;
+    return false;
+  }
+
+  void advance(const TaylorStep& step, const Interval& length) {
+    step.evaluate_derivative(length.middle.hi, derivative_, lost_);
+    rest_ = step.rest();
+    for (std::size_t i = 0; i < rest_.size(); ++i) rest_[i] += lost_[i];
+    step.evaluate(length.middle, length.radius, state_, lost_);
+    for (std::size_t i = 0; i < rest_.size(); ++i) rest_[i] = raised(rest_[i] + lost_[i]);
+    errors_.advance(derivative_, step.width(), rest_);
+  }
+
+  void take_samples(const TaylorStep& step, double length) {
+    std::vector<DD> state(state_.size());
+    std::vector<double> lost(state_.size()), slack(state_.size()), box = step.spread();
+    const bool is_narrow = *std::max_element(box.begin(), box.end()) < 1e-17;
+    for (; next_ < samples_.size(); ++next_) {
+      const std::size_t sample = samples_[next_];
+      const Interval time = distance(scene_.times()[sample]) - now_;
+      if (time.upper() > length * (1.0 + 0x1p-32)) return;
+      step.evaluate(time.middle, time.radius, state, lost);
+      if (!is_narrow) {
+        step.evaluate_derivative(time.middle.hi, derivative_, slack);
+        for (std::size_t i = 0; i < slack.size(); ++i) slack[i] += step.rest()[i];
+        box = errors_.image_box(derivative_, step.width(), slack);
+      }
+      const auto value = [&](std::size_t i) { return Interval(state[i], raised(box[i] + lost[i])); };
+      if (scene_.want().omega) {
+        for (std::size_t i = 0; i < 3; ++i) result_.omega[3 * sample + i] = value(i) * Interval(variables_.rate());
+      }
+      if (scene_.want().attitude) {
+        const auto first = static_cast<std::size_t>(variables_.attitude());
+        for (std::size_t i = 0; i < 4; ++i) result_.attitude[4 * sample + i] = value(first + i);
+      }
+    }
+  }
+
+  const Scene& scene_;
+  const Variables& variables_;
+  const EncloseOptions& options_;
+  const double sign_;
+  Enclosure& result_;
+  std::vector<DD> state_;
+  ErrorSet errors_;
+  Interval now_ = {};                    ///< since the start, in units of 1 / rate
+  double largest_rate_ = 0.0;
+  std::vector<std::size_t> samples_;     ///< in the order of the run
+  std::size_t next_ = 0;
+  std::vector<double> derivative_, lost_, rest_;
+};
+
+}  // namespace
+
+Enclosure enclose(const Scene& scene, const Pieces& pieces, const EncloseOptions& options) {
+  Enclosure result;
+  result.begin = result.end = scene.t0();
+  const std::size_t n = scene.times().size();
+  if (scene.want().omega) result.omega.assign(3 * n, Interval::all());
+  if (scene.want().attitude) result.attitude.assign(4 * n, Interval::all());
+  const Variables variables(scene);
+  Run(scene, variables, options, 1.0, result).follow(pieces.forward);
+  if (!result.stopped) Run(scene, variables, options, -1.0, result).follow(pieces.backward);
+  return result;
+}
+
+}  // namespace polhode::proof

@@ -1,0 +1,410 @@
+#include "solve/proof/taylor_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace polhode::proof {
+namespace {
+
+using Kind = Term::Kind;
+
+constexpr double unit = 0x1p-53;
+constexpr double fine_rounding = 0x1p-93;   // of a sum of at most 2^8 double-double products, relative to its sizes
+constexpr double most = 0x1p60;             // no size may be larger: see raised()
+constexpr double margin = 1.0 + 0x1p-30;    // bounds hold on a step this much longer than asked
+
+/// At least e^x, 0 <= x <= 60.
+double exp_above(double x) {
+  double sum = 1.0, term = 1.0;
+  for (int k = 1; k <= 200; ++k) {
+    term *= x / k;
+    sum += term;
+  }
+  return raised(sum * (1.0 + 0x1p-40));   // what is left out: 60^200 / 200! is far below a part in 2^40
+}
+
+}  // namespace
+
+TaylorStep::TaylorStep(const QuadraticSystem& system, const StepSettings& settings)
+    : system_(system), settings_(settings), n_(system.size), width_((system.size + 3) / 4 * 4) {
+  // Order as in Jorba & Zou 2005, Experimental Mathematics 14, 99; low halves as far as plain rounding would count.
+  const double digits = -std::log(settings_.tolerance);
+  order_ = std::clamp(static_cast<int>(std::lround(0.5 * digits)) + 1, 8, 40);
+  next_derivative_order_ = std::min(12, order_);
+  int terms = 0;
+  std::vector<int> per_row(static_cast<std::size_t>(n_), 0);
+  for (const Term& term : system_.terms) terms = std::max(terms, ++per_row[static_cast<std::size_t>(term.row)]);
+  rounding_ = (order_ + terms + 12) * unit;
+  derivative_rounding_ = (2 * order_ + 2 * terms + 12) * unit;
+  fine_ = std::clamp(static_cast<int>(std::ceil(order_ * (1.0 + std::log(rounding_) / digits))), 1, order_ - 1);
+  const auto n = static_cast<std::size_t>(n_), rows = static_cast<std::size_t>(order_ + 1);
+  high_.resize(n * rows), low_.resize(n * rows), sizes_.resize(n * rows), tails_.resize(n * rows);
+  powers_.resize(rows), images_.resize(n * rows);
+  derivative_.resize(rows * n * static_cast<std::size_t>(width_));
+  first_.resize(rows * system_.products.size()), second_.resize(first_.size());
+  defect_.resize(n), rest_.resize(n), spread_.resize(n), jacobian_.resize(n * n);
+  prepare_pairs();
+}
+
+void TaylorStep::prepare_pairs() {
+  struct Sum {
+    Interval constant = {};
+    std::vector<Interval> factors;
+  };
+  const auto n = static_cast<std::size_t>(n_);
+  std::vector<Sum> sums(n * n);
+  for (Sum& sum : sums) sum.factors.resize(n);
+  const auto at = [&](int i, int j) -> Sum& {
+    return sums[static_cast<std::size_t>(std::min(i, j)) * n + static_cast<std::size_t>(std::max(i, j))];
+  };
+  for (const Term& term : system_.terms) {
+    const int i = term.row;
+    const auto add = [&](int j, int variable) {   // J_ij holds factor times the variable; on the diagonal it counts twice
+      const Interval factor = i == j ? Interval(2.0) * term.factor : term.factor;
+      Interval& sum = variable < 0 ? at(i, j).constant : at(i, j).factors[static_cast<std::size_t>(variable)];
+      sum = sum + factor;
+    };
+    if (term.kind == Kind::variable) add(term.source, -1);
+    if (term.kind == Kind::product) {
+      const Product& product = system_.products[static_cast<std::size_t>(term.source)];
+      add(product.a, product.b), add(product.b, product.a);
+    }
+  }
+  for (int i = 0; i < n_; ++i)
+    for (int j = i; j < n_; ++j) {
+      const Sum& sum = at(i, j);
+      SymmetricEntry entry{i, j, i == j ? sum.constant.upper() : sum.constant.magnitude(), {}};
+      for (int v = 0; v < n_; ++v) {
+        const Interval& factor = sum.factors[static_cast<std::size_t>(v)];
+        if (!factor.is_zero()) entry.factors.emplace_back(v, factor.magnitude());
+      }
+      if (entry.constant != 0.0 || !entry.factors.empty()) symmetric_.push_back(std::move(entry));
+    }
+}
+
+double TaylorStep::expand(std::span<const DD> state) {
+  const auto rows = static_cast<std::size_t>(order_ + 1);
+  for (std::size_t v = 0; v < state.size(); ++v) high_[v * rows] = state[v].hi, low_[v * rows] = state[v].lo;
+  double rate = 0.0;
+  for (int v = 0; v < 3; ++v) rate = std::max(rate, std::abs(P(v)[0]));
+  largest_rate_ = std::max({largest_rate_, rate, 0x1p-20});
+  expand_state();
+  derivative_order_ = next_derivative_order_;
+  expand_derivative();
+
+  // Both of the last two terms within the tolerance: one of them may happen to be small.
+  double length = 1e300;
+  const auto limit = [&](double size, double tolerance, int k) {
+    if (size > 0.0) length = std::min(length, std::pow(tolerance / size, 1.0 / k));
+  };
+  for (int k = order_ - 1; k <= order_; ++k) {
+    double largest = 0.0;
+    for (int v = 0; v < n_; ++v) largest = std::max(largest, std::abs(P(v)[k]) / (v < 3 ? largest_rate_ : 1.0));
+    limit(largest, settings_.tolerance, k);
+  }
+  const double by_state = length;
+  double by_derivative = 1e300;
+  for (int k = derivative_order_ - 1; k <= derivative_order_; ++k) {
+    double largest = 0.0;
+    for (int v = 0; v < n_; ++v)
+      for (int c = 0; c < n_; ++c) largest = std::max(largest, std::abs(F(k, v)[c]));
+    limit(largest, 1e-7, k);
+  }
+  by_derivative = length;
+  // A stiff body's derivative needs more terms than the motion itself.
+  if (by_derivative < 0.7 * by_state) next_derivative_order_ = std::min(order_, derivative_order_ + 2);
+  else if (by_derivative > 0.95 * by_state && derivative_order_ > 10) next_derivative_order_ = derivative_order_ - 1;
+  return length;
+}
+
+void TaylorStep::expand_state() {
+  const std::size_t count = system_.products.size();
+  std::vector<double> product(count), sum(static_cast<std::size_t>(n_));
+  std::vector<DD> fine_product(count), fine_sum(static_cast<std::size_t>(n_));
+  for (int k = 0; k < order_; ++k) {
+    for (std::size_t p = 0; p < count; ++p) {
+      first_[static_cast<std::size_t>(k) * count + p] = P(system_.products[p].a)[k];
+      second_[static_cast<std::size_t>(k) * count + p] = P(system_.products[p].b)[k];
+    }
+    if (k < fine_) {
+      for (std::size_t p = 0; p < count; ++p) {
+        const double *a = P(system_.products[p].a), *b = P(system_.products[p].b);
+        const double *a_low = &low_[static_cast<std::size_t>(a - high_.data())],
+                     *b_low = &low_[static_cast<std::size_t>(b - high_.data())];
+        DD s;
+        for (int i = 0; i <= k; ++i) s = s + DD(a[i], a_low[i]) * DD(b[k - i], b_low[k - i]);
+        fine_product[p] = s;
+      }
+      std::fill(fine_sum.begin(), fine_sum.end(), DD());
+      for (const Term& term : system_.terms) {
+        const auto source = static_cast<std::size_t>(term.source);
+        DD& s = fine_sum[static_cast<std::size_t>(term.row)];
+        const DD& factor = term.factor.middle;
+        if (term.kind == Kind::product) s = s + factor * fine_product[source];
+        else if (term.kind == Kind::variable)
+          s = s + factor * DD(P(term.source)[k], low_[source * static_cast<std::size_t>(order_ + 1) + static_cast<std::size_t>(k)]);
+        else if (k == 0) s = s + factor;
+      }
+      for (int v = 0; v < n_; ++v) {
+        const DD next = fine_sum[static_cast<std::size_t>(v)] / DD(k + 1.0);
+        P(v)[k + 1] = next.hi;
+        low_[static_cast<std::size_t>(v * (order_ + 1) + k + 1)] = next.lo;
+      }
+      continue;
+    }
+    std::fill(product.begin(), product.end(), 0.0);
+    for (int i = 0; i <= k; ++i) {
+      const double *a = &first_[static_cast<std::size_t>(i) * count], *b = &second_[static_cast<std::size_t>(k - i) * count];
+      for (std::size_t p = 0; p < count; ++p) product[p] += a[p] * b[p];
+    }
+    std::fill(sum.begin(), sum.end(), 0.0);
+    for (const Term& term : system_.terms) {
+      if (term.kind == Kind::constant) continue;   // fine_ is at least 1
+      const double source = term.kind == Kind::product ? product[static_cast<std::size_t>(term.source)] : P(term.source)[k];
+      sum[static_cast<std::size_t>(term.row)] += term.factor.middle.hi * source;
+    }
+    for (int v = 0; v < n_; ++v) P(v)[k + 1] = sum[static_cast<std::size_t>(v)] / (k + 1);
+  }
+}
+
+void TaylorStep::expand_derivative() {
+  const auto w = static_cast<std::size_t>(width_);
+  std::fill_n(derivative_.begin(), static_cast<std::size_t>(n_) * w, 0.0);
+  for (int v = 0; v < n_; ++v) F(0, v)[v] = 1.0;
+  std::vector<double> product(system_.products.size() * w);
+  for (int k = 0; k < derivative_order_; ++k) {
+    std::fill(product.begin(), product.end(), 0.0);
+    for (std::size_t p = 0; p < system_.products.size(); ++p) {
+      const Product& pair = system_.products[p];
+      const double *a = P(pair.a), *b = P(pair.b);
+      double* sum = &product[p * w];
+      for (int i = 0; i <= k; ++i) {
+        const double *da = F(i, pair.a), *db = F(i, pair.b);
+        const double s = a[k - i], t = b[k - i];
+        for (std::size_t c = 0; c < w; ++c) sum[c] += s * db[c] + t * da[c];
+      }
+    }
+    std::fill_n(F(k + 1, 0), static_cast<std::size_t>(n_) * w, 0.0);
+    for (const Term& term : system_.terms) {
+      if (term.kind == Kind::constant) continue;
+      const double* source = term.kind == Kind::product ? &product[static_cast<std::size_t>(term.source) * w] : F(k, term.source);
+      const double factor = term.factor.middle.hi;
+      double* row = F(k + 1, term.row);
+      for (std::size_t c = 0; c < w; ++c) row[c] += factor * source[c];
+    }
+    double* rows = F(k + 1, 0);
+    for (std::size_t c = 0; c < static_cast<std::size_t>(n_) * w; ++c) rows[c] /= k + 1;
+  }
+}
+
+void TaylorStep::compute_sizes(double length) {
+  powers_[0] = 1.0;
+  for (int k = 1; k <= order_; ++k) powers_[static_cast<std::size_t>(k)] = powers_[static_cast<std::size_t>(k - 1)] * length;
+  for (int v = 0; v < n_; ++v) {
+    double sum = 0.0;
+    for (int k = order_; k >= 0; --k) {
+      const std::size_t at = static_cast<std::size_t>(v * (order_ + 1) + k);
+      sizes_[at] = std::abs(high_[at]) * powers_[static_cast<std::size_t>(k)];
+      sum += sizes_[at];
+      tails_[at] = sum;
+    }
+  }
+}
+
+/// |d| + |D| box over the step, by components. The terms of f(P) from t^order on and those of J F from t^derivative_order
+/// on are left out of the series; below that only rounding separates the series from the equations.
+void TaylorStep::compute_defects(const std::vector<double>& box) {
+  const auto n = static_cast<std::size_t>(n_);
+  const int M = derivative_order_;
+  for (int j = 0; j <= M; ++j)
+    for (int v = 0; v < n_; ++v) {
+      const double* row = F(j, v);
+      double sum = 0.0;
+      for (std::size_t c = 0; c < n; ++c) sum += std::abs(row[c]) * box[c];
+      images_[static_cast<std::size_t>(j) * n + static_cast<std::size_t>(v)] = sum * powers_[static_cast<std::size_t>(j)];
+    }
+  const auto image = [&](int j, int v) { return images_[static_cast<std::size_t>(j) * n + static_cast<std::size_t>(v)]; };
+  std::fill(spread_.begin(), spread_.end(), 0.0);
+  for (int j = 0; j <= M; ++j)
+    for (int v = 0; v < n_; ++v) spread_[static_cast<std::size_t>(v)] += image(j, v);
+
+  struct Sizes {
+    double all, coarse, left_out, derivative, derivative_left_out;
+  };
+  const auto of_variable = [&](int v) -> Sizes {
+    return {sum_from(v, 0), sum_from(v, fine_), sum_from(v, order_), spread_[static_cast<std::size_t>(v)], image(M, v)};
+  };
+  const auto of_product = [&](const Product& product) {
+    const int a = product.a, b = product.b;
+    Sizes sizes{sum_from(a, 0) * sum_from(b, 0), 0.0, 0.0, 0.0, 0.0};
+    for (int i = 0; i <= order_; ++i) {
+      const double size = sizes_[static_cast<std::size_t>(a * (order_ + 1) + i)];
+      sizes.coarse += size * sum_from(b, fine_ - i);
+      sizes.left_out += size * sum_from(b, order_ - i);
+    }
+    sizes.derivative = sum_from(a, 0) * spread_[static_cast<std::size_t>(b)] +
+                       sum_from(b, 0) * spread_[static_cast<std::size_t>(a)];
+    for (int j = 0; j <= M; ++j)
+      sizes.derivative_left_out += sum_from(a, M - j) * image(j, b) + sum_from(b, M - j) * image(j, a);
+    return sizes;
+  };
+  std::vector<Sizes> of_products;
+  for (const Product& product : system_.products) of_products.push_back(of_product(product));
+
+  std::fill(defect_.begin(), defect_.end(), 0.0);
+  for (const Term& term : system_.terms) {
+    const double factor = std::abs(term.factor.middle.hi);
+    const double fine = term.factor.radius + fine_rounding * factor;
+    const double coarse = fine + std::abs(term.factor.middle.lo) + rounding_ * factor;
+    const double derivative = fine + std::abs(term.factor.middle.lo) + derivative_rounding_ * factor;
+    double& defect = defect_[static_cast<std::size_t>(term.row)];
+    if (term.kind == Kind::constant) {
+      defect += fine;
+      continue;
+    }
+    const Sizes sizes = term.kind == Kind::product ? of_products[static_cast<std::size_t>(term.source)] : of_variable(term.source);
+    defect += fine * sizes.all + coarse * sizes.coarse + derivative * sizes.derivative +
+              settings_.remainder_factor * (factor * (sizes.left_out + sizes.derivative_left_out));
+  }
+  for (double& defect : defect_) defect = raised(defect);
+  for (double& spread : spread_) spread = raised(spread);
+}
+
+/// An upper bound on the Euclidean logarithmic norm of J anywhere on the step, by Gershgorin's circles of (J + J^T) / 2.
+double TaylorStep::compute_growth() const {
+  std::vector<double> sum(static_cast<std::size_t>(n_), 0.0);
+  for (const SymmetricEntry& entry : symmetric_) {
+    double size = 0.0;
+    for (const auto& [variable, factor] : entry.factors) size += factor * sum_from(variable, 0);
+    size = raised(size);
+    sum[static_cast<std::size_t>(entry.i)] += entry.constant + size;
+    if (entry.i != entry.j) sum[static_cast<std::size_t>(entry.j)] += entry.constant + size;
+  }
+  const double largest = *std::max_element(sum.begin(), sum.end());
+  return std::max(0.0, 0.5 * largest * (1.0 + 0x1p-30)) + 1e-9 * 0x1p-20;
+}
+
+/// x(length) of x' = A x + source, x(0) = 0, with A_ij >= |J_ij| and A_ii >= max(0, J_ii): it bounds |r_i|, and it grows.
+void TaylorStep::compare_by_components(double length, const std::vector<double>& source,
+                                       std::vector<double>& result) const {
+  const auto n = static_cast<std::size_t>(n_);
+  std::vector<double> term(n), next(n);
+  double largest_row = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    double sum = 0.0;
+    for (std::size_t j = 0; j < n; ++j) sum += jacobian_[i * n + j];
+    largest_row = std::max(largest_row, raised(sum) * length);
+    term[i] = source[i] * length;
+    result[i] = term[i];
+  }
+  if (!(largest_row < 40.0)) {
+    std::fill(result.begin(), result.end(), 1e300);
+    return;
+  }
+  const int terms = 12 + static_cast<int>(2.0 * largest_row);
+  for (int k = 1; k <= terms; ++k) {
+    for (std::size_t i = 0; i < n; ++i) {
+      double sum = 0.0;
+      for (std::size_t j = 0; j < n; ++j) sum += jacobian_[i * n + j] * term[j];
+      next[i] = sum * length / (k + 1);
+    }
+    std::swap(term, next);
+    for (std::size_t i = 0; i < n; ++i) result[i] += term[i];
+  }
+  // Each further term is at most half the last one's largest component.
+  const double left = *std::max_element(term.begin(), term.end());
+  for (std::size_t i = 0; i < n; ++i) result[i] = raised(result[i] + left);
+}
+
+bool TaylorStep::bound(double asked_length, const ErrorSet& errors) {
+  const double length = asked_length * margin;
+  const auto n = static_cast<std::size_t>(n_);
+  compute_sizes(length);
+  for (int v = 0; v < n_; ++v)
+    if (!(sum_from(v, 0) < most)) return false;
+  compute_defects(errors.box());
+
+  std::fill(jacobian_.begin(), jacobian_.end(), 0.0);
+  std::vector<double> diagonal(n, 0.0);   // the signed constant parts
+  for (const Term& term : system_.terms) {
+    const auto row = static_cast<std::size_t>(term.row);
+    const double factor = term.factor.magnitude();
+    if (term.kind == Kind::variable) {
+      if (term.source == term.row) diagonal[row] += term.factor.upper();
+      else jacobian_[row * n + static_cast<std::size_t>(term.source)] += factor;
+    } else if (term.kind == Kind::product) {
+      const Product& product = system_.products[static_cast<std::size_t>(term.source)];
+      jacobian_[row * n + static_cast<std::size_t>(product.a)] += factor * sum_from(product.b, 0);
+      jacobian_[row * n + static_cast<std::size_t>(product.b)] += factor * sum_from(product.a, 0);
+    }
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    double& entry = jacobian_[i * n + i];
+    entry = std::max(0.0, entry * (1.0 + 0x1p-30) + diagonal[i] + 0x1p-48 * std::abs(diagonal[i]));
+  }
+  for (double& entry : jacobian_) entry = raised(entry);
+  const double growth = raised(compute_growth() * length);
+  if (!(growth < 40.0)) return false;
+  const double stretch = raised(length * exp_above(growth));
+
+  // Q(e, e) needs a bound on e, which holds the bound on r that is sought: it is guessed and then confirmed.
+  const std::vector<double> linear = spread_;
+  std::vector<double> guess(n, 0.0), source(n), found(n);
+  for (int attempt = 0; attempt < 6; ++attempt) {
+    for (std::size_t i = 0; i < n; ++i) spread_[i] = raised(linear[i] + guess[i]);
+    source = defect_;
+    for (const Term& term : system_.terms) {
+      if (term.kind != Kind::product) continue;
+      const Product& product = system_.products[static_cast<std::size_t>(term.source)];
+      source[static_cast<std::size_t>(term.row)] += raised(term.factor.magnitude() * spread_[static_cast<std::size_t>(product.a)] *
+                                                           spread_[static_cast<std::size_t>(product.b)]);
+    }
+    double square = 0.0;
+    for (double& value : source) value = raised(value), square += value * value;
+    const double by_length = raised(std::sqrt(square) * stretch);
+    compare_by_components(length, source, found);
+    bool confirmed = true;
+    for (std::size_t i = 0; i < n; ++i) {
+      found[i] = std::min(found[i], by_length);
+      if (!(found[i] < most)) return false;
+      confirmed &= found[i] < guess[i];
+    }
+    if (confirmed) {
+      rest_ = found;
+      return true;
+    }
+    for (std::size_t i = 0; i < n; ++i) guess[i] = attempt == 0 ? found[i] * 1.01 + 0x1p-800 : 2.0 * found[i] + 0x1p-800;
+  }
+  return false;
+}
+
+void TaylorStep::evaluate(DD time, double slack, std::vector<DD>& state, std::vector<double>& lost) const {
+  const auto rows = static_cast<std::size_t>(order_ + 1);
+  // |P'| <= sum of k |P_k| t^(k-1), with t at most the step's length
+  const double per_time = order_ / powers_[1];
+  for (int v = 0; v < n_; ++v) {
+    const double* c = P(v);
+    const double* c_low = &low_[static_cast<std::size_t>(v) * rows];
+    double coarse = 0.0;
+    for (int k = order_; k > fine_; --k) coarse = coarse * time.hi + c[k];
+    DD sum(coarse);
+    for (int k = fine_; k >= 0; --k) sum = sum * time + DD(c[k], c_low[k]);
+    state[static_cast<std::size_t>(v)] = sum;
+    lost[static_cast<std::size_t>(v)] = raised(3 * order_ * unit * sum_from(v, fine_ + 1) + fine_rounding * sum_from(v, 0) +
+                                               slack * per_time * sum_from(v, 1));
+  }
+}
+
+void TaylorStep::evaluate_derivative(double time, std::vector<double>& result, std::vector<double>& lost) const {
+  const auto count = static_cast<std::size_t>(n_ * width_);
+  result.assign(F(derivative_order_, 0), F(derivative_order_, 0) + count);
+  for (int k = derivative_order_ - 1; k >= 0; --k) {
+    const double* rows = F(k, 0);
+    for (std::size_t c = 0; c < count; ++c) result[c] = result[c] * time + rows[c];
+  }
+  // The time is rounded to a double, too. spread_ bounds what |F| makes of the box.
+  const double part = (6.0 * derivative_order_ + 4.0 * n_ + 8.0) * unit;
+  for (std::size_t v = 0; v < lost.size(); ++v) lost[v] = raised(part * spread_[v]);
+}
+
+}  // namespace polhode::proof

@@ -1,0 +1,60 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "polhode/math/detail/interval.hpp"
+
+using namespace polhode::math;
+
+namespace {
+constexpr double infinity = Interval::infinity;
+/// The width of a set as a part of its middle.
+double relative_radius(const Interval& a) { return a.radius / std::abs(a.middle.hi); }
+}  // namespace
+
+TEST_CASE("a result holds the exact one and is hardly wider") {
+  const Interval third = Interval(1.0) / Interval(3.0);
+  CHECK(relative_radius(third) < 1e-29);
+  CHECK(third.lower() < third.upper());
+  CHECK((third * Interval(3.0) - Interval(1.0)).contains(0.0));
+  const Interval root = sqrt(Interval(2.0));
+  CHECK((sqr(root) - Interval(2.0)).contains(0.0));
+  CHECK(relative_radius(root) < 1e-29);
+  // (1 + 2^-60)(1 - 2^-60) = 1 - 2^-120 is no double-double: only a radius can hold it.
+  const Interval tiny(DD(1.0, 0x1p-60), 0.0), other(DD(1.0, -0x1p-60), 0.0);
+  const Interval lack = Interval(1.0) - tiny * other;
+  CHECK((lack.lower() <= 0x1p-120 && 0x1p-120 <= lack.upper()));
+}
+
+TEST_CASE("sets that hold 0, and sets without a bound") {
+  const Interval around(DD(1.0), 2.0);
+  CHECK((Interval(1.0) / around).upper() == infinity);
+  CHECK(sqr(around).lower() <= 0.0);
+  CHECK(sqr(around).contains(9.0));
+  CHECK(sqrt(around).contains(0.0));
+  CHECK(sqrt(around).contains(std::sqrt(3.0)));
+  CHECK((Interval(1e200) * Interval(1e200)).upper() == infinity);
+  CHECK((Interval(infinity) * Interval(0.0)).lower() == -infinity);
+  CHECK(Interval(NAN).contains(-1e300));
+  CHECK((Interval(5e-324) * Interval(0.5)).contains(0.0));
+  CHECK((Interval(5e-324) * Interval(0.5)).upper() > 0.0);
+  CHECK(around.magnitude() >= 3.0);
+  CHECK(around.mignitude() == 0.0);
+  CHECK(Interval(DD(-5.0), 1.0).mignitude() <= 4.0);
+}
+
+TEST_CASE("sine and cosine hold known values at any angle") {
+  // To 40 digits by mpmath, as double-doubles.
+  const IntervalSinCos one = sincos(Interval(1.0));
+  CHECK((one.sin - Interval(DD(0.8414709848078965, 1.776845092935536e-18), 2e-33)).contains(0.0));
+  CHECK((one.cos - Interval(DD(0.5403023058681398, -4.760954612604417e-17), 3e-33)).contains(0.0));
+  CHECK(relative_radius(one.sin) < 1e-29);
+  for (double angle = -50.0; angle < 50.0; angle += 0.37) {
+    const IntervalSinCos found = sincos(Interval(angle));
+    CHECK((sqr(found.sin) + sqr(found.cos) - Interval(1.0)).contains(0.0));
+    CHECK(found.sin.middle.hi == doctest::Approx(std::sin(angle)).epsilon(1e-14));
+    CHECK(found.cos.middle.hi == doctest::Approx(std::cos(angle)).epsilon(1e-14));
+  }
+  CHECK(sincos(Interval(1e300)).sin.upper() >= 1.0);
+  CHECK(sincos(Interval(DD(0.0), 2.0)).cos.lower() <= -0.4);
+}
