@@ -90,7 +90,8 @@ bool is_in_space(const torques::Constant& constant) {
   return constant.frame() == torques::Constant::Frame::space && !constant.traits().vanishes;
 }
 
-double nearest_power(double x) { return std::exp2(std::clamp(std::round(std::log2(x)), -1000.0, 1000.0)); }
+/// A power of two near x, between 2^-1000 and 2^1000.
+double nearest_power(double x) { return std::ldexp(1.0, std::clamp(std::ilogb(x), -1000, 1000)); }
 
 /// R_WB^T v_W of a unit quaternion.
 Vector to_body(const std::array<Interval, 4>& q, const Vector& v) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "polhode/math/detail/functions.hpp"
+
 namespace polhode::proof {
 namespace {
 
@@ -28,7 +30,7 @@ double exp_above(double x) {
 TaylorStep::TaylorStep(const QuadraticSystem& system, const StepSettings& settings)
     : system_(system), settings_(settings), n_(system.size), width_((system.size + 3) / 4 * 4) {
   // Order as in Jorba & Zou 2005, Experimental Mathematics 14, 99; low halves as far as plain rounding would count.
-  const double digits = -std::log(settings_.tolerance);
+  const double digits = -math::log(settings_.tolerance);
   order_ = std::clamp(static_cast<int>(std::lround(0.5 * digits)) + 1, 8, 40);
   next_derivative_order_ = std::min(12, order_);
   int terms = 0;
@@ -36,7 +38,7 @@ TaylorStep::TaylorStep(const QuadraticSystem& system, const StepSettings& settin
   for (const Term& term : system_.terms) terms = std::max(terms, ++per_row[static_cast<std::size_t>(term.row)]);
   rounding_ = (order_ + terms + 12) * unit;
   derivative_rounding_ = (2 * order_ + 2 * terms + 12) * unit;
-  fine_ = std::clamp(static_cast<int>(std::ceil(order_ * (1.0 + std::log(rounding_) / digits))), 1, order_ - 1);
+  fine_ = std::clamp(static_cast<int>(std::ceil(order_ * (1.0 + math::log(rounding_) / digits))), 1, order_ - 1);
   const auto n = static_cast<std::size_t>(n_), rows = static_cast<std::size_t>(order_ + 1);
   high_.resize(n * rows), low_.resize(n * rows), sizes_.resize(n * rows), tails_.resize(n * rows);
   powers_.resize(rows), images_.resize(n * rows);
@@ -95,7 +97,7 @@ double TaylorStep::expand(std::span<const DD> state) {
   // Both of the last two terms within the tolerance: one of them may happen to be small.
   double length = 1e300;
   const auto limit = [&](double size, double tolerance, int k) {
-    if (size > 0.0) length = std::min(length, std::pow(tolerance / size, 1.0 / k));
+    if (size > 0.0) length = std::min(length, math::fast_pow(tolerance / size, 1.0 / k));
   };
   for (int k = order_ - 1; k <= order_; ++k) {
     double largest = 0.0;
@@ -108,7 +110,7 @@ double TaylorStep::expand(std::span<const DD> state) {
     double largest = 0.0;
     for (int v = 0; v < n_; ++v)
       for (int c = 0; c < n_; ++c) largest = std::max(largest, std::abs(F(k, v)[c]));
-    limit(largest, 1e-7, k);
+    limit(largest, settings_.derivative_tolerance, k);
   }
   by_derivative = length;
   // A stiff body's derivative needs more terms than the motion itself.
@@ -272,16 +274,19 @@ void TaylorStep::compute_defects(const std::vector<double>& box) {
 
 /// An upper bound on the Euclidean logarithmic norm of J anywhere on the step, by Gershgorin's circles of (J + J^T) / 2.
 double TaylorStep::compute_growth() const {
-  std::vector<double> sum(static_cast<std::size_t>(n_), 0.0);
+  // Damping is negative on the diagonal: what is subtracted is kept apart, so that rounding cannot hide in a difference.
+  std::vector<double> added(static_cast<std::size_t>(n_), 0.0), subtracted(added);
   for (const SymmetricEntry& entry : symmetric_) {
-    double size = 0.0;
+    double size = std::max(entry.constant, 0.0);
     for (const auto& [variable, factor] : entry.factors) size += factor * sum_from(variable, 0);
-    size = raised(size);
-    sum[static_cast<std::size_t>(entry.i)] += entry.constant + size;
-    if (entry.i != entry.j) sum[static_cast<std::size_t>(entry.j)] += entry.constant + size;
+    added[static_cast<std::size_t>(entry.i)] += size;
+    if (entry.i != entry.j) added[static_cast<std::size_t>(entry.j)] += size;
+    else subtracted[static_cast<std::size_t>(entry.i)] = std::max(-entry.constant, 0.0);
   }
-  const double largest = *std::max_element(sum.begin(), sum.end());
-  return std::max(0.0, 0.5 * largest * (1.0 + 0x1p-30)) + 1e-9 * 0x1p-20;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < added.size(); ++i)
+    largest = std::max(largest, raised(added[i]) * (1.0 + 0x1p-50) - subtracted[i] * (1.0 - 0x1p-50));
+  return raised(0.5 * largest);
 }
 
 /// x(length) of x' = A x + source, x(0) = 0, with A_ij >= |J_ij| and A_ii >= max(0, J_ii): it bounds |r_i|, and it grows.

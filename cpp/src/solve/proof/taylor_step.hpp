@@ -13,6 +13,7 @@ using math::DD;
 /// How finely steps are computed.
 struct StepSettings {
   double tolerance = 1e-20;        ///< of what one step leaves out, relative to the rates and to 1
+  double derivative_tolerance = 1e-7;   ///< of what one step leaves out of the motion's derivative
   double remainder_factor = 1.0;   ///< multiplies the bound on what is left out: anything below 1 is wrong, for tests
 };
 
