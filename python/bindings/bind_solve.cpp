@@ -33,6 +33,14 @@ struct Answer {
   Wanted want;
 };
 
+/// Bounds of a proof; None without one.
+template <std::vector<double> Motion::*part, py::ssize_t columns>
+py::object view_part(const py::object& self) {
+  const Answer& answer = self.cast<const Answer&>();
+  return view(self, answer.motion.*part, columns,
+              answer.motion.plan.proof && (columns == 3 ? answer.want.omega : answer.want.attitude));
+}
+
 std::unique_ptr<Answer> solve_scene(const Scene& scene, const py::dict& given) {
   SolveOptions options = to_solve_options(given);
   if (!options.progress) options.progress = make_progress(py::none());
@@ -83,6 +91,15 @@ void bind_solve(py::module_& m) {
                              [](const py::object& self) {
                                const Answer& answer = self.cast<const Answer&>();
                                return view(self, answer.motion.attitude, 4, answer.want.attitude);
+                             })
+      .def_property_readonly("omega_lower", &view_part<&Motion::omega_lower, 3>)
+      .def_property_readonly("omega_upper", &view_part<&Motion::omega_upper, 3>)
+      .def_property_readonly("attitude_lower", &view_part<&Motion::attitude_lower, 4>)
+      .def_property_readonly("attitude_upper", &view_part<&Motion::attitude_upper, 4>)
+      .def_property_readonly("proved_span",
+                             [](const Answer& answer) -> py::object {
+                               if (!answer.motion.plan.proof) return py::none();
+                               return py::make_tuple(answer.motion.proved_begin, answer.motion.proved_end);
                              })
       .def_property_readonly("status", [](const Answer& answer) { return std::string(to_text(answer.motion.status)); })
       .def_property_readonly("message", [](const Answer& answer) { return answer.motion.message; })

@@ -33,6 +33,14 @@ std::vector<SceneEvent> to_events(py::handle list) {
   return events;
 }
 
+/// True, False or "proof".
+void read_certify(py::handle value, SolveOptions& to) {
+  to.proof = py::isinstance<py::str>(value);
+  if (to.proof && std::string(py::str(value)) != "proof")
+    throw InvalidInput("certify", "True, False or 'proof'", std::string(py::repr(value)));
+  to.certify = to.proof || value.cast<bool>();
+}
+
 /// One option: its name in Python, and how its value is read.
 struct Option {
   std::string_view name;
@@ -42,7 +50,7 @@ struct Option {
 constexpr Option all_options[] = {
     {"accuracy", [](py::handle value, SolveOptions& to) { to.accuracy = to_real(value, "accuracy"); }},
     {"method", [](py::handle value, SolveOptions& to) { to.method = std::string(py::str(value)); }},
-    {"certify", [](py::handle value, SolveOptions& to) { to.certify = value.cast<bool>(); }},
+    {"certify", &read_certify},
     {"rtol", [](py::handle value, SolveOptions& to) { to.rtol = to_real(value, "rtol"); }},
     {"atol", [](py::handle value, SolveOptions& to) { to.atol = to_real(value, "atol"); }},
     {"step", [](py::handle value, SolveOptions& to) { to.step = to_real(value, "step"); }},

@@ -88,7 +88,7 @@ py::dict describe_plan(const Plan& plan, const std::string& state, double rtol) 
   all["pieces"] = pieces;
   all["state"] = state;
   all["accuracy"] = plan.accuracy;
-  all["certify"] = plan.certify;
+  all["certify"] = plan.proof ? py::object(py::str("proof")) : py::object(py::bool_(plan.certify));
   all["rtol"] = rtol;
   all["predicted_error"] = plan.predicted_error;
   all["predicted_seconds"] = plan.predicted_seconds;

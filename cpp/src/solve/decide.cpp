@@ -6,6 +6,7 @@
 #include "solve/method_switch.hpp"
 #include "solve/options.hpp"
 #include "solve/plan_pieces.hpp"
+#include "solve/proof/proof_plan.hpp"
 
 namespace polhode {
 namespace {
@@ -19,6 +20,11 @@ namespace {
 
 Decision decide(const Scene& scene, const SolveOptions& options) {
   Decision decision{scene};
+  if (options.proof) {
+    decision.plan = proof::make_plan(scene, options);
+    decision.facts = compute_facts(scene);
+    return decision;
+  }
   if (has_windows(scene)) {
     Pieces pieces = cut(scene);
     if (pieces.whole) decision.scene = drop_windows(scene);

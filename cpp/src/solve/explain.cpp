@@ -11,6 +11,7 @@
 #include "solve/explain_pieces.hpp"
 #include "solve/options.hpp"
 #include "solve/perturb.hpp"
+#include "solve/proof/proof_plan.hpp"
 
 namespace polhode {
 namespace {
@@ -189,6 +190,8 @@ void explain_left_out(const Scene& scene, const Facts& facts, const SolveOptions
 }  // namespace
 
 PlanReport explain(const Decision& decision, const SolveOptions& options) {
+  if (decision.plan.proof)
+    return {.plan = decision.plan, .facts = decision.facts, .reasons = proof::explain(decision.scene)};
   if (decision.pieces.size() > 0 && decision.pieces.method_switches.empty()) return explain_pieces(decision, options);
   PlanReport report{.plan = decision.plan, .facts = decision.facts};
   const Scene& scene = decision.scene;

@@ -5,6 +5,7 @@
 #include "method/method.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/solve/plan.hpp"
+#include "solve/proof/proof_plan.hpp"
 
 namespace polhode {
 namespace {
@@ -91,6 +92,7 @@ void check_options(const Scene& scene, const SolveOptions& options) {
     throw InvalidInput("atol", "0 or positive, and finite", to_text(*options.atol));
   }
   if (options.max_steps < 1) throw InvalidInput("max_steps", "at least 1", std::to_string(options.max_steps));
+  proof::require_provable(scene, options);
   for (const SceneEvent& event : options.events) {
     if (event.direction < -1 || event.direction > 1) {
       throw InvalidInput("event.direction", "-1, 0 or 1", std::to_string(event.direction));

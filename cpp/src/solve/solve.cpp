@@ -9,6 +9,7 @@
 #include "solve/decide.hpp"
 #include "solve/execute.hpp"
 #include "solve/options.hpp"
+#include "solve/prove.hpp"
 
 namespace polhode {
 
@@ -22,15 +23,20 @@ void refuse_samples(Motion& motion) {
   motion.message = "samples are not finite: the motion is beyond the range of float64";
 }
 
+Motion run(const Scene& scene, const SolveOptions& options) {
+  const Decision decision = decide(scene, options);
+  Motion motion = execute(decision, options);
+  motion.stats += decision.pilot;
+  return motion;
+}
+
 }  // namespace
 
 Motion solve(const Scene& scene, const SolveOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   check_options(scene, options);
   check_torques(scene);
-  const Decision decision = decide(scene, options);
-  Motion motion = execute(decision, options);
-  motion.stats += decision.pilot;
+  Motion motion = options.proof ? prove(scene, options) : run(scene, options);
   if (!motion.all_finite()) refuse_samples(motion);
   motion.stats.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return motion;

@@ -31,7 +31,8 @@ class EventHit(NamedTuple):
 
 # How each part of the core's answer is converted.
 _PARTS: dict[str, Callable[[Any], Any]] = {
-    **dict.fromkeys(("t", "omega", "attitude", "status", "stats", "error", "error_kind", "asked"), lambda part: part),
+    **dict.fromkeys(("t", "omega", "attitude", "status", "stats", "error", "error_kind", "asked", "omega_lower",
+                     "omega_upper", "attitude_lower", "attitude_upper", "proved_span"), lambda part: part),
     "plan": lambda part: part, "events": lambda part: tuple(EventHit(**hit) for hit in part),
 }
 
@@ -59,11 +60,19 @@ class Motion:
     error : float
         The error of all samples, as `accuracy` is defined in `solve`; NaN if not estimated. Errors of the times of
         events are not in it.
-    error_kind : {"bounded", "expected", "limit", "not estimated"}
-        "bounded": a certificate, or the rounding of a closed form, bounds the error. "expected": no certificate was
-        requested. "limit": the error exceeds the accuracy, because float64 allows no smaller one.
+    error_kind : {"bounded", "proved", "expected", "limit", "not estimated"}
+        "bounded": a certificate, or the rounding of a closed form, bounds the error. "proved": the error is a theorem.
+        "expected": no certificate was requested. "limit": the error exceeds the accuracy, because float64 allows no
+        smaller one, or because a proof reaches no farther than `proved_span`.
     asked : float
         The requested accuracy, or the requested relative tolerance.
+    omega_lower, omega_upper : ndarray, shape (n, 3), or None
+        Of a proof: the exact angular velocity of exactly the scene's numbers lies between them [rad/s]. They are
+        infinite beyond the reach of the proof.
+    attitude_lower, attitude_upper : ndarray, shape (n, 4), or None
+        Of a proof: the same for the unit quaternion, of the sign of `attitude`.
+    proved_span : tuple of float, or None
+        Of a proof: the times between which every sample has the accuracy [s].
     """
 
     t: Floats
@@ -75,6 +84,11 @@ class Motion:
     error: float
     error_kind: str
     asked: float
+    omega_lower: Floats | None
+    omega_upper: Floats | None
+    attitude_lower: Floats | None
+    attitude_upper: Floats | None
+    proved_span: tuple[float, float] | None
     events: tuple[EventHit, ...]
 
     def __init__(self, scene: Scene, answer: _core.Answer, options: dict[str, Any] | None = None) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from .. import _core
 from .._scene.scene import Scene
@@ -44,15 +44,15 @@ class Plan:
         The name of a closed form, such as "triaxial" or "heavy_top". "euler" or "lagrangian" if equations are
         integrated. "pieces" if torques start or stop within the span.
     method : str
-        "exact", or a name of `methods()`; for pieces, the costliest method.
+        "exact", or a name of `methods()`; for pieces, the costliest method; "enclosure" for a proof.
     pieces : tuple of Piece
         The pieces of the span, in the order of time; empty if the span is not cut.
     state : str
         The integrated variables.
     accuracy : float
         The accuracy of the plan; NaN if tolerances were given, so that nothing was planned.
-    certify : bool
-        True if the error will be bounded, not only expected.
+    certify : bool or "proof"
+        True if the error will be bounded, not only expected; "proof" if the bounds will be theorems.
     rtol : float
         The tolerance of the run that is returned; 0 for closed forms.
     predicted_error, predicted_seconds : float
@@ -74,7 +74,7 @@ class Plan:
     pieces: tuple[Piece, ...]
     state: str
     accuracy: float
-    certify: bool
+    certify: bool | str
     rtol: float
     predicted_error: float
     predicted_seconds: float
@@ -246,6 +246,8 @@ def _describe_choice(plan: Plan) -> str:
         return "pieces, each with its own model and method"
     if plan.method == "exact":
         return plan.model
+    if plan.certify == "proof":
+        return "Euler's equations, enclosed"
     return f"{plan.method} on {'Euler' if plan.model == 'euler' else 'Lagrange'}'s equations"
 
 
@@ -277,7 +279,7 @@ def _lines(plan: Plan) -> list[str]:
     return lines
 
 
-def plan(scene: Scene, accuracy: float | None = None, *, method: str | None = None, certify: bool = True,
+def plan(scene: Scene, accuracy: float | None = None, *, method: str | None = None, certify: bool | Literal["proof"] = True,
          formulation: str = "euler") -> Plan:
     """Choose the simplest model and the cheapest method for a scene, without running them.
 
@@ -288,8 +290,8 @@ def plan(scene: Scene, accuracy: float | None = None, *, method: str | None = No
         The largest error of any sample, as in `solve`; 1e-9 if left out.
     method : str, optional
         "exact" or a name of `methods()`, to use instead of the cheapest method.
-    certify : bool
-        Bound the error; otherwise it is only expected.
+    certify : bool or "proof"
+        Bound the error; otherwise it is only expected. "proof": as in `solve`.
     formulation : {"euler", "lagrangian"}
         As in `solve`.
 
@@ -306,7 +308,7 @@ def plan(scene: Scene, accuracy: float | None = None, *, method: str | None = No
     if not isinstance(scene, Scene):
         raise _core.InvalidInput(f"scene: must be a polhode.Scene, got {type(scene).__name__}")
     asked = {"method": method, "formulation": str(formulation)}
-    report = _core.plan(scene, {**asked, "accuracy": accuracy, "certify": bool(certify),
+    report = _core.plan(scene, {**asked, "accuracy": accuracy, "certify": certify,
                                 "cost_factors": costs.factors()})
     made = Plan(scene, report["plan"], asked)
     made.__dict__["_report"] = report

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -46,7 +46,8 @@ def _event(item: Any) -> Event:
 
 
 def _take(plan: Plan, accuracy: float | None, method: str | None, rtol: float | None, atol: float | None,
-          step: float | None, certify: bool, formulation: str) -> tuple[float, str | None, bool, str]:
+          step: float | None, certify: bool | str,
+          formulation: str) -> tuple[float, str | None, bool | str, str]:
     """Return the options of a plan; refuse options that contradict it."""
     if not isinstance(plan, Plan):
         raise _core.InvalidInput(f"plan: must be what polhode.plan() made, got {type(plan).__name__}")
@@ -59,8 +60,15 @@ def _take(plan: Plan, accuracy: float | None, method: str | None, rtol: float | 
     if formulation not in ("euler", asked):
         raise _core.InvalidInput(f"formulation: must be left out with plan=, which has {asked!r}, got "
                                  f"{formulation!r}")
-    own = plan.wishes.get("method") if plan.pieces else plan.method   # pieces: each has its own
-    return plan.accuracy, method if method is not None else own, certify and plan.certify, asked
+    if certify == "proof" and plan.certify != "proof":
+        raise _core.InvalidInput("certify: must be left out with a plan made without certify='proof', got 'proof'")
+    if certify:
+        certify = plan.certify
+    proves = plan.certify == "proof"
+    if proves and not certify:
+        raise _core.InvalidInput("certify: must be left out with a plan made with certify='proof', got False")
+    own = plan.wishes.get("method") if plan.pieces or proves else plan.method   # pieces: each has its own
+    return plan.accuracy, method if method is not None else own, certify, asked
 
 
 def check_max_steps(max_steps: int) -> int:
@@ -76,7 +84,7 @@ def solve(
     *,
     plan: Plan | None = None,
     method: str | None = None,
-    certify: bool = True,
+    certify: bool | Literal["proof"] = True,
     rtol: float | None = None,
     atol: float | None = None,
     step: float | None = None,
@@ -100,10 +108,12 @@ def solve(
         A result of `plan()`. It sets accuracy, method and certificate. An additional `method` replaces its method.
     method : str, optional
         A name of `methods()`, or "exact" for a closed form. The planner chooses if it is left out.
-    certify : bool
+    certify : bool or "proof"
         Bound the error of an integrated motion. The run itself propagates its error, or a second, coarser run measures
         it. With False one run aims at a tenth of the accuracy. `motion.error` is then the median error of such scenes,
-        which no answer is promised to keep, and `motion.error_kind` is "expected".
+        which no answer is promised to keep, and `motion.error_kind` is "expected". With "proof" the bounds are
+        theorems: the exact motion lies between `motion.omega_lower` and `motion.omega_upper`, and `motion.error_kind`
+        is "proved". A proof costs tens of runs. It refuses Custom torques, events and dense output.
     rtol : float, optional
         Relative tolerance of a step, instead of an accuracy. Rates are measured relative to their size, the quaternion
         relative to 1. The error of the samples is then not estimated.
@@ -143,7 +153,8 @@ def solve(
     if plan is not None:
         accuracy, method, certify, formulation = _take(plan, accuracy, method, rtol, atol, step, certify, formulation)
     answer = _core.solve(scene, {
-        "accuracy": accuracy, "method": method, "rtol": rtol, "atol": atol, "step": step, "certify": bool(certify),
+        "accuracy": accuracy, "method": method, "rtol": rtol, "atol": atol, "step": step,
+        "certify": certify if isinstance(certify, str) else bool(certify),
         "max_steps": check_max_steps(max_steps), "dense": bool(dense), "formulation": str(formulation),
         "events": [_event(item) for item in events], "progress": progress, "cost_factors": factors()})
     asked = None if method is None and formulation == "euler" else {"method": method, "formulation": formulation}

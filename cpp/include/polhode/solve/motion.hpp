@@ -30,6 +30,7 @@ struct Plan {
   std::string state;      ///< the variables that are integrated: "omega", "omega, attitude", ...
   double accuracy = std::numeric_limits<double>::quiet_NaN();   ///< of the plan; NaN if tolerances were given
   bool certify = true;    ///< the error is bounded, not only expected
+  bool proof = false;     ///< the error is proved: method "enclosure"
   double rtol = 0.0;      ///< of the run that is returned; 0 without steps
   double predicted_error = std::numeric_limits<double>::quiet_NaN();
   double predicted_seconds = std::numeric_limits<double>::quiet_NaN();
@@ -43,10 +44,16 @@ struct Motion : Trajectory {
   double rtol_used = 0.0;                ///< of the run that is returned, if an accuracy was requested; else 0
   double error = std::numeric_limits<double>::quiet_NaN();   ///< of all samples; NaN if not estimated
   std::string error_kind =
-      "not estimated";                   ///< "bounded" | "expected" | "limit" (above the accuracy) | "not estimated"
+      "not estimated";                   ///< "bounded" | "proved" | "expected" | "limit" (above the accuracy) | "not estimated"
   double asked = 0.0;                    ///< the requested accuracy, or the requested relative tolerance
   std::shared_ptr<const ClosedForm> closed_form = nullptr;   ///< replaces dense output if there is one
   std::vector<std::shared_ptr<const Motion>> pieces = {};    ///< replace dense output if the span is cut
+  /// Of a proof: the exact motion of exactly the scene's numbers lies between these at every sample; rows as those of
+  /// omega (n, 3) and attitude (n, 4, of the sign returned). They are infinite beyond the reach of the proof.
+  std::vector<double> omega_lower = {}, omega_upper = {}, attitude_lower = {}, attitude_upper = {};
+  /// Of a proof: the times between which every sample has the accuracy [s].
+  double proved_begin = std::numeric_limits<double>::quiet_NaN();
+  double proved_end = std::numeric_limits<double>::quiet_NaN();
   double t_begin = 0.0;                  ///< start of the span of a closed form or a piece
 
   Motion() = default;

@@ -17,6 +17,7 @@ struct SolveOptions {
   std::optional<double> accuracy = {};    ///< of every sample, 0 < accuracy <= 1; excludes rtol and atol
   std::optional<std::string> method = {}; ///< "exact" or a name of methods(); the plan chooses if left out
   bool certify = true;                    ///< bound the error, which is otherwise only expected
+  bool proof = false;                     ///< bounds that are theorems: see Motion::omega_lower
   std::optional<double> rtol = {};        ///< relative tolerance of a step
   std::optional<double> atol = {};        ///< absolute tolerance of a step, in rad/s and in quaternion components
   std::optional<double> step = {};        ///< [s], for fixed-step methods only

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+
+#include "method/samples.hpp"
 
 namespace polhode::proof {
 namespace {
@@ -10,16 +11,12 @@ namespace {
 /// Follows the motion in one direction of time.
 class Run {
  public:
-  Run(const Scene& scene, const Variables& variables, const EncloseOptions& options, double sign, Enclosure& result)
-      : scene_(scene), variables_(variables), options_(options), sign_(sign), result_(result),
-        errors_(start_radii(variables)), lost_(static_cast<std::size_t>(variables.size())) {
-    for (const Interval& y : variables.start()) state_.push_back(y.middle);
-    const std::vector<double>& times = scene.times();
-    for (std::size_t i = 0; i < times.size(); ++i) {
-      if (sign_ > 0 ? times[i] >= scene.t0() : times[i] < scene.t0()) samples_.push_back(i);
-    }
-    std::stable_sort(samples_.begin(), samples_.end(),
-                     [&](std::size_t a, std::size_t b) { return sign_ * times[a] < sign_ * times[b]; });
+  Run(const Scene& scene, const BodyEquations& body, const EncloseOptions& options, double sign, Enclosure& result)
+      : scene_(scene), body_(body), options_(options), sign_(sign), result_(result),
+        errors_(start_radii(body)), lost_(static_cast<std::size_t>(body.size())) {
+    for (const Interval& y : body.start()) state_.push_back(y.middle);
+    SampleOrder order(scene.times(), scene.t0());
+    samples_ = std::move(sign_ > 0 ? order.forward : order.backward);
   }
 
   void follow(const std::vector<Piece>& pieces) {
@@ -29,36 +26,35 @@ class Run {
   }
 
  private:
-  static std::vector<double> start_radii(const Variables& variables) {
+  static std::vector<double> start_radii(const BodyEquations& body) {
     std::vector<double> radii;
-    for (const Interval& y : variables.start()) radii.push_back(y.radius);
+    for (const Interval& y : body.start()) radii.push_back(y.radius);
     return radii;
   }
 
   /// The exact distance of a time from the start, in units of 1 / rate, along the run.
   Interval distance(double t) const {
     const Interval seconds(sign_ > 0 ? math::two_diff(t, scene_.t0()) : math::two_diff(scene_.t0(), t), 0.0);
-    return seconds * Interval(variables_.rate());
+    return seconds * Interval(body_.rate());
   }
 
   bool follow(const Piece& piece) {
-    const QuadraticSystem system = variables_.equations(piece.torques, sign_);
+    const QuadraticSystem system = body_.make_system(piece.torques, sign_);
     TaylorStep step(system, options_.step);
     step.expect_rate(largest_rate_);
     const Interval end = distance(piece.end);
     if (end.is_zero()) {   // the start itself is asked for
-      if (step.expand(state_), !step.bound(0x1p-60, errors_)) return end_here("the start cannot be enclosed");
+      if (step.expand(state_), !step.bound(0x1p-60, errors_)) return end_here(Status::failed, "the start cannot be enclosed");
       take_samples(step, 0x1p-60);
       return true;
     }
-    if (!end.is_bounded()) return end_here("the times are too far from the start");
+    if (!end.is_bounded()) return end_here(Status::failed, "the times are too far from the start");
     while (true) {
       const Interval left = end - now_;
       if (!(left.upper() > 0.0)) break;
-      if (result_.steps >= options_.max_steps) return end_here("max_steps was reached");
+      if (result_.steps >= options_.max_steps) return end_here(Status::max_steps, "max_steps was reached");
       if (result_.steps % 64 == 0 && options_.go_on && !options_.go_on(reached())) {
-        result_.stopped = true;
-        return end_here("it was stopped");
+        return end_here(Status::stopped, "it was stopped");
       }
       double length = step.expand(state_);
       const double proposed = length;
@@ -70,11 +66,11 @@ class Run {
         ++result_.rejected;
         length = round_down(0.5 * length), is_last = false;
         if (!(length > 1e-4 * std::min(proposed, left.upper())) || length < 0x1p-900)
-          return end_here("no bound on the next step was found: errors have grown too large");
+          return end_here(Status::failed, "no bound on the next step was found: errors have grown too large");
       }
       if (const double widest = *std::max_element(step.spread().begin(), step.spread().end());
           !(widest <= options_.widest * std::max(1.0, step.largest_rate())))
-        return end_here("the set of possible states has become too large");
+        return end_here(Status::failed, "the set of possible states has become too large");
       take_samples(step, length);
       advance(step, is_last ? left : Interval(length));
       now_ = is_last ? end : now_ + Interval(length);
@@ -93,12 +89,13 @@ class Run {
     return std::ldexp(std::floor(std::ldexp(part, 20)), exponent - 20);
   }
 
-  double reached() const { return scene_.t0() + sign_ * now_.middle.hi / variables_.rate(); }
+  double reached() const { return scene_.t0() + sign_ * now_.middle.hi / body_.rate(); }
 
-  bool end_here(const char* why) {
+  bool end_here(Status status, const char* why) {
     // The steps so far reach a little further than a time rounded towards the start.
     const double t = reached(), bound = t - sign_ * 0x1p-50 * (std::abs(t) + std::abs(scene_.t0()));
     (sign_ > 0 ? result_.end : result_.begin) = sign_ > 0 ? std::max(bound, scene_.t0()) : std::min(bound, scene_.t0());
+    result_.status = status;
     result_.ended = why;
     return false;
   }
@@ -128,17 +125,17 @@ class Run {
       }
       const auto value = [&](std::size_t i) { return Interval(state[i], raised(box[i] + lost[i])); };
       if (scene_.want().omega) {
-        for (std::size_t i = 0; i < 3; ++i) result_.omega[3 * sample + i] = value(i) * Interval(variables_.rate());
+        for (std::size_t i = 0; i < 3; ++i) result_.omega[3 * sample + i] = value(i) * Interval(body_.rate());
       }
       if (scene_.want().attitude) {
-        const auto first = static_cast<std::size_t>(variables_.attitude());
+        const auto first = static_cast<std::size_t>(body_.attitude());
         for (std::size_t i = 0; i < 4; ++i) result_.attitude[4 * sample + i] = value(first + i);
       }
     }
   }
 
   const Scene& scene_;
-  const Variables& variables_;
+  const BodyEquations& body_;
   const EncloseOptions& options_;
   const double sign_;
   Enclosure& result_;
@@ -159,9 +156,10 @@ Enclosure enclose(const Scene& scene, const Pieces& pieces, const EncloseOptions
   const std::size_t n = scene.times().size();
   if (scene.want().omega) result.omega.assign(3 * n, Interval::all());
   if (scene.want().attitude) result.attitude.assign(4 * n, Interval::all());
-  const Variables variables(scene);
-  Run(scene, variables, options, 1.0, result).follow(pieces.forward);
-  if (!result.stopped) Run(scene, variables, options, -1.0, result).follow(pieces.backward);
+  const BodyEquations body(scene);
+  Run(scene, body, options, 1.0, result).follow(pieces.forward);
+  if (result.status == Status::finished || result.status == Status::failed)
+    Run(scene, body, options, -1.0, result).follow(pieces.backward);
   return result;
 }
 

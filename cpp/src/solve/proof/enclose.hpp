@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "solve/pieces.hpp"
+#include "solve/proof/body_equations.hpp"
 #include "solve/proof/taylor_step.hpp"
 
 namespace polhode::proof {
@@ -21,8 +22,8 @@ struct EncloseOptions {
 struct Enclosure {
   std::vector<Interval> omega, attitude;
   double begin = 0.0, end = 0.0;   ///< the times between which the motion is enclosed [s]
+  Status status = Status::finished;   ///< failed: the bounds became too wide, which is no failure of the motion
   std::string ended = {};          ///< why it ended early, in words
-  bool stopped = false;            ///< by go_on
   long steps = 0, rejected = 0;
 };
 

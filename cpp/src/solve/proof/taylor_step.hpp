@@ -64,6 +64,9 @@ class TaylorStep {
   double compute_growth() const;
   void compare_by_components(double length, const std::vector<double>& source, std::vector<double>& result) const;
 
+  /// Of a sum of at most 2^8 products of double-doubles, relative to their sizes.
+  static constexpr double fine_rounding = 0x1p-93;
+
   const QuadraticSystem& system_;
   StepSettings settings_;
   int n_, width_, order_, fine_, derivative_order_ = 0, next_derivative_order_;
@@ -76,7 +79,7 @@ class TaylorStep {
   std::vector<double> defect_, rest_, spread_, jacobian_;
   struct SymmetricEntry {
     int i, j;
-    double constant;                        ///< signed where i = j
+    double constant;                        ///< its largest value where i = j, else its size
     std::vector<std::pair<int, double>> factors;   ///< of the sizes of the variables
   };
   std::vector<SymmetricEntry> symmetric_;

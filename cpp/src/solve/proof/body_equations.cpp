@@ -1,0 +1,281 @@
+#include "solve/proof/body_equations.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "polhode/math/detail/number.hpp"
+
+namespace polhode::proof {
+namespace {
+
+using Vector = std::array<Interval, 3>;
+using Matrix = std::array<Vector, 3>;   // by rows
+
+Matrix make_matrix(const Matrix3d& m, double scale) {
+  Matrix result;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      result[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = Interval(m(i, j)) * Interval(scale);
+  return result;
+}
+
+Matrix invert(const Matrix& m) {
+  Matrix inverse;
+  if (m[0][1].is_zero() && m[0][2].is_zero() && m[1][2].is_zero()) {
+    for (std::size_t i = 0; i < 3; ++i) inverse[i][i] = Interval(1.0) / m[i][i];
+    return inverse;
+  }
+  const auto minor = [&](std::size_t i, std::size_t j) {   // of row j and column i, signed
+    const std::size_t a = (j + 1) % 3, b = (j + 2) % 3, c = (i + 1) % 3, d = (i + 2) % 3;
+    return m[a][c] * m[b][d] - m[a][d] * m[b][c];
+  };
+  const Interval determinant = m[0][0] * minor(0, 0) + m[0][1] * minor(1, 0) + m[0][2] * minor(2, 0);
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) inverse[i][j] = minor(i, j) / determinant;
+  return inverse;
+}
+
+/// Calls use(i, j, k, sign) for the six entries of the permutation symbol.
+template <class Use>
+void for_permutations(Use use) {
+  for (int i = 0; i < 3; ++i) {
+    use(i, (i + 1) % 3, (i + 2) % 3, 1.0);
+    use(i, (i + 2) % 3, (i + 1) % 3, -1.0);
+  }
+}
+
+AnyTorque drop_window(const AnyTorque& torque) {
+  const auto* during = std::get_if<torques::During>(&torque);
+  return during == nullptr ? torque : std::visit([](const auto& lasting) { return AnyTorque(lasting); }, during->torque());
+}
+
+bool is_in_space(const torques::Constant& constant) {
+  return constant.frame() == torques::Constant::Frame::space && !constant.traits().vanishes;
+}
+
+/// A power of two that divides every component of a vector without rounding, near the largest where there is one.
+double find_unit(const Vector3d& v) {
+  const double size = math::power_of_two_below(v.cwiseAbs().maxCoeff());
+  const Vector3d scaled = v / size, back = scaled * size;
+  return std::isfinite(size) && size > 0.0 && back == v ? size : 1.0;
+}
+
+/// A power of two near x, between 2^-1000 and 2^1000.
+double nearest_power(double x) { return std::ldexp(1.0, std::clamp(std::ilogb(x), -1000, 1000)); }
+
+/// R_WB^T v_W of a unit quaternion.
+Vector to_body(const std::array<Interval, 4>& q, const Vector& v) {
+  const Interval two(2.0), one(1.0);
+  const auto& [x, y, z, w] = q;
+  const Matrix R{{{one - two * (sqr(y) + sqr(z)), two * (x * y - w * z), two * (x * z + w * y)},
+                  {two * (x * y + w * z), one - two * (sqr(x) + sqr(z)), two * (y * z - w * x)},
+                  {two * (x * z - w * y), two * (y * z + w * x), one - two * (sqr(x) + sqr(y))}}};
+  Vector seen;
+  for (std::size_t i = 0; i < 3; ++i) seen[i] = R[0][i] * v[0] + R[1][i] * v[1] + R[2][i] * v[2];
+  return seen;
+}
+
+}  // namespace
+
+bool has_custom(const Scene& scene) {
+  return std::any_of(scene.torques().begin(), scene.torques().end(), [](const AnyTorque& torque) {
+    return std::holds_alternative<torques::Custom>(drop_window(torque));
+  });
+}
+
+BodyEquations::BodyEquations(const Scene& scene) : scene_(scene), has_attitude_(scene.want().attitude) {
+  for (const AnyTorque& torque : scene.torques()) torques_.push_back(drop_window(torque));
+  choose_vectors();
+  choose_rate();
+  attitude_ = orbit_index(orbits_.size());
+}
+
+void BodyEquations::choose_vectors() {
+  const auto add = [](auto& list, const auto& item) {
+    if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
+  };
+  for (const AnyTorque& torque : torques_) {
+    if (const auto* gravity = std::get_if<torques::Gravity>(&torque)) {
+      if (gravity->weight() != 0.0 && !gravity->arm().isZero(0.0)) add(fixed_, Vector3d::UnitZ().eval());
+    } else if (const auto* constant = std::get_if<torques::Constant>(&torque)) {
+      if (is_in_space(*constant)) add(fixed_, Vector3d(constant->torque() / find_unit(constant->torque())));
+    } else if (const auto* gradient = std::get_if<torques::GravityGradient>(&torque)) {
+      if (gradient->mean_motion() != 0.0) add(orbits_, Orbit{gradient->mean_motion(), gradient->phase()});
+    }
+  }
+  if (fixed_.size() > 2) fixed_ = {Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ()};
+}
+
+void BodyEquations::choose_rate() {
+  double fastest = scene_.omega().norm();
+  const double least = scene_.inertia_B().moments().minCoeff();
+  const auto take = [&](double torque) { fastest = std::max(fastest, std::sqrt(torque / least)); };
+  for (const AnyTorque& torque : torques_) {
+    if (const auto* constant = std::get_if<torques::Constant>(&torque)) take(constant->torque().norm());
+    if (const auto* gravity = std::get_if<torques::Gravity>(&torque)) take(gravity->moment().norm());
+    if (const auto* gradient = std::get_if<torques::GravityGradient>(&torque))
+      fastest = std::max(fastest, std::abs(gradient->mean_motion()));
+  }
+  if (fastest > 0.0 && std::isfinite(fastest)) rate_ = nearest_power(fastest);
+}
+
+std::vector<Interval> BodyEquations::start() const {
+  std::vector<Interval> y(static_cast<std::size_t>(size()));
+  const Interval to_units = Interval(1.0) / Interval(rate_);
+  for (std::size_t i = 0; i < 3; ++i) y[i] = Interval(scene_.omega()[static_cast<int>(i)]) * to_units;
+  const Quat& given = scene_.attitude();
+  std::array<Interval, 4> q{Interval(given.x), Interval(given.y), Interval(given.z), Interval(given.w)};
+  const Interval length = sqrt(sqr(q[0]) + sqr(q[1]) + sqr(q[2]) + sqr(q[3]));
+  for (Interval& component : q) component = component / length;
+
+  std::size_t at = 3;
+  const auto add = [&](const Vector& v_W) {
+    for (const Interval& component : to_body(q, v_W)) y[at++] = component;
+  };
+  for (const Vector3d& v : fixed_) add({Interval(v[0]), Interval(v[1]), Interval(v[2])});
+  for (const Orbit& orbit : orbits_) {
+    const auto [sine, cosine] = sincos(Interval(orbit.mean_motion) * Interval(scene_.t0()) + Interval(orbit.phase));
+    add({cosine, sine, Interval()});
+    add({-sine, cosine, Interval()});
+  }
+  if (has_attitude_) std::copy(q.begin(), q.end(), y.begin() + static_cast<std::ptrdiff_t>(at));
+  return y;
+}
+
+/// Adds the terms of a body, torque by torque. A new torque needs its overload of add(); the compiler asks for it.
+class BodyEquations::Maker {
+ public:
+  explicit Maker(const BodyEquations& body)
+      : body_(body), system_(body.size()), per_rate_(Interval(1.0) / Interval(body.rate_)),
+        part_(1.0 / nearest_power(body.scene_.inertia_B().matrix().cwiseAbs().maxCoeff())),
+        I_(make_matrix(body.scene_.inertia_B().matrix(), part_)), inverse_(invert(I_)),
+        torque_unit_(Interval(part_) * per_rate_ * per_rate_) {}
+
+  QuadraticSystem make(const std::vector<AnyTorque>& torques) {
+    add_gyroscopic(0, Interval(-1.0));
+    for (const AnyTorque& torque : torques) std::visit([this](const auto& acting) { add(acting); }, torque);
+    for (std::size_t i = 0; i < body_.fixed_.size(); ++i) add_turning(body_.fixed_index(i));
+    for (std::size_t i = 0; i < body_.orbits_.size(); ++i) add_orbit(i);
+    if (body_.has_attitude_) add_attitude();
+    return std::move(system_);
+  }
+
+ private:
+  /// Calls use(row, factor) with what a torque about one axis gives to each component of w'.
+  template <class Use>
+  void accelerate(int axis, const Interval& torque, Use use) {
+    for (int i = 0; i < 3; ++i) use(i, inverse_[static_cast<std::size_t>(i)][static_cast<std::size_t>(axis)] * torque);
+  }
+  void accelerate_by(int axis, const Interval& torque, int variable) {
+    accelerate(axis, torque, [&](int row, const Interval& factor) { system_.add_variable(row, variable, factor); });
+  }
+
+  /// I^-1 (strength v x I v) for the variables v from `first`; w' of a free body with v = w and strength -1.
+  void add_gyroscopic(int first, const Interval& strength) {
+    std::array<Matrix, 3> cross = {};   // of the products v_j v_l, j <= l, collected before they are multiplied
+    for_permutations([&](int i, int j, int k, double s) {
+      for (int l = 0; l < 3; ++l) {
+        auto& sum = cross[static_cast<std::size_t>(i)][static_cast<std::size_t>(std::min(j, l))]
+                         [static_cast<std::size_t>(std::max(j, l))];
+        sum = sum + Interval(s) * I_[static_cast<std::size_t>(k)][static_cast<std::size_t>(l)];
+      }
+    });
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        for (int l = j; l < 3; ++l) {
+          const Interval& sum =
+              cross[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)][static_cast<std::size_t>(l)];
+          accelerate(i, strength * sum, [&](int row, const Interval& factor) {
+            system_.add_product(row, first + j, first + l, factor);
+          });
+        }
+  }
+
+  void add(const torques::Constant& constant) {
+    const Vector3d& tau = constant.torque();
+    const std::vector<Vector3d>& fixed = body_.fixed_;
+    if (!is_in_space(constant)) {
+      for (int axis = 0; axis < 3; ++axis)
+        accelerate(axis, Interval(tau[axis]) * torque_unit_,
+                   [&](int row, const Interval& factor) { system_.add_constant(row, factor); });
+      return;
+    }
+    const double size = find_unit(tau);
+    const auto direction = std::find(fixed.begin(), fixed.end(), Vector3d(tau / size));
+    for (int axis = 0; axis < 3; ++axis) {
+      if (direction != fixed.end()) {
+        accelerate_by(axis, Interval(size) * torque_unit_,
+                      body_.fixed_index(static_cast<std::size_t>(direction - fixed.begin())) + axis);
+      } else {   // by its parts along the three axes of space
+        for (int k = 0; k < 3; ++k)
+          accelerate_by(axis, Interval(tau[k]) * torque_unit_, body_.fixed_index(static_cast<std::size_t>(k)) + axis);
+      }
+    }
+  }
+
+  void add(const torques::Gravity& gravity) {
+    const auto vertical = std::find(body_.fixed_.begin(), body_.fixed_.end(), Vector3d::UnitZ().eval());
+    if (vertical == body_.fixed_.end()) return;   // it has no moment
+    const int first = body_.fixed_index(static_cast<std::size_t>(vertical - body_.fixed_.begin()));
+    for_permutations([&](int i, int j, int k, double s) {   // m g e_z x r
+      accelerate_by(i, Interval(-s) * Interval(gravity.weight()) * Interval(gravity.arm()[j]) * torque_unit_, first + k);
+    });
+  }
+
+  void add(const torques::Damping& damping) {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        accelerate_by(i, -Interval(damping.matrix()(i, j)) * Interval(part_) * per_rate_, j);
+  }
+
+  void add(const torques::GravityGradient& gradient) {
+    const std::vector<Orbit>& orbits = body_.orbits_;
+    const auto orbit = std::find(orbits.begin(), orbits.end(), Orbit{gradient.mean_motion(), gradient.phase()});
+    if (orbit == orbits.end()) return;   // its mean motion is 0
+    const Interval n = Interval(gradient.mean_motion()) * per_rate_;
+    add_gyroscopic(body_.orbit_index(static_cast<std::size_t>(orbit - orbits.begin())), Interval(3.0) * n * n);
+  }
+
+  void add(const torques::Custom&) {}    // has_custom() tells of it
+  void add(const torques::During&) {}    // pieces have no windows
+
+  /// v' = v x w of a vector fixed in space, as seen from the body
+  void add_turning(int first) {
+    for_permutations([&](int i, int j, int k, double s) { system_.add_product(first + i, first + j, k, Interval(s)); });
+  }
+
+  void add_orbit(std::size_t orbit) {
+    const int radial = body_.orbit_index(orbit), tangential = radial + 3;
+    const Interval n = Interval(body_.orbits_[orbit].mean_motion) * per_rate_;
+    add_turning(radial), add_turning(tangential);
+    for (int i = 0; i < 3; ++i) {
+      system_.add_variable(radial + i, tangential + i, n);
+      system_.add_variable(tangential + i, radial + i, -n);
+    }
+  }
+
+  void add_attitude() {   // q' = q (w, 0) / 2
+    const int q = body_.attitude_;
+    for_permutations([&](int i, int j, int k, double s) { system_.add_product(q + i, q + j, k, Interval(0.5 * s)); });
+    for (int i = 0; i < 3; ++i) {
+      system_.add_product(q + i, q + 3, i, Interval(0.5));
+      system_.add_product(q + 3, q + i, i, Interval(-0.5));
+    }
+  }
+
+  const BodyEquations& body_;
+  QuadraticSystem system_;
+  const Interval per_rate_;
+  const double part_;    // I and every torque are divided by a power of two near I: no product of three overflows
+  const Matrix I_, inverse_;
+  const Interval torque_unit_;
+};
+
+QuadraticSystem BodyEquations::make_system(const std::vector<AnyTorque>& torques, double sign) const {
+  QuadraticSystem system = Maker(*this).make(torques);
+  if (sign < 0.0) system.reverse();
+  return system;
+}
+
+}  // namespace polhode::proof

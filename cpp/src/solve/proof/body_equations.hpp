@@ -1,0 +1,52 @@
+#pragma once
+
+#include <vector>
+
+#include "polhode/scene/scene.hpp"
+#include "solve/proof/quadratic_system.hpp"
+
+// A body's motion as a quadratic system. Time runs in units of 1 / rate().
+namespace polhode::proof {
+
+/// Whether a torque is a function of the user's own, of which nothing can be proved.
+bool has_custom(const Scene& scene);
+
+/// The variables of a scene: w_B / rate, vectors fixed in space and the radial and tangential vectors of orbits as seen
+/// from the body, and the quaternion where it is wanted. They are the same in every piece of the span.
+class BodyEquations {
+ public:
+  /// @param scene  one without has_custom()
+  explicit BodyEquations(const Scene& scene);
+
+  int size() const { return attitude_ + (has_attitude_ ? 4 : 0); }
+  int attitude() const { return attitude_; }           ///< index of the quaternion's first component
+  double rate() const { return rate_; }                ///< a power of two [rad/s]
+
+  /// The exact start. The attitude is normalised as real numbers are.
+  std::vector<Interval> start() const;
+
+  /// The equations under these torques, none of them with windows; `sign` is -1 backwards in time.
+  QuadraticSystem make_system(const std::vector<AnyTorque>& torques, double sign) const;
+
+ private:
+  struct Orbit {
+    double mean_motion, phase;
+    friend bool operator==(const Orbit&, const Orbit&) = default;
+  };
+  class Maker;
+
+  void choose_vectors();
+  void choose_rate();
+  int fixed_index(std::size_t vector) const { return 3 + 3 * static_cast<int>(vector); }
+  int orbit_index(std::size_t orbit) const { return fixed_index(fixed_.size() + 2 * orbit); }
+
+  Scene scene_;
+  std::vector<AnyTorque> torques_ = {};    ///< without their windows
+  std::vector<Vector3d> fixed_ = {};       ///< vectors in space
+  std::vector<Orbit> orbits_ = {};
+  double rate_ = 1.0;
+  int attitude_ = 3;
+  bool has_attitude_ = false;
+};
+
+}  // namespace polhode::proof
