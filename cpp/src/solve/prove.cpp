@@ -51,8 +51,7 @@ class Proof {
   void enclose(const proof::StepSettings& step, bool is_last) {
     using Clock = std::chrono::steady_clock;
     Clock::time_point last_call = Clock::now();
-    double last = scene_.t0();
-    for (const double t : scene_.times()) last = std::abs(t - scene_.t0()) > std::abs(last - scene_.t0()) ? t : last;
+    const double last = find_last();
     proof::EncloseOptions enclose_options;
     enclose_options.step = step;
     enclose_options.max_steps = options_.max_steps;
@@ -69,6 +68,13 @@ class Proof {
     motion_.stats.steps += enclosure_.steps;
     motion_.stats.rejected += enclosure_.rejected;
     measure();
+  }
+
+  /// The time farthest from the start.
+  double find_last() const {
+    double last = scene_.t0();
+    for (const double t : scene_.times()) last = std::abs(t - scene_.t0()) > std::abs(last - scene_.t0()) ? t : last;
+    return last;
   }
 
   std::size_t count() const { return scene_.times().size(); }
@@ -89,8 +95,8 @@ class Proof {
       const Interval* w = &enclosure_.omega[3 * i];
       if (is_enclosed(i)) scale = std::max(scale, math::hypot(w[0].middle.hi, w[1].middle.hi, w[2].middle.hi));
     }
-    // A body at rest: what is left of a bound there is its guard against underflow.
-    scale = std::max(scale * (1.0 - 0x1p-48), 0x1p-800);
+    // A body at rest has no rate to compare with: a radian over the span stands for it.
+    scale = scale > 0.0 ? scale * (1.0 - 0x1p-48) : 1.0 / std::max(std::abs(find_last() - scene_.t0()), 1.0);
     errors_.assign(count(), unbounded);
     error_ = 0.0;
     for (std::size_t i = 0; i < count(); ++i) {
@@ -100,12 +106,10 @@ class Proof {
   }
 
   static double measure(const std::vector<Interval>& rows, std::size_t first, std::size_t width) {
-    double square = 0.0;
-    for (std::size_t k = first; k < first + width; ++k) {
-      const double distance = find_distance(rows[k].middle.hi, rows[k].lower(), rows[k].upper());
-      square += distance * distance;
-    }
-    return Interval::raise(std::sqrt(square)) + 0x1p-500;   // squares may underflow
+    double length = 0.0;
+    for (std::size_t k = first; k < first + width; ++k)
+      length = math::hypot(length, find_distance(rows[k].middle.hi, rows[k].lower(), rows[k].upper()));
+    return Interval::raise(length);
   }
   double measure_rates(std::size_t i) const {
     return enclosure_.omega.empty() ? 0.0 : measure(enclosure_.omega, 3 * i, 3);

@@ -1,0 +1,150 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "polhode/solve/reference.hpp"
+#include "solve/proof/enclose.hpp"
+#include "solve/proof/error_set.hpp"
+
+using namespace polhode;
+using namespace polhode::proof;
+
+namespace {
+
+/// Numbers between -1 and 1, the same on every machine.
+class Dice {
+ public:
+  double roll() {
+    state_ = state_ * 6364136223846793005u + 1442695040888963407u;
+    return static_cast<double>(static_cast<std::int64_t>(state_)) * 0x1p-63;
+  }
+
+ private:
+  std::uint64_t state_ = 1;
+};
+
+Scene make_heavy_body() {
+  std::vector<double> times;
+  for (int i = 1; i <= 20; ++i) times.push_back(0.5 * i);
+  return Scene({.inertia_B = InertiaTensor::from_moments({1.0, 2.0, 2.5}),
+                .omega = {0.3, 0.2, 3.0},
+                .torques = {torques::Gravity(2.0, {0.3, 0.2, 0.5})},
+                .times = times});
+}
+
+/// How many numbers of the series in long double lie outside of the enclosure. Its own rounding is below 1e-16.
+int count_outside(const Scene& scene, const EncloseOptions& options, double& widest) {
+  const Reference truth = compute_reference(scene, {});
+  const Enclosure found = enclose(scene, cut(scene), options);
+  int outside = 0;
+  widest = 0.0;
+  const auto compare = [&](const std::vector<Interval>& sets, const std::vector<double>& values) {
+    for (std::size_t i = 0; i < sets.size(); ++i) {
+      outside += values[i] < sets[i].lower() - 1e-15 || values[i] > sets[i].upper() + 1e-15;
+      widest = std::max(widest, sets[i].radius);
+    }
+  };
+  compare(found.omega, truth.omega);
+  compare(found.attitude, truth.attitude);
+  return outside;
+}
+
+/// A rotation by an angle in the plane of two axes.
+std::vector<double> make_rotation(int n, int a, int b, double angle) {
+  std::vector<double> M(static_cast<std::size_t>(n * n), 0.0);
+  for (int i = 0; i < n; ++i) M[static_cast<std::size_t>(i * n + i)] = 1.0;
+  const double c = std::sqrt(1.0 - angle * angle);
+  M[static_cast<std::size_t>(a * n + a)] = M[static_cast<std::size_t>(b * n + b)] = c;
+  M[static_cast<std::size_t>(a * n + b)] = -angle, M[static_cast<std::size_t>(b * n + a)] = angle;
+  return M;
+}
+
+}  // namespace
+
+TEST_CASE("enclosures hold the series in long double, and a wrong remainder is caught") {
+  const Scene scene = make_heavy_body();
+  EncloseOptions options;
+  double widest = 0.0;
+  for (const double tolerance : {1e-6, 1e-9, 1e-12, 1e-20}) {
+    options.step = {.tolerance = tolerance};
+    CHECK(count_outside(scene, options, widest) == 0);
+    CHECK(widest < 1e7 * tolerance + 1e-15);
+  }
+  // Without what the series leave out, or with a thousandth of it, the sets miss the motion.
+  for (const double factor : {0.0, 1e-3}) {
+    options.step = {.tolerance = 1e-6, .remainder_factor = factor};
+    CHECK(count_outside(scene, options, widest) > 10);
+  }
+}
+
+TEST_CASE("a wrong torque is caught") {
+  const Scene scene = make_heavy_body();
+  SceneParts parts = scene.parts();
+  parts.torques = {torques::Gravity(2.0 * (1 + 1e-12), {0.3, 0.2, 0.5})};
+  const Reference truth = compute_reference(scene, {});
+  const Scene other(parts);
+  const Enclosure found = enclose(other, cut(other), {});
+  CHECK_FALSE(found.omega.back().contains(truth.omega.back()));
+}
+
+TEST_CASE("an enclosure that becomes too wide says where it ends") {
+  SceneParts parts = make_heavy_body().parts();
+  parts.omega = {0.3, 0.2, 2.0};   // chaotic
+  parts.times = {1.0, 300.0};
+  const Scene scene(parts);
+  EncloseOptions options;
+  options.step = {.tolerance = 1e-12};
+  const Enclosure found = enclose(scene, cut(scene), options);
+  CHECK(found.status == Status::failed);
+  CHECK((10.0 < found.end && found.end < 300.0));
+  CHECK(found.omega.front().is_bounded());
+  CHECK_FALSE(found.omega.back().is_bounded());
+  options.max_steps = 3;
+  CHECK(enclose(scene, cut(scene), options).status == Status::max_steps);
+}
+
+TEST_CASE("sets of errors hold every point that is carried with them") {
+  constexpr int n = 5;
+  Dice dice;
+  for (const double stretch : {0.0, 0.3}) {   // turning and shearing; stretching by far more than the sets may be skew
+    ErrorSet set(std::vector<double>(n, 1e-9));
+    std::vector<std::vector<long double>> points(40, std::vector<long double>(n));
+    for (auto& point : points)
+      for (long double& x : point) x = 1e-9L * static_cast<long double>(dice.roll());
+    for (int step = 0; step < 400; ++step) {
+      std::vector<double> M = make_rotation(n, step % n, (step + 2) % n, 0.6 * dice.roll());
+      for (int j = 0; j < n; ++j) M[static_cast<std::size_t>(j)] *= 1.0 + stretch * (step % 100 < 50 ? 1 : -0.5);
+      M[3] += 0.5 * dice.roll();
+      const std::vector<double> rest(n, 1e-12);
+      for (auto& point : points) {
+        std::vector<long double> moved(n);
+        for (int i = 0; i < n; ++i) {
+          moved[static_cast<std::size_t>(i)] = 1e-12L * (dice.roll() > 0 ? 1 : -1);
+          for (int j = 0; j < n; ++j)
+            moved[static_cast<std::size_t>(i)] +=
+                static_cast<long double>(M[static_cast<std::size_t>(i * n + j)]) * point[static_cast<std::size_t>(j)];
+        }
+        point = moved;
+      }
+      set.advance(M, n, rest);
+      const std::vector<double> box = set.box();
+      int outside = 0;
+      for (const auto& point : points)
+        for (int i = 0; i < n; ++i)
+          outside += std::abs(static_cast<double>(point[static_cast<std::size_t>(i)])) > box[static_cast<std::size_t>(i)];
+      REQUIRE(outside == 0);
+    }
+  }
+}
+
+TEST_CASE("a turning set does not grow by being boxed") {
+  constexpr int n = 4;
+  Dice dice;
+  ErrorSet set(std::vector<double>(n, 1e-9));
+  for (int step = 0; step < 10'000; ++step)
+    set.advance(make_rotation(n, step % n, (step + 1) % n, 0.6 * dice.roll()), n, std::vector<double>(n, 1e-16));
+  // Steps add up to 1e-12 along each axis, and turned corners reach 2 = sqrt(n) times as far.
+  for (const double size : set.box()) CHECK(size < 2.01e-9 + 4e-12);
+}
