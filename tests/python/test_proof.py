@@ -135,7 +135,8 @@ def test_units_do_not_matter():
         gravity = torques.Gravity(2.0 * scale**2, [0.3, 0.2, 0.5])
         fast = scene.replace(omega=scene.omega * scale, times=[4.0 / scale], torques=[gravity])
         np.testing.assert_array_equal(ph.solve(fast, certify="proof").attitude, usual.attitude)
-        heavy = scene.replace(inertia=scene.inertia.matrix * scale, torques=[torques.Gravity(2.0 * scale, [0.3, 0.2, 0.5])])
+        weight = torques.Gravity(2.0 * scale, [0.3, 0.2, 0.5])
+        heavy = scene.replace(inertia=scene.inertia.matrix * scale, torques=[weight])
         np.testing.assert_array_equal(ph.solve(heavy, certify="proof").attitude_upper, usual.attitude_upper)
 
 
@@ -155,7 +156,7 @@ def test_start_alone():
 
 
 @pytest.mark.parametrize("options, why", [
-    ({"method": "taylor"}, "one method"), ({"rtol": 1e-9}, "made for an accuracy"), ({"step": 0.1}, "made for an accuracy"),
+    ({"method": "taylor"}, "one method"), ({"rtol": 1e-9}, "for an accuracy"), ({"step": 0.1}, "for an accuracy"),
     ({"dense": True}, "scene's times"), ({"events": [lambda t, w, q: t - 1]}, "no known bounds"),
     ({"formulation": "lagrangian"}, "Euler's equations"), ({"method": "exact"}, "one method")])
 def test_options_without_a_proof_are_refused(options, why):

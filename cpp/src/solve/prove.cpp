@@ -34,7 +34,8 @@ class Proof {
   Motion prove() {
     // First with steps that suffice for most motions, then with the finest that double-doubles carry.
     const proof::StepSettings settings[] = {
-        {.tolerance = std::clamp(1e-10 * accuracy_, 1e-24, 1e-14)}, {.tolerance = 1e-26, .derivative_tolerance = 1e-14}};
+        {.tolerance = std::clamp(1e-10 * accuracy_, 1e-24, 1e-14)},
+        {.tolerance = 1e-26, .derivative_tolerance = 1e-14}};
     for (const proof::StepSettings& step : settings) {
       enclose(step, &step == &settings[1]);
       ++motion_.runs;
@@ -195,8 +196,9 @@ class Proof {
     }
     if (error_ <= accuracy_)
       return "proved: the exact motion of these float64 inputs lies between the lower and the upper bounds";
-    std::string text = "the accuracy of " + to_text(accuracy_) + " is proved from t = " + to_text(motion_.proved_begin) +
-                       " to " + to_text(motion_.proved_end) + " s; beyond, bounds are wider";
+    std::string text = "the accuracy of " + to_text(accuracy_) + " is proved from t = " +
+                       to_text(motion_.proved_begin) + " to " + to_text(motion_.proved_end) +
+                       " s; beyond, bounds are wider";
     if (!plain_.t.empty()) {
       text += " or infinite, because " + enclosure_.ended + ". Samples without bounds are those of a run by " +
               plain_.plan.method + " (" + plain_.error_kind + " error " + to_text(plain_.error) + ")";

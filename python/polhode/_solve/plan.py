@@ -279,8 +279,8 @@ def _lines(plan: Plan) -> list[str]:
     return lines
 
 
-def plan(scene: Scene, accuracy: float | None = None, *, method: str | None = None, certify: bool | Literal["proof"] = True,
-         formulation: str = "euler") -> Plan:
+def plan(scene: Scene, accuracy: float | None = None, *, method: str | None = None,
+         certify: bool | Literal["proof"] = True, formulation: str = "euler") -> Plan:
     """Choose the simplest model and the cheapest method for a scene, without running them.
 
     Parameters

@@ -90,6 +90,7 @@ def run(
     atol: Annotated[float | None, typer.Option(help="Absolute tolerance of a step.")] = None,
     step: Annotated[float | None, typer.Option(help="Step of a fixed-step method [s].")] = None,
     max_steps: Annotated[int, typer.Option(help="Stop after this number of steps.")] = 10_000_000,
+    proof: Annotated[bool, typer.Option("--proof", help="Prove bounds of the exact motion.")] = False,
     output: Annotated[
         pathlib.Path | None, typer.Option("-o", "--output", help="Write all samples: .csv, .npz or .json.")] = None,
     picture: Annotated[
@@ -108,7 +109,7 @@ def run(
         files.check(picture, (".png", ".svg", ".pdf"), "plot")
     with show.Bar("solving") as bar:
         motion = solve(Scene.load(scene), accuracy, method=method, rtol=rtol, atol=atol, step=step, max_steps=max_steps,
-                       progress=bar.fraction)
+                       certify="proof" if proof else True, progress=bar.fraction)
     if output is not None:   # before all that may fail at a closed or full stdout
         files.write(output, motion)
     if picture is not None:
@@ -129,13 +130,15 @@ def plan(
     accuracy: Annotated[float | None, typer.Option(help="Largest error of any sample; 1e-9 if left out.")] = None,
     method: Annotated[str | None, typer.Option(help="Method to use: exact, or one of `polhode methods`.")] = None,
     certify: Annotated[bool, typer.Option(help="Bound the error with a certificate.")] = True,
+    proof: Annotated[bool, typer.Option("--proof", help="Prove bounds of the exact motion.")] = False,
     as_json: Json = False,
 ) -> int:
     """Show how scenes would be solved, and why.
 
     Prints the properties of each scene, each closed form and method with its expected error and time, and the choice.
     """
-    made = [make_plan(Scene.load(scene), accuracy, method=method, certify=certify) for scene in scenes]
+    made = [make_plan(Scene.load(scene), accuracy, method=method, certify="proof" if proof else certify)
+            for scene in scenes]
     if as_json:
         _print_json([chosen.as_dict() for chosen in made])
     else:

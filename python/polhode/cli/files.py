@@ -16,6 +16,9 @@ from .._solve.motion import Motion
 
 COLUMNS = {"t": ("t",), "omega": ("omega_x", "omega_y", "omega_z"),
            "attitude": ("attitude_x", "attitude_y", "attitude_z", "attitude_w")}
+BOUNDS = ("lower", "upper")   # of a proof
+COLUMNS |= {f"{name}_{side}": tuple(f"{column}_{side}" for column in COLUMNS[name])
+            for name in ("omega", "attitude") for side in BOUNDS}
 
 
 def check(path: pathlib.Path, endings: tuple[str, ...] = (".csv", ".npz", ".json"), option: str = "output") -> None:
@@ -27,7 +30,7 @@ def check(path: pathlib.Path, endings: tuple[str, ...] = (".csv", ".npz", ".json
 
 
 def _arrays(motion: Motion) -> dict[str, Any]:
-    arrays = {"t": motion.t, "omega": motion.omega, "attitude": motion.attitude}
+    arrays = {name: getattr(motion, name) for name in COLUMNS}
     return {name: array for name, array in arrays.items() if array is not None}
 
 
@@ -39,8 +42,14 @@ def to_json(motion: Motion) -> dict[str, Any]:
         "success": motion.success, "status": motion.status, "message": motion.message,
         "error": motion.error if math.isfinite(motion.error) else None, "error_kind": motion.error_kind,
         "drift": motion.drift, "stats": motion.stats,
-        **{name: array.tolist() for name, array in _arrays(motion).items()},
+        **({} if motion.proved_span is None else {"proved_span": list(motion.proved_span)}),
+        **{name: _finite(array) for name, array in _arrays(motion).items()},
     }
+
+
+def _finite(array: Any) -> Any:
+    """Return an array as lists; bounds beyond the reach of a proof are null."""
+    return np.where(np.isfinite(array), array, None).tolist() if not np.isfinite(array).all() else array.tolist()
 
 
 def write(path: pathlib.Path, motion: Motion) -> None:

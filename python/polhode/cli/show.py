@@ -138,6 +138,12 @@ def motion(result: Motion) -> None:
     counts = ", ".join(f"{value:,} {name.removesuffix('s') if value == 1 else name}"
                        for name, value in result.stats.items() if isinstance(value, int) and value)
     out.print(Text(f"drift   {drift or 'no invariant is known here'}"))
+    if result.proved_span is not None:
+        begin, end = result.proved_span
+        widths = [f"{name} {float((upper - lower).max()):.1e}" for name, lower, upper in (
+            ("omega", result.omega_lower, result.omega_upper),
+            ("attitude", result.attitude_lower, result.attitude_upper)) if lower is not None and upper is not None]
+        out.print(Text(f"proof   from {begin:g} to {end:g} s; widest bounds: {', '.join(widths)}"))
     out.print(Text(f"cost    {counts}; {1e3 * result.stats['seconds']:.3g} ms"))
     out.print(Text(f"result  {'' if result.success else 'FINDING: '}{result.message}"))
 

@@ -18,8 +18,8 @@ std::vector<double> orthonormalize(const std::vector<double>& G, std::size_t n, 
 /// At least the largest row sum of |E - A B|; both are (n, n).
 double measure_defect(const std::vector<double>& A, const std::vector<double>& B, std::size_t n);
 
-/// How much wider the coordinates B^-1 b may be than |A| |b|, as a part of their largest, where |E - A B| has this size:
-/// B^-1 = (E - D)^-1 A with D = E - A B.
+/// How much wider the coordinates B^-1 b may be than |A| |b|, as a part of their largest, where |E - A B| has this
+/// size: B^-1 = (E - D)^-1 A with D = E - A B.
 inline double widening(double defect) { return raised(defect / (1.0 - defect)); }
 
 }  // namespace polhode::proof

@@ -16,7 +16,7 @@ Matrix make_matrix(const Matrix3d& m, double scale) {
   Matrix result;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
-      result[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = Interval(m(i, j)) * Interval(scale);
+      result[to_index(i)][to_index(j)] = Interval(m(i, j)) * Interval(scale);
   return result;
 }
 
@@ -47,7 +47,8 @@ void for_permutations(Use use) {
 
 AnyTorque drop_window(const AnyTorque& torque) {
   const auto* during = std::get_if<torques::During>(&torque);
-  return during == nullptr ? torque : std::visit([](const auto& lasting) { return AnyTorque(lasting); }, during->torque());
+  if (during == nullptr) return torque;
+  return std::visit([](const auto& lasting) { return AnyTorque(lasting); }, during->torque());
 }
 
 bool is_in_space(const torques::Constant& constant) {
@@ -121,7 +122,7 @@ void BodyEquations::choose_rate() {
 }
 
 std::vector<Interval> BodyEquations::start() const {
-  std::vector<Interval> y(static_cast<std::size_t>(size()));
+  std::vector<Interval> y(to_index(size()));
   const Interval to_units = Interval(1.0) / Interval(rate_);
   for (std::size_t i = 0; i < 3; ++i) y[i] = Interval(scene_.omega()[static_cast<int>(i)]) * to_units;
   const Quat& given = scene_.attitude();
@@ -165,7 +166,7 @@ class BodyEquations::Maker {
   /// Calls use(row, factor) with what a torque about one axis gives to each component of w'.
   template <class Use>
   void accelerate(int axis, const Interval& torque, Use use) {
-    for (int i = 0; i < 3; ++i) use(i, inverse_[static_cast<std::size_t>(i)][static_cast<std::size_t>(axis)] * torque);
+    for (int i = 0; i < 3; ++i) use(i, inverse_[to_index(i)][to_index(axis)] * torque);
   }
   void accelerate_by(int axis, const Interval& torque, int variable) {
     accelerate(axis, torque, [&](int row, const Interval& factor) { system_.add_variable(row, variable, factor); });
@@ -176,16 +177,16 @@ class BodyEquations::Maker {
     std::array<Matrix, 3> cross = {};   // of the products v_j v_l, j <= l, collected before they are multiplied
     for_permutations([&](int i, int j, int k, double s) {
       for (int l = 0; l < 3; ++l) {
-        auto& sum = cross[static_cast<std::size_t>(i)][static_cast<std::size_t>(std::min(j, l))]
-                         [static_cast<std::size_t>(std::max(j, l))];
-        sum = sum + Interval(s) * I_[static_cast<std::size_t>(k)][static_cast<std::size_t>(l)];
+        auto& sum = cross[to_index(i)][to_index(std::min(j, l))]
+                         [to_index(std::max(j, l))];
+        sum = sum + Interval(s) * I_[to_index(k)][to_index(l)];
       }
     });
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
         for (int l = j; l < 3; ++l) {
           const Interval& sum =
-              cross[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)][static_cast<std::size_t>(l)];
+              cross[to_index(i)][to_index(j)][to_index(l)];
           accelerate(i, strength * sum, [&](int row, const Interval& factor) {
             system_.add_product(row, first + j, first + l, factor);
           });
@@ -206,10 +207,10 @@ class BodyEquations::Maker {
     for (int axis = 0; axis < 3; ++axis) {
       if (direction != fixed.end()) {
         accelerate_by(axis, Interval(size) * torque_unit_,
-                      body_.fixed_index(static_cast<std::size_t>(direction - fixed.begin())) + axis);
+                      body_.fixed_index(to_index(direction - fixed.begin())) + axis);
       } else {   // by its parts along the three axes of space
         for (int k = 0; k < 3; ++k)
-          accelerate_by(axis, Interval(tau[k]) * torque_unit_, body_.fixed_index(static_cast<std::size_t>(k)) + axis);
+          accelerate_by(axis, Interval(tau[k]) * torque_unit_, body_.fixed_index(to_index(k)) + axis);
       }
     }
   }
@@ -217,9 +218,10 @@ class BodyEquations::Maker {
   void add(const torques::Gravity& gravity) {
     const auto vertical = std::find(body_.fixed_.begin(), body_.fixed_.end(), Vector3d::UnitZ().eval());
     if (vertical == body_.fixed_.end()) return;   // it has no moment
-    const int first = body_.fixed_index(static_cast<std::size_t>(vertical - body_.fixed_.begin()));
+    const int first = body_.fixed_index(to_index(vertical - body_.fixed_.begin()));
     for_permutations([&](int i, int j, int k, double s) {   // m g e_z x r
-      accelerate_by(i, Interval(-s) * Interval(gravity.weight()) * Interval(gravity.arm()[j]) * torque_unit_, first + k);
+      const Interval moment = Interval(-s) * Interval(gravity.weight()) * Interval(gravity.arm()[j]);
+      accelerate_by(i, moment * torque_unit_, first + k);
     });
   }
 
@@ -234,7 +236,7 @@ class BodyEquations::Maker {
     const auto orbit = std::find(orbits.begin(), orbits.end(), Orbit{gradient.mean_motion(), gradient.phase()});
     if (orbit == orbits.end()) return;   // its mean motion is 0
     const Interval n = Interval(gradient.mean_motion()) * per_rate_;
-    add_gyroscopic(body_.orbit_index(static_cast<std::size_t>(orbit - orbits.begin())), Interval(3.0) * n * n);
+    add_gyroscopic(body_.orbit_index(to_index(orbit - orbits.begin())), Interval(3.0) * n * n);
   }
 
   void add(const torques::Custom&) {}    // has_custom() tells of it

@@ -13,7 +13,7 @@ class Run {
  public:
   Run(const Scene& scene, const BodyEquations& body, const EncloseOptions& options, double sign, Enclosure& result)
       : scene_(scene), body_(body), options_(options), sign_(sign), result_(result),
-        errors_(start_radii(body)), lost_(static_cast<std::size_t>(body.size())) {
+        errors_(start_radii(body)), lost_(to_index(body.size())) {
     for (const Interval& y : body.start()) state_.push_back(y.middle);
     SampleOrder order(scene.times(), scene.t0());
     samples_ = std::move(sign_ > 0 ? order.forward : order.backward);
@@ -44,7 +44,8 @@ class Run {
     step.expect_rate(largest_rate_);
     const Interval end = distance(piece.end);
     if (end.is_zero()) {   // the start itself is asked for
-      if (step.expand(state_), !step.bound(0x1p-60, errors_)) return end_here(Status::failed, "the start cannot be enclosed");
+      step.expand(state_);
+      if (!step.bound(0x1p-60, errors_)) return end_here(Status::failed, "the start cannot be enclosed");
       take_samples(step, 0x1p-60);
       return true;
     }
@@ -128,7 +129,7 @@ class Run {
         for (std::size_t i = 0; i < 3; ++i) result_.omega[3 * sample + i] = value(i) * Interval(body_.rate());
       }
       if (scene_.want().attitude) {
-        const auto first = static_cast<std::size_t>(body_.attitude());
+        const auto first = to_index(body_.attitude());
         for (std::size_t i = 0; i < 4; ++i) result_.attitude[4 * sample + i] = value(first + i);
       }
     }

@@ -13,12 +13,12 @@ namespace polhode::proof {
 struct EncloseOptions {
   StepSettings step = {};
   long max_steps = 10'000'000;
-  double widest = 1e-3;            ///< the enclosure ends where its half-width is larger, relative to the rates and to 1
+  double widest = 1e-3;            ///< it ends where its half-width is larger, relative to the rates and to 1
   std::function<bool(double)> go_on = {};   ///< asked every 64 steps with the time reached; false ends the enclosure
 };
 
-/// Sets that hold the exact motion at a scene's times: omega (n, 3) in rad/s and the attitude (n, 4), which runs on from
-/// the start without a change of sign. Where the enclosure ended before, they are unbounded.
+/// Sets that hold the exact motion at a scene's times: omega (n, 3) in rad/s and the attitude (n, 4), which runs on
+/// from the start without a change of sign. Where the enclosure ended before, they are unbounded.
 struct Enclosure {
   std::vector<Interval> omega, attitude;
   double begin = 0.0, end = 0.0;   ///< the times between which the motion is enclosed [s]

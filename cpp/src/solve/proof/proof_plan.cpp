@@ -23,7 +23,7 @@ void require_provable(const Scene& scene, const SolveOptions& options) {
   if (options.method)
     refuse("method", "'" + *options.method + "'", "a proof has one method: Taylor series with a rigorous remainder");
   if (options.formulation != Formulation::euler)
-    refuse("formulation", "'lagrangian'", "a proof encloses Euler's equations, whose terms are products of two variables");
+    refuse("formulation", "'lagrangian'", "a proof encloses Euler's equations");
   if (options.dense) refuse("dense", "True", "bounds are given at the scene's times: add the times that are needed");
   if (!options.events.empty())
     refuse("events", std::to_string(options.events.size()), "a function of the user's own has no known bounds");
@@ -45,10 +45,9 @@ Plan make_plan(const Scene& scene, const SolveOptions& options) {
 
 std::vector<std::string> explain(const Scene& scene) {
   std::vector<std::string> reasons = {
-      "A proof was requested: Taylor series with a rigorous remainder enclose the exact motion of exactly these float64 "
-      "inputs, rounding included."};
+      "A proof was requested: Taylor series with a rigorous remainder enclose the exact motion."};
   if (scene.torque_sum().acting == 0)
-    reasons.push_back("The body is free, and its equations are stepped as all others are: its closed form is not used.");
+    reasons.push_back("The body is free, but the proof steps its equations and does not use its closed form.");
   reasons.push_back("How long the bounds stay narrow is known only after the run.");
   return reasons;
 }

@@ -9,6 +9,11 @@ namespace polhode::proof {
 
 using math::Interval;
 
+template <class Integer>
+constexpr std::size_t to_index(Integer i) {
+  return static_cast<std::size_t>(i);
+}
+
 /// A term of one component of y': a constant times 1, a variable, or a product of two variables.
 struct Term {
   enum class Kind { constant, variable, product };

@@ -29,22 +29,23 @@ void TaylorStep::prepare_pairs() {
     Interval constant = {};
     std::vector<Interval> factors;
   };
-  const auto n = static_cast<std::size_t>(n_);
+  const auto n = to_index(n_);
   std::vector<Sum> sums(n * n);
   for (Sum& sum : sums) sum.factors.resize(n);
   const auto at = [&](int i, int j) -> Sum& {
-    return sums[static_cast<std::size_t>(std::min(i, j)) * n + static_cast<std::size_t>(std::max(i, j))];
+    return sums[to_index(std::min(i, j)) * n + to_index(std::max(i, j))];
   };
   for (const Term& term : system_.terms) {
     const int i = term.row;
-    const auto add = [&](int j, int variable) {   // J_ij holds factor times the variable; on the diagonal it counts twice
+    // J_ij holds factor times the variable; on the diagonal it counts twice.
+    const auto add = [&](int j, int variable) {
       const Interval factor = i == j ? Interval(2.0) * term.factor : term.factor;
-      Interval& sum = variable < 0 ? at(i, j).constant : at(i, j).factors[static_cast<std::size_t>(variable)];
+      Interval& sum = variable < 0 ? at(i, j).constant : at(i, j).factors[to_index(variable)];
       sum = sum + factor;
     };
     if (term.kind == Kind::variable) add(term.source, -1);
     if (term.kind == Kind::product) {
-      const Product& product = system_.products[static_cast<std::size_t>(term.source)];
+      const Product& product = system_.products[to_index(term.source)];
       add(product.a, product.b), add(product.b, product.a);
     }
   }
@@ -53,7 +54,7 @@ void TaylorStep::prepare_pairs() {
       const Sum& sum = at(i, j);
       SymmetricEntry entry{i, j, i == j ? sum.constant.upper() : sum.constant.magnitude(), {}};
       for (int v = 0; v < n_; ++v) {
-        const Interval& factor = sum.factors[static_cast<std::size_t>(v)];
+        const Interval& factor = sum.factors[to_index(v)];
         if (!factor.is_zero()) entry.factors.emplace_back(v, factor.magnitude());
       }
       if (entry.constant != 0.0 || !entry.factors.empty()) symmetric_.push_back(std::move(entry));
@@ -62,51 +63,51 @@ void TaylorStep::prepare_pairs() {
 
 void TaylorStep::compute_sizes(double length) {
   powers_[0] = 1.0;
-  for (int k = 1; k <= order_; ++k) powers_[static_cast<std::size_t>(k)] = powers_[static_cast<std::size_t>(k - 1)] * length;
+  for (int k = 1; k <= order_; ++k) powers_[to_index(k)] = powers_[to_index(k - 1)] * length;
   for (int v = 0; v < n_; ++v) {
     double sum = 0.0;
     for (int k = order_; k >= 0; --k) {
-      const std::size_t at = static_cast<std::size_t>(v * (order_ + 1) + k);
-      sizes_[at] = std::abs(high_[at]) * powers_[static_cast<std::size_t>(k)];
+      const std::size_t at = to_index(v * (order_ + 1) + k);
+      sizes_[at] = std::abs(high_[at]) * powers_[to_index(k)];
       sum += sizes_[at];
       tails_[at] = sum;
     }
   }
 }
 
-/// |d| + |D| box over the step, by components. The terms of f(P) from t^order on and those of J F from t^derivative_order
-/// on are left out of the series; below that only rounding separates the series from the equations.
+/// |d| + |D| box over the step, by components. The terms of f(P) from t^order on and those of J F from
+/// t^derivative_order on are left out of the series; below that only rounding separates the series from the equations.
 void TaylorStep::compute_defects(const std::vector<double>& box) {
-  const auto n = static_cast<std::size_t>(n_);
+  const auto n = to_index(n_);
   const int M = derivative_order_;
   for (int j = 0; j <= M; ++j)
     for (int v = 0; v < n_; ++v) {
       const double* row = F(j, v);
       double sum = 0.0;
       for (std::size_t c = 0; c < n; ++c) sum += std::abs(row[c]) * box[c];
-      images_[static_cast<std::size_t>(j) * n + static_cast<std::size_t>(v)] = sum * powers_[static_cast<std::size_t>(j)];
+      images_[to_index(j) * n + to_index(v)] = sum * powers_[to_index(j)];
     }
-  const auto image = [&](int j, int v) { return images_[static_cast<std::size_t>(j) * n + static_cast<std::size_t>(v)]; };
+  const auto image = [&](int j, int v) { return images_[to_index(j) * n + to_index(v)]; };
   std::fill(spread_.begin(), spread_.end(), 0.0);
   for (int j = 0; j <= M; ++j)
-    for (int v = 0; v < n_; ++v) spread_[static_cast<std::size_t>(v)] += image(j, v);
+    for (int v = 0; v < n_; ++v) spread_[to_index(v)] += image(j, v);
 
   struct Sizes {
     double all, coarse, left_out, derivative, derivative_left_out;
   };
   const auto of_variable = [&](int v) -> Sizes {
-    return {sum_from(v, 0), sum_from(v, fine_), sum_from(v, order_), spread_[static_cast<std::size_t>(v)], image(M, v)};
+    return {sum_from(v, 0), sum_from(v, fine_), sum_from(v, order_), spread_[to_index(v)], image(M, v)};
   };
   const auto of_product = [&](const Product& product) {
     const int a = product.a, b = product.b;
     Sizes sizes{sum_from(a, 0) * sum_from(b, 0), 0.0, 0.0, 0.0, 0.0};
     for (int i = 0; i <= order_; ++i) {
-      const double size = sizes_[static_cast<std::size_t>(a * (order_ + 1) + i)];
+      const double size = sizes_[to_index(a * (order_ + 1) + i)];
       sizes.coarse += size * sum_from(b, fine_ - i);
       sizes.left_out += size * sum_from(b, order_ - i);
     }
-    sizes.derivative = sum_from(a, 0) * spread_[static_cast<std::size_t>(b)] +
-                       sum_from(b, 0) * spread_[static_cast<std::size_t>(a)];
+    sizes.derivative = sum_from(a, 0) * spread_[to_index(b)] +
+                       sum_from(b, 0) * spread_[to_index(a)];
     for (int j = 0; j <= M; ++j)
       sizes.derivative_left_out += sum_from(a, M - j) * image(j, b) + sum_from(b, M - j) * image(j, a);
     return sizes;
@@ -120,12 +121,12 @@ void TaylorStep::compute_defects(const std::vector<double>& box) {
     const double fine = term.factor.radius + fine_rounding * factor;
     const double coarse = fine + std::abs(term.factor.middle.lo) + rounding_ * factor;
     const double derivative = fine + std::abs(term.factor.middle.lo) + derivative_rounding_ * factor;
-    double& defect = defect_[static_cast<std::size_t>(term.row)];
+    double& defect = defect_[to_index(term.row)];
     if (term.kind == Kind::constant) {
       defect += fine;
       continue;
     }
-    const Sizes sizes = term.kind == Kind::product ? of_products[static_cast<std::size_t>(term.source)] : of_variable(term.source);
+    const Sizes sizes = term.kind == Kind::product ? of_products[to_index(term.source)] : of_variable(term.source);
     defect += fine * sizes.all + coarse * sizes.coarse + derivative * sizes.derivative +
               settings_.remainder_factor * (factor * (sizes.left_out + sizes.derivative_left_out));
   }
@@ -133,16 +134,16 @@ void TaylorStep::compute_defects(const std::vector<double>& box) {
   for (double& spread : spread_) spread = raised(spread);
 }
 
-/// An upper bound on the Euclidean logarithmic norm of J anywhere on the step, by Gershgorin's circles of (J + J^T) / 2.
+/// An upper bound on the Euclidean logarithmic norm of J anywhere on the step: Gershgorin's circles of (J + J^T) / 2.
 double TaylorStep::compute_growth() const {
-  // Damping is negative on the diagonal: what is subtracted is kept apart, so that rounding cannot hide in a difference.
-  std::vector<double> added(static_cast<std::size_t>(n_), 0.0), subtracted(added);
+  // Damping is negative on the diagonal. It is kept apart, so that rounding is small beside each part.
+  std::vector<double> added(to_index(n_), 0.0), subtracted(added);
   for (const SymmetricEntry& entry : symmetric_) {
     double size = std::max(entry.constant, 0.0);
     for (const auto& [variable, factor] : entry.factors) size += factor * sum_from(variable, 0);
-    added[static_cast<std::size_t>(entry.i)] += size;
-    if (entry.i != entry.j) added[static_cast<std::size_t>(entry.j)] += size;
-    else subtracted[static_cast<std::size_t>(entry.i)] = std::max(-entry.constant, 0.0);
+    added[to_index(entry.i)] += size;
+    if (entry.i != entry.j) added[to_index(entry.j)] += size;
+    else subtracted[to_index(entry.i)] = std::max(-entry.constant, 0.0);
   }
   double largest = 0.0;
   for (std::size_t i = 0; i < added.size(); ++i)
@@ -150,10 +151,10 @@ double TaylorStep::compute_growth() const {
   return raised(0.5 * largest);
 }
 
-/// x(length) of x' = A x + source, x(0) = 0, with A_ij >= |J_ij| and A_ii >= max(0, J_ii): it bounds |r_i|, and it grows.
+/// x(length) of x' = A x + source, x(0) = 0, with A_ij >= |J_ij| and A_ii >= max(0, J_ii): it bounds |r_i| and grows.
 void TaylorStep::compare_by_components(double length, const std::vector<double>& source,
                                        std::vector<double>& result) const {
-  const auto n = static_cast<std::size_t>(n_);
+  const auto n = to_index(n_);
   std::vector<double> term(n), next(n);
   double largest_row = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
@@ -184,7 +185,7 @@ void TaylorStep::compare_by_components(double length, const std::vector<double>&
 
 bool TaylorStep::bound(double asked_length, const ErrorSet& errors) {
   const double length = asked_length * margin;
-  const auto n = static_cast<std::size_t>(n_);
+  const auto n = to_index(n_);
   compute_sizes(length);
   for (int v = 0; v < n_; ++v)
     if (!(sum_from(v, 0) < most)) return false;
@@ -193,15 +194,15 @@ bool TaylorStep::bound(double asked_length, const ErrorSet& errors) {
   std::fill(jacobian_.begin(), jacobian_.end(), 0.0);
   std::vector<double> diagonal(n, 0.0);   // the signed constant parts
   for (const Term& term : system_.terms) {
-    const auto row = static_cast<std::size_t>(term.row);
+    const auto row = to_index(term.row);
     const double factor = term.factor.magnitude();
     if (term.kind == Kind::variable) {
       if (term.source == term.row) diagonal[row] += term.factor.upper();
-      else jacobian_[row * n + static_cast<std::size_t>(term.source)] += factor;
+      else jacobian_[row * n + to_index(term.source)] += factor;
     } else if (term.kind == Kind::product) {
-      const Product& product = system_.products[static_cast<std::size_t>(term.source)];
-      jacobian_[row * n + static_cast<std::size_t>(product.a)] += factor * sum_from(product.b, 0);
-      jacobian_[row * n + static_cast<std::size_t>(product.b)] += factor * sum_from(product.a, 0);
+      const Product& product = system_.products[to_index(term.source)];
+      jacobian_[row * n + to_index(product.a)] += factor * sum_from(product.b, 0);
+      jacobian_[row * n + to_index(product.b)] += factor * sum_from(product.a, 0);
     }
   }
   for (std::size_t i = 0; i < n; ++i) {
@@ -221,9 +222,9 @@ bool TaylorStep::bound(double asked_length, const ErrorSet& errors) {
     source = defect_;
     for (const Term& term : system_.terms) {
       if (term.kind != Kind::product) continue;
-      const Product& product = system_.products[static_cast<std::size_t>(term.source)];
-      source[static_cast<std::size_t>(term.row)] += raised(term.factor.magnitude() * spread_[static_cast<std::size_t>(product.a)] *
-                                                           spread_[static_cast<std::size_t>(product.b)]);
+      const Product& product = system_.products[to_index(term.source)];
+      source[to_index(term.row)] += raised(term.factor.magnitude() * spread_[to_index(product.a)] *
+                                                           spread_[to_index(product.b)]);
     }
     double square = 0.0;
     for (double& value : source) value = raised(value), square += value * value;
@@ -239,7 +240,7 @@ bool TaylorStep::bound(double asked_length, const ErrorSet& errors) {
       rest_ = found;
       return true;
     }
-    for (std::size_t i = 0; i < n; ++i) guess[i] = attempt == 0 ? found[i] * 1.01 + 0x1p-800 : 2.0 * found[i] + 0x1p-800;
+    for (std::size_t i = 0; i < n; ++i) guess[i] = (attempt == 0 ? 1.01 : 2.0) * found[i] + 0x1p-800;
   }
   return false;
 }

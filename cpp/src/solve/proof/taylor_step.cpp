@@ -21,22 +21,22 @@ TaylorStep::TaylorStep(const QuadraticSystem& system, const StepSettings& settin
   order_ = std::clamp(static_cast<int>(std::lround(0.5 * digits)) + 1, 8, 40);
   next_derivative_order_ = std::min(12, order_);
   int terms = 0;
-  std::vector<int> per_row(static_cast<std::size_t>(n_), 0);
-  for (const Term& term : system_.terms) terms = std::max(terms, ++per_row[static_cast<std::size_t>(term.row)]);
+  std::vector<int> per_row(to_index(n_), 0);
+  for (const Term& term : system_.terms) terms = std::max(terms, ++per_row[to_index(term.row)]);
   rounding_ = (order_ + terms + 12) * unit;
   derivative_rounding_ = (2 * order_ + 2 * terms + 12) * unit;
   fine_ = std::clamp(static_cast<int>(std::ceil(order_ * (1.0 + math::log(rounding_) / digits))), 1, order_ - 1);
-  const auto n = static_cast<std::size_t>(n_), rows = static_cast<std::size_t>(order_ + 1);
+  const auto n = to_index(n_), rows = to_index(order_ + 1);
   high_.resize(n * rows), low_.resize(n * rows), sizes_.resize(n * rows), tails_.resize(n * rows);
   powers_.resize(rows), images_.resize(n * rows);
-  derivative_.resize(rows * n * static_cast<std::size_t>(width_));
+  derivative_.resize(rows * n * to_index(width_));
   first_.resize(rows * system_.products.size()), second_.resize(first_.size());
   defect_.resize(n), rest_.resize(n), spread_.resize(n), jacobian_.resize(n * n);
   prepare_pairs();
 }
 
 double TaylorStep::expand(std::span<const DD> state) {
-  const auto rows = static_cast<std::size_t>(order_ + 1);
+  const auto rows = to_index(order_ + 1);
   for (std::size_t v = 0; v < state.size(); ++v) high_[v * rows] = state[v].hi, low_[v * rows] = state[v].lo;
   double rate = 0.0;
   for (int v = 0; v < 3; ++v) rate = std::max(rate, std::abs(P(v)[0]));
@@ -72,57 +72,57 @@ double TaylorStep::expand(std::span<const DD> state) {
 
 void TaylorStep::expand_state() {
   const std::size_t count = system_.products.size();
-  std::vector<double> product(count), sum(static_cast<std::size_t>(n_));
-  std::vector<DD> fine_product(count), fine_sum(static_cast<std::size_t>(n_));
+  std::vector<double> product(count), sum(to_index(n_));
+  std::vector<DD> fine_product(count), fine_sum(to_index(n_));
   for (int k = 0; k < order_; ++k) {
     for (std::size_t p = 0; p < count; ++p) {
-      first_[static_cast<std::size_t>(k) * count + p] = P(system_.products[p].a)[k];
-      second_[static_cast<std::size_t>(k) * count + p] = P(system_.products[p].b)[k];
+      first_[to_index(k) * count + p] = P(system_.products[p].a)[k];
+      second_[to_index(k) * count + p] = P(system_.products[p].b)[k];
     }
     if (k < fine_) {
       for (std::size_t p = 0; p < count; ++p) {
         const double *a = P(system_.products[p].a), *b = P(system_.products[p].b);
-        const double *a_low = &low_[static_cast<std::size_t>(a - high_.data())],
-                     *b_low = &low_[static_cast<std::size_t>(b - high_.data())];
+        const double *a_low = &low_[to_index(a - high_.data())],
+                     *b_low = &low_[to_index(b - high_.data())];
         DD s;
         for (int i = 0; i <= k; ++i) s = s + DD(a[i], a_low[i]) * DD(b[k - i], b_low[k - i]);
         fine_product[p] = s;
       }
       std::fill(fine_sum.begin(), fine_sum.end(), DD());
       for (const Term& term : system_.terms) {
-        const auto source = static_cast<std::size_t>(term.source);
-        DD& s = fine_sum[static_cast<std::size_t>(term.row)];
+        const auto source = to_index(term.source);
+        DD& s = fine_sum[to_index(term.row)];
         const DD& factor = term.factor.middle;
         if (term.kind == Kind::product) s = s + factor * fine_product[source];
         else if (term.kind == Kind::variable)
-          s = s + factor * DD(P(term.source)[k], low_[source * static_cast<std::size_t>(order_ + 1) + static_cast<std::size_t>(k)]);
+          s = s + factor * DD(P(term.source)[k], low_[source * to_index(order_ + 1) + to_index(k)]);
         else if (k == 0) s = s + factor;
       }
       for (int v = 0; v < n_; ++v) {
-        const DD next = fine_sum[static_cast<std::size_t>(v)] / DD(k + 1.0);
+        const DD next = fine_sum[to_index(v)] / DD(k + 1.0);
         P(v)[k + 1] = next.hi;
-        low_[static_cast<std::size_t>(v * (order_ + 1) + k + 1)] = next.lo;
+        low_[to_index(v * (order_ + 1) + k + 1)] = next.lo;
       }
       continue;
     }
     std::fill(product.begin(), product.end(), 0.0);
     for (int i = 0; i <= k; ++i) {
-      const double *a = &first_[static_cast<std::size_t>(i) * count], *b = &second_[static_cast<std::size_t>(k - i) * count];
+      const double *a = &first_[to_index(i) * count], *b = &second_[to_index(k - i) * count];
       for (std::size_t p = 0; p < count; ++p) product[p] += a[p] * b[p];
     }
     std::fill(sum.begin(), sum.end(), 0.0);
     for (const Term& term : system_.terms) {
       if (term.kind == Kind::constant) continue;   // fine_ is at least 1
-      const double source = term.kind == Kind::product ? product[static_cast<std::size_t>(term.source)] : P(term.source)[k];
-      sum[static_cast<std::size_t>(term.row)] += term.factor.middle.hi * source;
+      const double source = term.kind == Kind::product ? product[to_index(term.source)] : P(term.source)[k];
+      sum[to_index(term.row)] += term.factor.middle.hi * source;
     }
-    for (int v = 0; v < n_; ++v) P(v)[k + 1] = sum[static_cast<std::size_t>(v)] / (k + 1);
+    for (int v = 0; v < n_; ++v) P(v)[k + 1] = sum[to_index(v)] / (k + 1);
   }
 }
 
 void TaylorStep::expand_derivative() {
-  const auto w = static_cast<std::size_t>(width_);
-  std::fill_n(derivative_.begin(), static_cast<std::size_t>(n_) * w, 0.0);
+  const auto w = to_index(width_);
+  std::fill_n(derivative_.begin(), to_index(n_) * w, 0.0);
   for (int v = 0; v < n_; ++v) F(0, v)[v] = 1.0;
   std::vector<double> product(system_.products.size() * w);
   for (int k = 0; k < derivative_order_; ++k) {
@@ -137,38 +137,38 @@ void TaylorStep::expand_derivative() {
         for (std::size_t c = 0; c < w; ++c) sum[c] += s * db[c] + t * da[c];
       }
     }
-    std::fill_n(F(k + 1, 0), static_cast<std::size_t>(n_) * w, 0.0);
+    std::fill_n(F(k + 1, 0), to_index(n_) * w, 0.0);
     for (const Term& term : system_.terms) {
       if (term.kind == Kind::constant) continue;
-      const double* source = term.kind == Kind::product ? &product[static_cast<std::size_t>(term.source) * w] : F(k, term.source);
+      const double* source = term.kind == Kind::product ? &product[to_index(term.source) * w] : F(k, term.source);
       const double factor = term.factor.middle.hi;
       double* row = F(k + 1, term.row);
       for (std::size_t c = 0; c < w; ++c) row[c] += factor * source[c];
     }
     double* rows = F(k + 1, 0);
-    for (std::size_t c = 0; c < static_cast<std::size_t>(n_) * w; ++c) rows[c] /= k + 1;
+    for (std::size_t c = 0; c < to_index(n_) * w; ++c) rows[c] /= k + 1;
   }
 }
 
 void TaylorStep::evaluate(DD time, double slack, std::vector<DD>& state, std::vector<double>& lost) const {
-  const auto rows = static_cast<std::size_t>(order_ + 1);
+  const auto rows = to_index(order_ + 1);
   // |P'| <= sum of k |P_k| t^(k-1), with t at most the step's length
   const double per_time = order_ / powers_[1];
   for (int v = 0; v < n_; ++v) {
     const double* c = P(v);
-    const double* c_low = &low_[static_cast<std::size_t>(v) * rows];
+    const double* c_low = &low_[to_index(v) * rows];
     double coarse = 0.0;
     for (int k = order_; k > fine_; --k) coarse = coarse * time.hi + c[k];
     DD sum(coarse);
     for (int k = fine_; k >= 0; --k) sum = sum * time + DD(c[k], c_low[k]);
-    state[static_cast<std::size_t>(v)] = sum;
-    lost[static_cast<std::size_t>(v)] = raised(3 * order_ * unit * sum_from(v, fine_ + 1) + fine_rounding * sum_from(v, 0) +
+    state[to_index(v)] = sum;
+    lost[to_index(v)] = raised(3 * order_ * unit * sum_from(v, fine_ + 1) + fine_rounding * sum_from(v, 0) +
                                                slack * per_time * sum_from(v, 1));
   }
 }
 
 void TaylorStep::evaluate_derivative(double time, std::vector<double>& result, std::vector<double>& lost) const {
-  const auto count = static_cast<std::size_t>(n_ * width_);
+  const auto count = to_index(n_ * width_);
   result.assign(F(derivative_order_, 0), F(derivative_order_, 0) + count);
   for (int k = derivative_order_ - 1; k >= 0; --k) {
     const double* rows = F(k, 0);

@@ -17,8 +17,8 @@ struct StepSettings {
   double remainder_factor = 1.0;   ///< multiplies the bound on what is left out: anything below 1 is wrong, for tests
 };
 
-/// One step: a polynomial P about a computed state, a polynomial matrix F for the motion's derivative by that state, and
-/// a bound on the rest.
+/// One step: a polynomial P about a computed state, a polynomial matrix F for the motion's derivative by that state,
+/// and a bound on the rest.
 ///
 /// With y' = f(y) = c + L y + Q(y, y), J(t) the Jacobian along P, and an exact start P(0) + e0, the exact motion is
 ///     y(t) = P(t) + F(t) e0 + r(t),    r' = J r + Q(e, e) - d - D e0,    e = F e0 + r,    r(0) = 0,
@@ -52,12 +52,12 @@ class TaylorStep {
   void expand_state();
   void expand_derivative();
   void prepare_pairs();
-  double* F(int k, int row) { return &derivative_[static_cast<std::size_t>((k * n_ + row) * width_)]; }
-  const double* F(int k, int row) const { return &derivative_[static_cast<std::size_t>((k * n_ + row) * width_)]; }
-  double* P(int variable) { return &high_[static_cast<std::size_t>(variable * (order_ + 1))]; }
-  const double* P(int variable) const { return &high_[static_cast<std::size_t>(variable * (order_ + 1))]; }
+  double* F(int k, int row) { return &derivative_[to_index((k * n_ + row) * width_)]; }
+  const double* F(int k, int row) const { return &derivative_[to_index((k * n_ + row) * width_)]; }
+  double* P(int variable) { return &high_[to_index(variable * (order_ + 1))]; }
+  const double* P(int variable) const { return &high_[to_index(variable * (order_ + 1))]; }
   double sum_from(int variable, int k) const {
-    return k > order_ ? 0.0 : tails_[static_cast<std::size_t>(variable * (order_ + 1) + std::max(k, 0))];
+    return k > order_ ? 0.0 : tails_[to_index(variable * (order_ + 1) + std::max(k, 0))];
   }
   void compute_sizes(double length);
   void compute_defects(const std::vector<double>& box);
