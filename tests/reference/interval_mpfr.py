@@ -65,7 +65,8 @@ def main() -> None:
     unbounded = dict.fromkeys(NAMES, 0)
     for (a, b), rows in zip(values.tolist(), found.tolist(), strict=True):
         if not (math.isfinite(a) and math.isfinite(b)):
-            for name, row in zip(NAMES, rows, strict=True):   # the whole line, where the operand that counts is no number
+            # the whole line, where the operand that counts is no number
+            for name, row in zip(NAMES, rows, strict=True):
                 wrong[name] += (not math.isfinite(a) or name in NAMES[:4]) and row[3:] != [-math.inf, math.inf] \
                     and not (name in ("sine", "cosine") and row[3] <= -1 and row[4] >= 1)
             continue

@@ -1,8 +1,8 @@
 """Judge proofs by an evaluator of another kind: ``python tests/reference/proof_arb.py [--write]`` (needs python-flint).
 
-Twenty scenes of many kinds are drawn and computed in 100 digits with FLINT's arb numbers: Taylor series of the rates and
-the quaternion, with the rotation matrix formed from the quaternion and the orbit's angle from its sine and cosine. The
-proofs' own equations have neither. Two orders must agree to 40 digits. Truth is stored as sums of two float64 numbers.
+Twenty scenes of many kinds are drawn and computed in 100 digits with FLINT's arb numbers: Taylor series of the rates
+and the quaternion, with the rotation matrix formed from the quaternion and the orbit's angle from its sine and cosine.
+The proofs' own equations have neither. Two orders must agree to 40 digits. Each number is stored as a sum of two.
 """
 
 from __future__ import annotations
@@ -123,7 +123,8 @@ class Expansion:
         tau = [arb(0)] * 3
         for k, torque in enumerate(self.torques):
             tau = [a + b for a, b in zip(tau, self.torque(k, torque, n), strict=True)]
-        cross = [product(self.L[j], self.w[k], n) - product(self.L[k], self.w[j], n) for j, k in ((1, 2), (2, 0), (0, 1))]
+        cross = [product(self.L[j], self.w[k], n) - product(self.L[k], self.w[j], n)
+                 for j, k in ((1, 2), (2, 0), (0, 1))]
         rate = [sum((self.inverse[i][j] * (cross[j] + tau[j]) for j in range(3)), arb(0)) for i in range(3)]
         w = self.w
         turn = [product(s, w[0], n) + product(y, w[2], n) - product(z, w[1], n),

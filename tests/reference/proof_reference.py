@@ -1,8 +1,8 @@
 """Make the truth for proofs: ``python tests/reference/proof_reference.py``, some minutes.
 
 Bounds of a proof hold the motion of exactly the float64 numbers of a scene, so the truth here starts from float64
-numbers too: those stored beside it. ``taylor.cpp`` computes it in 113-bit arithmetic; each value is stored as the sum of
-two float64 numbers.
+numbers too: those stored beside it. ``taylor.cpp`` computes it in 113-bit arithmetic; each value is stored as the sum
+of two float64 numbers.
 """
 
 from __future__ import annotations

@@ -21,7 +21,8 @@ namespace {
 Decision decide(const Scene& scene, const SolveOptions& options) {
   Decision decision{scene};
   if (options.proof) {
-    decision.plan = proof::make_plan(scene, options);
+    decision.plan = proof::make_plan(scene);
+    decision.plan.accuracy = get_accuracy(options);
     decision.facts = compute_facts(scene);
     return decision;
   }

@@ -636,6 +636,12 @@ class Answer:
     def attitude(self) -> typing.Any:
         ...
     @property
+    def attitude_lower(self) -> typing.Any:
+        ...
+    @property
+    def attitude_upper(self) -> typing.Any:
+        ...
+    @property
     def error(self) -> float:
         ...
     @property
@@ -654,7 +660,16 @@ class Answer:
     def omega(self) -> typing.Any:
         ...
     @property
+    def omega_lower(self) -> typing.Any:
+        ...
+    @property
+    def omega_upper(self) -> typing.Any:
+        ...
+    @property
     def plan(self) -> dict[str, typing.Any]:
+        ...
+    @property
+    def proved_span(self) -> typing.Any:
         ...
     @property
     def stats(self) -> dict[str, typing.Any]:

@@ -88,7 +88,7 @@ bool has_custom(const Scene& scene) {
 BodyEquations::BodyEquations(const Scene& scene) : scene_(scene), has_attitude_(scene.want().attitude) {
   for (const AnyTorque& torque : scene.torques()) torques_.push_back(drop_window(torque));
   choose_vectors();
-  choose_rate();
+  choose_units();
   attitude_ = orbit_index(orbits_.size());
 }
 
@@ -108,8 +108,8 @@ void BodyEquations::choose_vectors() {
   if (fixed_.size() > 2) fixed_ = {Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ()};
 }
 
-void BodyEquations::choose_rate() {
-  double fastest = scene_.omega().norm();
+void BodyEquations::choose_units() {
+  double damping = 0.0, fastest = scene_.omega().norm();
   const double least = scene_.inertia_B().moments().minCoeff();
   const auto take = [&](double torque) { fastest = std::max(fastest, std::sqrt(torque / least)); };
   for (const AnyTorque& torque : torques_) {
@@ -117,8 +117,11 @@ void BodyEquations::choose_rate() {
     if (const auto* gravity = std::get_if<torques::Gravity>(&torque)) take(gravity->moment().norm());
     if (const auto* gradient = std::get_if<torques::GravityGradient>(&torque))
       fastest = std::max(fastest, std::abs(gradient->mean_motion()));
+    if (const auto* brake = std::get_if<torques::Damping>(&torque))
+      damping = std::max(damping, brake->matrix().cwiseAbs().maxCoeff() / least);
   }
   if (fastest > 0.0 && std::isfinite(fastest)) rate_ = nearest_power(fastest);
+  pace_ = damping > rate_ && std::isfinite(damping) ? nearest_power(damping) : rate_;
 }
 
 std::vector<Interval> BodyEquations::start() const {
@@ -144,7 +147,7 @@ std::vector<Interval> BodyEquations::start() const {
   return y;
 }
 
-/// Adds the terms of a body, torque by torque. A new torque needs its overload of add(); the compiler asks for it.
+/// Adds the terms of a body in units of 1 / rate, torque by torque. A new torque needs its overload of add(); the compiler asks for it.
 class BodyEquations::Maker {
  public:
   explicit Maker(const BodyEquations& body)
@@ -276,7 +279,7 @@ class BodyEquations::Maker {
 
 QuadraticSystem BodyEquations::make_system(const std::vector<AnyTorque>& torques, double sign) const {
   QuadraticSystem system = Maker(*this).make(torques);
-  if (sign < 0.0) system.reverse();
+  system.scale(sign * (rate_ / pace_));
   return system;
 }
 

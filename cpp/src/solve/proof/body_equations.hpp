@@ -5,7 +5,7 @@
 #include "polhode/scene/scene.hpp"
 #include "solve/proof/quadratic_system.hpp"
 
-// A body's motion as a quadratic system. Time runs in units of 1 / rate().
+// A body's motion as a quadratic system. Time runs in units of 1 / pace().
 namespace polhode::proof {
 
 /// Whether a torque is a function of the user's own, of which nothing can be proved.
@@ -21,6 +21,7 @@ class BodyEquations {
   int size() const { return attitude_ + (has_attitude_ ? 4 : 0); }
   int attitude() const { return attitude_; }           ///< index of the quaternion's first component
   double rate() const { return rate_; }                ///< a power of two [rad/s]
+  double pace() const { return pace_; }                ///< a power of two [1/s], larger than rate() where damping is fast
 
   /// The exact start. The attitude is normalised as real numbers are.
   std::vector<Interval> start() const;
@@ -36,7 +37,7 @@ class BodyEquations {
   class Maker;
 
   void choose_vectors();
-  void choose_rate();
+  void choose_units();
   int fixed_index(std::size_t vector) const { return 3 + 3 * static_cast<int>(vector); }
   int orbit_index(std::size_t orbit) const { return fixed_index(fixed_.size() + 2 * orbit); }
 
@@ -44,7 +45,7 @@ class BodyEquations {
   std::vector<AnyTorque> torques_ = {};    ///< without their windows
   std::vector<Vector3d> fixed_ = {};       ///< vectors in space
   std::vector<Orbit> orbits_ = {};
-  double rate_ = 1.0;
+  double rate_ = 1.0, pace_ = 1.0;
   int attitude_ = 3;
   bool has_attitude_ = false;
 };

@@ -32,10 +32,10 @@ class Run {
     return radii;
   }
 
-  /// The exact distance of a time from the start, in units of 1 / rate, along the run.
+  /// The exact distance of a time from the start, in units of 1 / pace, along the run.
   Interval distance(double t) const {
     const Interval seconds(sign_ > 0 ? math::two_diff(t, scene_.t0()) : math::two_diff(scene_.t0(), t), 0.0);
-    return seconds * Interval(body_.rate());
+    return seconds * Interval(body_.pace());
   }
 
   bool follow(const Piece& piece) {
@@ -66,7 +66,7 @@ class Run {
       while (!step.bound(length, errors_)) {
         ++result_.rejected;
         length = round_down(0.5 * length), is_last = false;
-        if (!(length > 1e-4 * std::min(proposed, left.upper())) || length < 0x1p-900)
+        if (!(length > 1e-9 * std::min(proposed, left.upper())) || length < 0x1p-900)
           return end_here(Status::failed, "no bound on the next step was found: errors have grown too large");
       }
       if (const double widest = *std::max_element(step.spread().begin(), step.spread().end());
@@ -90,7 +90,7 @@ class Run {
     return std::ldexp(std::floor(std::ldexp(part, 20)), exponent - 20);
   }
 
-  double reached() const { return scene_.t0() + sign_ * now_.middle.hi / body_.rate(); }
+  double reached() const { return scene_.t0() + sign_ * now_.middle.hi / body_.pace(); }
 
   bool end_here(Status status, const char* why) {
     // The steps so far reach a little further than a time rounded towards the start.
@@ -142,7 +142,7 @@ class Run {
   Enclosure& result_;
   std::vector<DD> state_;
   ErrorSet errors_;
-  Interval now_ = {};                    ///< since the start, in units of 1 / rate
+  Interval now_ = {};                    ///< since the start, in units of 1 / pace
   double largest_rate_ = 0.0;
   std::vector<std::size_t> samples_;     ///< in the order of the run
   std::size_t next_ = 0;

@@ -1,7 +1,6 @@
 #include "solve/proof/proof_plan.hpp"
 
 #include "polhode/core/error.hpp"
-#include "solve/candidates.hpp"
 #include "solve/proof/body_equations.hpp"
 
 namespace polhode::proof {
@@ -33,12 +32,11 @@ void require_provable(const Scene& scene, const SolveOptions& options) {
   }
 }
 
-Plan make_plan(const Scene& scene, const SolveOptions& options) {
+Plan make_plan(const Scene& scene) {
   const bool has_attitude = scene.want().attitude || scene.torque_sum().uses_attitude;
   return {.model = "euler",
           .method = "enclosure",
           .state = has_attitude ? "omega, attitude" : "omega",
-          .accuracy = get_accuracy(options),
           .certify = true,
           .proof = true};
 }

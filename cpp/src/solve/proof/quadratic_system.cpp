@@ -12,8 +12,8 @@ void QuadraticSystem::add_product(int row, int a, int b, const Interval& factor)
   add({row, Term::Kind::product, static_cast<int>(at - products.begin()), factor});
 }
 
-void QuadraticSystem::reverse() {
-  for (Term& term : terms) term.factor = -term.factor;
+void QuadraticSystem::scale(double factor) {
+  for (Term& term : terms) term.factor = Interval(factor) * term.factor;
 }
 
 void QuadraticSystem::add(const Term& term) {

@@ -38,8 +38,8 @@ class QuadraticSystem {
   /// A product is formed once, whatever the number of components that hold it.
   void add_product(int row, int a, int b, const Interval& factor);
 
-  /// The equations backwards in time.
-  void reverse();
+  /// Multiplies the right-hand side by a number: time in other units, or backwards.
+  void scale(double factor);
 
   int size;              ///< variables
   std::vector<Product> products = {};
