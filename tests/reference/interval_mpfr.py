@@ -1,6 +1,7 @@
 """Hold the interval type against MPFR on random bit patterns: containment always, and how wide the results are.
 
     python tests/reference/interval_mpfr.py [pairs] [seed]     (needs gmpy2 and a C++20 compiler)
+    python tests/reference/interval_mpfr.py --write            stores the results of 300 pairs in interval.csv
 
 Half of the doubles are random bit patterns (subnormal, huge, infinite and NaN among them), half are of ordinary size.
 """
@@ -47,8 +48,27 @@ def exact(a: float, b: float) -> list[object]:
     return results
 
 
+def split(x: object) -> str:
+    """Return a number as a sum of two float64 numbers, in hexadecimal."""
+    high = float(x)
+    return f"{high.hex()},{float(x - gmpy2.mpfr(high)).hex()}"
+
+
+def write() -> None:
+    """Store exact results for the test of each build: pairs whose results have both parts in range."""
+    gmpy2.get_context().precision = 400
+    lines = ["a,b," + ",".join(f"{name} high,{name} low" for name in NAMES)]
+    for a, b in draw(10_000, 3).tolist():
+        usual = all(math.isfinite(x) and 1e-90 < abs(x) < 1e90 for x in (a, b)) and a > 0 and a != -b
+        if usual and len(lines) <= 300:
+            lines.append(",".join([a.hex(), b.hex(), *(split(x) for x in exact(a, b))]))
+    (HERE / "interval.csv").write_text("\n".join(lines) + "\n")
+
+
 def main() -> None:
     """Draw, compute, compare, print."""
+    if "--write" in sys.argv:
+        return write()
     pairs = int(sys.argv[1]) if len(sys.argv) > 1 else 125_000
     values = draw(pairs, int(sys.argv[2]) if len(sys.argv) > 2 else 1)
     include = HERE.parents[1] / "cpp" / "include"
