@@ -23,7 +23,7 @@ void refuse_samples(Motion& motion) {
   motion.message = "samples are not finite: the motion is beyond the range of float64";
 }
 
-Motion run(const Scene& scene, const SolveOptions& options) {
+Motion solve_planned(const Scene& scene, const SolveOptions& options) {
   const Decision decision = decide(scene, options);
   Motion motion = execute(decision, options);
   motion.stats += decision.pilot;
@@ -36,7 +36,7 @@ Motion solve(const Scene& scene, const SolveOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   check_options(scene, options);
   check_torques(scene);
-  Motion motion = options.proof ? prove(scene, options) : run(scene, options);
+  Motion motion = options.proof ? prove(scene, options) : solve_planned(scene, options);
   if (!motion.all_finite()) refuse_samples(motion);
   motion.stats.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return motion;
