@@ -209,3 +209,22 @@ def test_a_motion_without_a_proof_has_no_bounds():
 def test_bounds_are_pickled():
     motion = pickle.loads(pickle.dumps(ph.solve(load("S4"), 1e-10, certify="proof")))
     assert find_outside(motion, TRUTH["S4_truth"]) == 0 and motion.proved_span == (0.0, 100.0)
+
+
+def test_the_command_writes_the_bounds(tmp_path):
+    file = tmp_path / "S5.csv"
+    done = subprocess.run([sys.executable, "-m", "polhode", "run", "S5", "--proof", "-o", file], text=True, check=True,
+                          capture_output=True)
+    assert "proof   from 0 to 20 s; widest bounds: omega" in done.stdout
+    table = np.genfromtxt(file, delimiter=",", names=True)
+    assert (table["omega_x_lower"] <= table["omega_x"]).all() and (table["omega_x"] <= table["omega_x_upper"]).all()
+    motion = ph.solve(ph.Scene.load("S5"), certify="proof")
+    np.testing.assert_array_equal(table["attitude_w_upper"], motion.attitude_upper[:, 3])
+
+
+def test_infinite_bounds_are_null_in_json():
+    from polhode.cli.files import to_json
+
+    content = json.loads(json.dumps(to_json(ph.solve(make_chaotic(600.0, 11), certify="proof")), allow_nan=False))
+    assert content["error"] is None and content["omega_upper"][-1] == [None] * 3
+    assert content["omega_upper"][1][0] > content["omega"][1][0] and content["proved_span"][0] == 0.0

@@ -74,7 +74,7 @@ class Plan:
     pieces: tuple[Piece, ...]
     state: str
     accuracy: float
-    certify: bool | str
+    certify: bool | Literal["proof"]
     rtol: float
     predicted_error: float
     predicted_seconds: float

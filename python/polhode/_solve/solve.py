@@ -46,8 +46,8 @@ def _event(item: Any) -> Event:
 
 
 def _take(plan: Plan, accuracy: float | None, method: str | None, rtol: float | None, atol: float | None,
-          step: float | None, certify: bool | str,
-          formulation: str) -> tuple[float, str | None, bool | str, str]:
+          step: float | None, certify: bool | Literal["proof"],
+          formulation: str) -> tuple[float, str | None, bool | Literal["proof"], str]:
     """Return the options of a plan; refuse options that contradict it."""
     if not isinstance(plan, Plan):
         raise _core.InvalidInput(f"plan: must be what polhode.plan() made, got {type(plan).__name__}")

@@ -49,7 +49,9 @@ def to_json(motion: Motion) -> dict[str, Any]:
 
 def _finite(array: Any) -> Any:
     """Return an array as lists; bounds beyond the reach of a proof are null."""
-    return np.where(np.isfinite(array), array, None).tolist() if not np.isfinite(array).all() else array.tolist()
+    if np.isfinite(array).all():
+        return array.tolist()
+    return [[value if math.isfinite(value) else None for value in row] for row in array.tolist()]
 
 
 def write(path: pathlib.Path, motion: Motion) -> None:
