@@ -40,7 +40,8 @@ TEST_CASE("results hold MPFR's, to 106 bits") {
   int rows = 0;
   while (std::getline(file, line)) {
     std::vector<double> x;
-    for (std::istringstream cells(line); std::getline(cells, cell, ',');) x.push_back(std::strtod(cell.c_str(), nullptr));
+    std::istringstream cells(line);
+    while (std::getline(cells, cell, ',')) x.push_back(std::strtod(cell.c_str(), nullptr));
     REQUIRE(x.size() == 18);
     const Interval a(x[0]), b(x[1]);
     const IntervalSinCos trig = sincos(a);

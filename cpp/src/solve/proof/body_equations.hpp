@@ -21,7 +21,7 @@ class BodyEquations {
   int size() const { return attitude_ + (has_attitude_ ? 4 : 0); }
   int attitude() const { return attitude_; }           ///< index of the quaternion's first component
   double rate() const { return rate_; }                ///< a power of two [rad/s]
-  double pace() const { return pace_; }                ///< a power of two [1/s], larger than rate() where damping is fast
+  double pace() const { return pace_; }                ///< a power of two [1/s]; above rate() where damping is fast
 
   /// The exact start. The attitude is normalised as real numbers are.
   std::vector<Interval> start() const;
