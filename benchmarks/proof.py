@@ -171,8 +171,8 @@ def main():
              "The ratio is the time of the proof over that of the plain run at the same accuracy. Scenes with a",
              "closed form are stepped by the proof, so that their ratio is large. The last column compares with a run",
              "that steps, too.", "", *table_of_scenes(), "", "## How far proofs go", "",
-             "Longer spans than the scenes have, with 2001 samples. Regular motions are followed to the end. Chaos and the",
-             "flips of the racket (S2) end a proof.", "", *table_of_reach()]
+             "Longer spans than the scenes have, with 2001 samples. Regular motions are followed to the end. Chaos and",
+             "the flips of the racket (S2) end a proof.", "", *table_of_reach()]
     if arguments.family:
         lines += ["", "## Certificates judged by proofs", "", *judge_family(arguments.family, arguments.seed)]
     if arguments.output:

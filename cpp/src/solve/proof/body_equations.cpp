@@ -147,8 +147,8 @@ std::vector<Interval> BodyEquations::start() const {
   return y;
 }
 
-/// Adds the terms of a body in units of 1 / rate, torque by torque. A new torque needs its overload of add(): the compiler
-/// asks for it. A rotor would add its momentum to add_gyroscopic(), as terms of one variable.
+/// Adds the terms of a body in units of 1 / rate, torque by torque. A new torque needs its overload of add(): the
+/// compiler asks for it. A rotor would add its momentum to add_gyroscopic(), as terms of one variable.
 class BodyEquations::Maker {
  public:
   explicit Maker(const BodyEquations& body)
