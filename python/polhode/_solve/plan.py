@@ -308,7 +308,8 @@ def plan(scene: Scene, accuracy: float | None = None, *, method: str | None = No
     if not isinstance(scene, Scene):
         raise _core.InvalidInput(f"scene: must be a polhode.Scene, got {type(scene).__name__}")
     asked = {"method": method, "formulation": str(formulation)}
-    report = _core.plan(scene, {**asked, "accuracy": accuracy, "certify": certify,
+    report = _core.plan(scene, {**asked, "accuracy": accuracy,
+                                "certify": certify if isinstance(certify, str) else bool(certify),
                                 "cost_factors": costs.factors()})
     made = Plan(scene, report["plan"], asked)
     made.__dict__["_report"] = report
