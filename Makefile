@@ -16,7 +16,7 @@ $(shell mkdir -p build; find python/polhode -type f -not -name '*.py[ci]' | sort
 inputs := build/.names $(shell find CMakeLists.txt pyproject.toml cpp python/CMakeLists.txt python/bindings \
             tests/cpp/CMakeLists.txt scenes -type f 2>/dev/null)
 
-.PHONY: help demo test same-bits check-long install module clang sanitize aarch64 debian13 stubs clean
+.PHONY: help demo test same-bits check-long install module clang sanitize aarch64 debian13 wheels stubs clean
 .NOTPARALLEL:
 # An environment whose Python has gone is made anew.
 ifneq ($(shell $(VENV)/bin/python -c 'import pip; print("there")' 2>/dev/null),there)
@@ -95,6 +95,10 @@ aarch64: $(VENV)/.demo
 # Debian 13: GCC 14, Clang 19, Python 3.13, in a folder made by debootstrap (needs root).
 debian13:
 	@.ci/machines/debian13
+
+# A wheel for each Python at hand, checked and tested in a bare environment, and the sdist.
+wheels:
+	@.ci/wheels
 
 stubs: install
 	@$(PYTHON) tests/support/make_stubs.py

@@ -130,17 +130,10 @@ void visit_class(py::handle cls) {
   }
 }
 
-void visit_module(const py::module_& m) {
-  for (const auto& item : py::dict(m.attr("__dict__"))) {
-    if (PyType_Check(item.second.ptr()) && !PyExceptionClass_Check(item.second.ptr())) visit_class(item.second);
-  }
-}
-
 }  // namespace
 
-void refuse_wrong_calls(py::module_& m) {
-  visit_module(m);
-  visit_module(m.attr("torques").cast<py::module_>());
+void refuse_wrong_calls(const std::vector<py::type>& classes) {
+  for (const py::type& cls : classes) visit_class(cls);
 }
 
 }  // namespace polhode::python

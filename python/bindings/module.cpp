@@ -1,5 +1,28 @@
+#include <vector>
+
 #include "bind.hpp"
 #include "calls.hpp"
+#include "uninitialised.hpp"
+
+namespace polhode::python {
+namespace {
+
+/// The compiled classes of the module and of its torques.
+std::vector<py::type> list_classes(const py::module_& m) {
+  std::vector<py::type> classes;
+  for (const py::module_& part : {m, m.attr("torques").cast<py::module_>()}) {
+    for (const auto& item : py::dict(part.attr("__dict__"))) {
+      PyObject* const value = item.second.ptr();
+      if (!PyType_Check(value) || PyExceptionClass_Check(value)) continue;
+      if (py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(value)) == nullptr) continue;
+      classes.push_back(py::reinterpret_borrow<py::type>(value));
+    }
+  }
+  return classes;
+}
+
+}  // namespace
+}  // namespace polhode::python
 
 // The table of contents: one line a word, in the order in which they may use each other.
 PYBIND11_MODULE(_core, m, pybind11::mod_gil_not_used()) {
@@ -17,5 +40,7 @@ PYBIND11_MODULE(_core, m, pybind11::mod_gil_not_used()) {
   bind_solve(m);
   bind_batch(m);
   bind_batch_solve_many(m);
-  refuse_wrong_calls(m);
+  const std::vector<py::type> classes = list_classes(m);
+  refuse_wrong_calls(classes);
+  guard_uninitialised(classes, m.attr("InvalidInput"));
 }

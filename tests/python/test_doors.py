@@ -1,5 +1,6 @@
 """What is given at the doors: overlapping outputs, odd addresses, masks, wrong keywords, likely slips."""
 
+import copy
 import pathlib
 import pickle
 import warnings
@@ -276,3 +277,20 @@ def test_an_attitude_that_was_taken_gives_no_second_warning():
         assert (again.attitude == HALF).all()
     assert pickle.loads(pickle.dumps(motion)) == motion
     ph.solve_many(scene, omega=[OMEGA])
+
+
+class Child(ph.FreeMotion):
+    pass
+
+
+@pytest.mark.parametrize("cls", [ph.Scene, ph.FreeMotion, ph.HeavyTop, ph.InertiaTensor, ph.torques.Gravity, Child])
+def test_an_object_that_was_never_initialised_says_so(cls):
+    empty = cls.__new__(cls)
+    name = next(name for name in vars(cls.__mro__[1] if cls in (ph.Scene, Child) else cls) if not name.startswith("_"))
+    with pytest.raises(ph.InvalidInput, match="must be initialised"):
+        getattr(empty, name)
+    for use in (copy.copy, pickle.dumps):
+        with pytest.raises(ph.InvalidInput, match="must be initialised"):
+            use(empty)
+    if cls not in (ph.Scene, Child):
+        assert "not initialised" in repr(empty) + str(empty)
