@@ -26,7 +26,7 @@ class Certifier {
     if (!carries_error() && (record().implicit || decision_.pieces.size() > 0)) ratio_ = 3 * pair_ratio;
     // Below these accuracies rounding matters, and the difference of two runs is a less reliable measure.
     if (accuracy_ <= 2e-12) {
-      safety_ = carries_error() ? 4.0 : 5.0, ratio_ *= 3;
+      safety_ = carries_error() ? 3.0 : 5.0, ratio_ *= 3;
     } else if (accuracy_ <= 1e-10) {
       safety_ = 2.0;
     }
@@ -102,15 +102,17 @@ class Certifier {
   /// run whose error far exceeds the accuracy is abandoned before its end.
   Motion certify_carried(double rtol) {
     const double least = record().least_rtol;
+    bool all_terms = decision_.facts.is_stiff_for_series();
     for (bool first = true;; first = false) {
       const bool last = rtol <= least;
       double given_up = 0.0;
-      Attempt attempt = run_carried(runs_, rtol, safety_, last ? unknown_error : give_up_factor, given_up);
+      Attempt attempt = run_carried(runs_, rtol, safety_, all_terms, last ? unknown_error : give_up_factor, given_up);
       if (given_up > 0) {
         // The error may grow by the same factor in each further part of the span.
         const double parts = std::min(decision_.facts.span() / given_up, 4.0);
         rtol = std::max(rtol / math::fast_pow(10 * give_up_factor, parts), least);
         safety_ = std::max(safety_, chaotic_safety);
+        all_terms = true;   // with fewer, an error may grow only because its own series is unstable
         continue;
       }
       const double error = attempt.error;
@@ -120,6 +122,7 @@ class Certifier {
       // The run measures how much the motion amplifies errors, but only approximately: the safety factor grows.
       const double wider = std::max(1.0, chaotic_safety / safety_);
       safety_ *= wider;
+      all_terms = all_terms || stalled;
       rtol = stalled ? least : std::max(rtol / std::clamp(2 * wider * error / accuracy_, 10.0, 1e8), least);
     }
   }

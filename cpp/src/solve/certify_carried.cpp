@@ -9,12 +9,12 @@
 
 namespace polhode {
 
-Attempt run_carried(CountedRuns& runs, double rtol, double safety, double most, double& given_up) {
+Attempt run_carried(CountedRuns& runs, double rtol, double safety, bool all_terms, double most, double& given_up) {
   const double accuracy = runs.decision().plan.accuracy;
   ode::ErrorTrace trace{.asked = accuracy / safety,
                         .most = most,
                         .hold_margin = limit_safety,
-                        .all_terms = runs.decision().facts.is_stiff_for_series()};
+                        .all_terms = all_terms};
   Attempt attempt{.motion = runs.run(runs.decision().scene, runs.options(), rtol, false, &trace)};
   Motion& motion = attempt.motion;
   motion.rtol_used = rtol;

@@ -13,8 +13,9 @@ namespace {
 
 constexpr std::size_t least_samples = 8;   // fewer differences may be small by chance
 constexpr int perturbed_units = 8;         // in the last place: more than the rounding of the finer run
-constexpr int stiff_order = 3;             // of an implicit method in a stiff body: its stage order
-constexpr double rounding_floor = 8.0;     // units of rounding that two runs may share
+constexpr int stiff_order = 2;             // of an implicit method in a stiff body: below its stage order, 3
+constexpr double rounding_floor = 8.0;     // units of rounding that two runs may share, and the root of their steps
+constexpr double claimed_part = 8.0;       // times the error that the numbers of steps give
 constexpr double most_factor = 30.0;       // of runs with the same steps
 constexpr long most_steps_of_another = 20'000;
 
@@ -55,13 +56,13 @@ PairCertificate::PairCertificate(CountedRuns& runs, double safety)
 }
 
 /// The factor between a difference and the error of the finer run. If the error falls by r from one run to the other,
-/// it is r / (1 - r) of the difference; six times that is claimed. r follows from the numbers of steps.
+/// it is r / (1 - r) of the difference; eight times that is claimed. r follows from the numbers of steps.
 double PairCertificate::find_factor(const Motion& fine, const Motion& coarse) const {
   const ode::MethodRecord& record = runs_.method().record;
   if (record.adaptive_order || runs_.decision().pieces.size() > 0) return safety_;
   const double steps = static_cast<double>(coarse.stats.steps) / static_cast<double>(std::max(fine.stats.steps, 1L));
   const double r = math::power(std::min(steps, 1.0), record.implicit ? stiff_order : record.order);
-  return std::clamp(6 * r / (1 - r), safety_, most_factor);
+  return std::clamp(claimed_part * r / (1 - r), safety_, most_factor);
 }
 
 Attempt PairCertificate::run(double coarse, double fine) {
@@ -94,7 +95,9 @@ Attempt PairCertificate::run(double coarse, double fine) {
         factor = safety_;
       }
     }
-    const double least = rounding_floor * std::numeric_limits<double>::epsilon();
+    // Runs that settle to the same path may share their rounding, which walks at random.
+    const double units = rounding_floor + std::sqrt(static_cast<double>(motion.stats.steps));
+    const double least = units * std::numeric_limits<double>::epsilon();
     if (difference < unknown_error) attempt.error = factor * difference + least + formulas;
     if (!(attempt.error <= accuracy)) {
       attempt.holds_until =

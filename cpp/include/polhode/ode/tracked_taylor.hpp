@@ -36,13 +36,14 @@ struct ErrorTrace {
   /// The relative perturbation of constants: half a unit in the last place, enlarged.
   double perturbation() const { return (continued ? scale : first_scale()) * 0x1p-53; }
 
-  /// The errors of a start: nothing is lost, and each component is perturbed up or down.
+  /// The errors of a start: in both vectors each component is perturbed up or down, each in its own way.
   void start(const double* y0) {
     math::Coin coin;
     before = good_until = 0.0;
     scale = first_scale();
-    std::fill_n(loss, series_width, 0.0);
-    for (int i = 0; i < series_width; ++i) spread[i] = (coin.toss() ? 0x1p-53 : -0x1p-53) * scale * y0[i];
+    for (double* error : {spread, loss}) {
+      for (int i = 0; i < series_width; ++i) error[i] = (coin.toss() ? 0x1p-53 : -0x1p-53) * scale * y0[i];
+    }
   }
 
   /// Takes the errors of samples up to a span from the start.
@@ -72,6 +73,8 @@ concept TrackedProblem = SeriesProblem<P> && requires(const P& problem, const do
 /// `spread_` is what rounding may have made of the inputs and of each step, and a tenth of each loss. It starts from
 /// perturbed inputs, follows perturbed constants, and grows in its own direction, so that it never cancels. Random kicks
 /// by rounding are added, because its direction alone may be one that shrinks while others grow.
+/// `loss_` gets kicks and perturbed constants of its own as well. Where rounding is what grows, the two vectors are
+/// independent samples of it: one of them may lie by chance where little grows, but rarely both.
 ///
 /// Both are small and obey the equations linearised about y. So a few terms of their series suffice, which are the
 /// differences of the series of y + scale e and of y. If the requested error is below 1e-6, `scale` enlarges it to
@@ -88,14 +91,16 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   static constexpr double unsigned_part = 0.1;  // of the loss, that the spread gets too
   static constexpr double rounding = 0x1p-53;   // of y in a step, whose sums are compensated
   static constexpr double kick = 0x1p-51;       // of y in a step, in any direction
+  static constexpr double loss_kick = 0x1p-52;  // the same for the loss
   static constexpr double most_enlarged = 1e-3; // relative, of the vectors
   static constexpr double join_rounding = 0x1p-51;   // of a state that one run hands to the next
   using Base = Taylor::Stepper<P>;
 
  public:
-  /// @param lost       the same problem with the invariants of the start plus trace.loss
-  /// @param perturbed  the same with those of the start plus trace.spread, and constants perturbed by
-  ///                   trace.perturbation(); both starts are the problem's if the run continues none
+  /// @param lost       the same problem with the invariants of the start plus trace.loss, and constants perturbed by
+  ///                   trace.perturbation()
+  /// @param perturbed  the same with those of the start plus trace.spread, and constants perturbed by as much in other
+  ///                   directions; both starts are the problem's if the run continues none
   TrackedTaylor(const P& problem, const P& lost, const P& perturbed, double t0, const double* y0, double t_end,
                 const Tolerances& tolerances, ErrorTrace& trace)
       : Base(problem, t0, y0, t_end, tolerances),
@@ -132,7 +137,7 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
  private:
   void propagate_errors() {
     const double s = ((this->time_.hi - this->time_old_.hi) + (this->time_.lo - this->time_old_.lo)) / this->unit_old_;
-    propagate(this->problem_, signed_terms, s, loss_);
+    propagate(lost_, signed_terms, s, loss_);
     propagate(perturbed_, error_terms, s, spread_);
     alignas(64) double loss[W];
     double sizes[3];
@@ -140,7 +145,8 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     for (int i = 0; i < W; ++i) loss_[i] += loss[i];
     this->problem_.measure_error(this->arrived_, loss, sizes);
     grow_spread(this->arrived_, trace_.scale * rounding + unsigned_part * find_relative_error(sizes));
-    kick_spread(this->arrived_);
+    add_kick(this->arrived_, kick, spread_);
+    add_kick(this->arrived_, loss_kick, loss_);
     // Samples, and a run that continues this one, have the state before its correction.
     old_[0] = now_[0], old_[1] = now_[1];
     measure(this->arrived_);
@@ -207,9 +213,9 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     for (int i = 0; i < W; ++i) spread_[i] *= 1 + growth / relative;
   }
 
-  /// Changes each component of the spread by rounding, up or down at random, so that it gets parts in every direction.
-  void kick_spread(const double* y) {
-    for (int i = 0; i < W; ++i) spread_[i] += (coin_.toss() ? kick : -kick) * trace_.scale * y[i];
+  /// Changes each component of an error by rounding, up or down at random, so that it gets parts in every direction.
+  void add_kick(const double* y, double size, double* error) {
+    for (int i = 0; i < W; ++i) error[i] += (coin_.toss() ? size : -size) * trace_.scale * y[i];
   }
 
   void measure(const double* y) {

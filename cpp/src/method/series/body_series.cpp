@@ -217,21 +217,28 @@ void BodySeries::unpack_error(double* error) const {
   error[4] = q.x, error[5] = q.y, error[6] = q.z, error[7] = q.w;
 }
 
-BodySeries BodySeries::perturbed(double part) const {
+BodySeries BodySeries::perturbed(double part, int choice) const {
   BodySeries other = *this;
-  math::Coin coin;
+  math::Coin coin(2025 + static_cast<std::uint64_t>(choice));
   const auto change = [&](double& x, double size) { x += coin.toss() ? part * size : -part * size; };
   SeriesTerms& terms = other.terms_;
   const bool rounded = rotated_ && R_BP_.cwiseAbs().maxCoeff() < 1.0;
   for (int i = 0; i < 3; ++i) {
-    change(terms.product[i], rounded ? std::max(std::abs(terms.product[i]), I_.maxCoeff() / I_[i]) : terms.product[i]);
+    const double own = 2.0 * std::abs(terms.product[i]);
+    change(terms.product[i], rounded ? std::max(own, I_.maxCoeff() / I_[i]) : own);
   }
-  const auto change_column = [&](double* column, double units = 1.0) {
-    for (int i = 0; i < 3; ++i) change(column[i], units * column[i]);
+  // A product or a difference and a division round each entry.
+  const auto change_column = [&](double* column) {
+    for (int i = 0; i < 3; ++i) change(column[i], 2.0 * column[i]);
   };
   change_column(terms.torque);
   // Products and a division round each entry, and in a direction without damping all of it is rounding.
-  for (auto& column : terms.damping) change_column(column, 8.0);
+  // The entries of a rotated matrix are rounded relative to the largest one of their row.
+  for (int i = 0; i < 3; ++i) {
+    double largest = 0.0;
+    for (const auto& column : terms.damping) largest = std::max(largest, std::abs(column[i]));
+    for (auto& column : terms.damping) change(column[i], 8.0 * (rounded ? largest : column[i]));
+  }
   for (auto& vector : terms.pull)
     for (auto& column : vector) change_column(column);
   for (auto& column : terms.tidal) change_column(column);

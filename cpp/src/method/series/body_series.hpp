@@ -47,9 +47,10 @@ class BodySeries {
   void pack_error(double* error) const;
   void unpack_error(double* error) const;
 
-  /// A copy with all constants changed by this part of each, up or down by a fixed rule; those of damping by eight times
-  /// as much. The constants of a full tensor change by this part of the largest moment, because its axes are rounded.
-  BodySeries perturbed(double part) const;
+  /// A copy with all constants changed by twice this part of each, up or down by a fixed rule for each choice; those of
+  /// damping by eight times it. The axes of a full tensor are rounded: its constants change by this part of the largest
+  /// moment, its damping by eight times this part of the largest entry of a row.
+  BodySeries perturbed(double part, int choice) const;
   /// A copy that keeps the invariants of another start: this one plus an error of the state.
   BodySeries shifted(double t0, const double* error) const;
   /// For a state and its small error: |w|, the error of w, and the error of the attitude as an angle.

@@ -19,16 +19,17 @@ Trajectory integrate_taylor(const Scene& scene, const RunOptions& options) {
   ode::ErrorTrace* trace = options.trace;
   std::optional<BodySeries> lost, perturbed;
   if (trace != nullptr) {
-    perturbed = series->perturbed(trace->perturbation());
+    lost = series->perturbed(trace->perturbation(), 2);
+    perturbed = series->perturbed(trace->perturbation(), 1);
     if (trace->continued) {
       series->pack_error(trace->loss), series->pack_error(trace->spread);
-      lost = series->shifted(scene.t0(), trace->loss);
+      lost = lost->shifted(scene.t0(), trace->loss);
       perturbed = perturbed->shifted(scene.t0(), trace->spread);
     }
   }
   const auto make = [&](const double* y, double t_end) -> std::unique_ptr<ode::Stepper> {
     if (trace != nullptr) {
-      return std::make_unique<Tracked>(*series, lost ? *lost : *series, *perturbed, scene.t0(), y, t_end,
+      return std::make_unique<Tracked>(*series, *lost, *perturbed, scene.t0(), y, t_end,
                                        options.tolerances, *trace);
     }
     return std::make_unique<ode::Taylor::Stepper<BodySeries>>(*series, scene.t0(), y, t_end, options.tolerances);
