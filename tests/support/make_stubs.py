@@ -62,7 +62,8 @@ def torque_signatures(text: str) -> str:
 def tidy(text: str, public: list[str], home: str) -> str:
     lines = [line.rstrip() for line in text.splitlines() if not line.startswith("__all__")]   # it has none: invented
     lines = [tidy_signature(line, public, home) if re.match(r" *def .*:$", line) else line for line in lines]
-    return re.sub(r"^(__version__: str) = .*$", r"\1", "\n".join(lines), flags=re.M) + "\n"
+    text = re.sub(r"^ +def __getattribute__\(.*\n(?: {8}.*\n)*", "", "\n".join(lines) + "\n", flags=re.M)   # a guard
+    return re.sub(r"^(__version__: str) = .*$", r"\1", text, flags=re.M)
 
 
 def main(folder: pathlib.Path) -> None:
