@@ -1,4 +1,4 @@
-"""Bounds that were false once: each is compared with stored samples of the exact motion, at random draws of one seed."""
+"""Bounds that were false once: each is compared with stored samples of the exact motion."""
 
 import json
 import pathlib
