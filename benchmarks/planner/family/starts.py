@@ -4,12 +4,9 @@ import numpy as np
 
 import polhode as ph
 
-STARTS = {}
+from .kinds import make_table
 
-
-def kind(make):
-    STARTS[make.__name__] = make
-    return make
+STARTS, kind = make_table()
 
 
 @kind

@@ -2,12 +2,9 @@
 
 import numpy as np
 
-TIMES = {}
+from .kinds import make_table
 
-
-def kind(make):
-    TIMES[make.__name__] = make
-    return make
+TIMES, kind = make_table()
 
 
 @kind

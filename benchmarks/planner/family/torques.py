@@ -5,13 +5,9 @@ import numpy as np
 import polhode as ph
 
 from .custom import Brake, Drag, Magnet, Wheel
+from .kinds import make_table
 
-TORQUES = {}
-
-
-def kind(make):
-    TORQUES[make.__name__] = make
-    return make
+TORQUES, kind = make_table()
 
 
 def add_weight(dice, draft, ratio, arm=None):

@@ -13,14 +13,14 @@ namespace {
 struct Rows {
   std::vector<double> omega, attitude;
 
-  explicit Rows(const Scene& piece) {
+  explicit Rows(const Scene& piece) : Rows(piece, *find_closed_form(piece, compute_facts(piece))) {}
+  Rows(const Scene& piece, const ClosedForm& form) {
     const std::vector<double>& times = piece.times();
     std::vector<double> since(times.size());
     for (std::size_t i = 0; i < times.size(); ++i) since[i] = times[i] - piece.t0();
     omega.resize(3 * times.size());
     if (piece.want().attitude) attitude.resize(4 * times.size());
-    find_closed_form(piece, compute_facts(piece))
-        ->at(since.data(), since.size(), omega.data(), attitude.empty() ? nullptr : attitude.data());
+    form.at(since.data(), since.size(), omega.data(), attitude.empty() ? nullptr : attitude.data());
   }
 };
 
@@ -49,9 +49,9 @@ double measure_angle(const double* e) { return 2 * math::hypot(math::hypot(e[4],
 
 }  // namespace
 
-void carry_through(const Scene& piece, double form_error, ode::ErrorTrace& trace) {
+void carry_through(const Scene& piece, const ClosedForm& form, double form_error, ode::ErrorTrace& trace) {
   const std::size_t n = piece.times().size();
-  const Rows rows(piece), lost(perturb_start(piece, trace.loss)), spread(perturb_start(piece, trace.spread));
+  const Rows rows(piece, form), lost(perturb_start(piece, trace.loss)), spread(perturb_start(piece, trace.spread));
   double rate_error = 0.0, attitude_error = 0.0, size = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     subtract(lost, rows, i, trace.loss);

@@ -7,7 +7,8 @@ namespace polhode {
 
 /// Carries the errors of a trace through a piece that a closed form evaluates, to the last of its times. They are the
 /// differences of closed forms from perturbed starts. The trace's vectors are errors of (omega, 0, attitude).
+/// @param form        the piece's closed form
 /// @param form_error  bound of the closed form's own error
-void carry_through(const Scene& piece, double form_error, ode::ErrorTrace& trace);
+void carry_through(const Scene& piece, const ClosedForm& form, double form_error, ode::ErrorTrace& trace);
 
 }  // namespace polhode

@@ -19,8 +19,6 @@ constexpr double claimed_part = 8.0;       // times the error that the numbers o
 constexpr double most_factor = 30.0;       // of runs with the same steps
 constexpr long most_steps_of_another = 20'000;
 
-const double* get_data(const std::vector<double>& values) { return values.empty() ? nullptr : values.data(); }
-
 double find_difference(double start_rate, const Motion& a, const Motion& b) {
   return compute_distance(a.t.size(), start_rate, get_data(a.omega), get_data(a.attitude), get_data(b.omega),
                           get_data(b.attitude));

@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include "polhode/math/detail/functions.hpp"
 
 namespace polhode {
+
+/// The samples, or null where there are none.
+inline const double* get_data(const std::vector<double>& samples) { return samples.empty() ? nullptr : samples.data(); }
 
 /// The distance of two motions at n samples, as `accuracy` is defined. It is the larger of two: |omega - omega'|
 /// relative to the largest |omega| of the start and the samples, and the angle between the attitudes [rad]. Either pair

@@ -46,7 +46,7 @@ Motion run_planned(const Decision& decision, const Scene& scene, const SolveOpti
       const Facts facts = compute_facts(part);
       if (const std::optional<ClosedForm> form = find_closed_form(part, facts)) {
         const Plan plan = make_exact_plan(part, *form, facts, piece_options);
-        if (trace != nullptr) carry_through(part, plan.predicted_error, *trace);
+        if (trace != nullptr) carry_through(part, *form, plan.predicted_error, *trace);
         return run_closed_form(part, facts, piece_options, *form, plan);
       }
       name = choose_method(part, facts, piece_options).name;   // perturbed inputs may have no closed form
@@ -99,10 +99,8 @@ Motion solve_exact_pieces(const Decision& decision, const SolveOptions& options)
     SolveOptions comparison = options;
     comparison.dense = false, comparison.events.clear(), comparison.progress = {};
     const Motion other = run_planned(decision, perturb(Scene(std::move(parts))), comparison, 0.0, true);
-    const auto data = [](const std::vector<double>& v) { return v.empty() ? nullptr : v.data(); };
-    motion.error +=
-        1.5 * compute_distance(other.t.size(), scene.omega().norm(), data(omega), data(attitude), data(other.omega),
-                               data(other.attitude));
+    motion.error += 1.5 * compute_distance(other.t.size(), scene.omega().norm(), get_data(omega), get_data(attitude),
+                                           get_data(other.omega), get_data(other.attitude));
   }
   ++motion.runs;
   motion.error_kind = motion.error <= motion.asked ? "bounded" : "limit";
