@@ -49,6 +49,13 @@ def distance(attitude, other):
     return 2 * near.max()
 
 
+def movement(body):
+    """How far one unit in the last place of the start moves the rates: 1e-10 for the chaotic one of these bodies."""
+    moved = body.replace(omega=np.nextafter(body.omega, np.inf))
+    return np.abs(ph.solve(moved, method="taylor", rtol=1e-15).omega -
+                  ph.solve(body, method="taylor", rtol=1e-15).omega).max()
+
+
 @pytest.mark.parametrize("torques", TORQUES)
 @pytest.mark.parametrize("want", [("omega",), ("omega", "attitude")])
 def test_each_is_the_motion_that_solve_finds(torques, want):
@@ -56,12 +63,13 @@ def test_each_is_the_motion_that_solve_finds(torques, want):
     many = ph.solve_many(one, rtol=1e-14, **STARTS)
     assert many.lanes.all() and set(many.status) == {"finished"} and (many.t_reached == 7.5).all()
     for i in range(0, N, 3):
-        alone = ph.solve(one.replace(inertia=MOMENTS[i], omega=SPINS[i], attitude=TURNS[i]), method="dop853",
-                         rtol=1e-14)
+        body = one.replace(inertia=MOMENTS[i], omega=SPINS[i], attitude=TURNS[i])
+        alone = ph.solve(body, method="dop853", rtol=1e-14)
         size = np.abs(alone.omega).max()
-        assert np.abs(many.omega[i] - alone.omega).max() < 2e-11 * size
+        allowed = max(2e-11 * size, 20 * movement(body))
+        assert np.abs(many.omega[i] - alone.omega).max() < allowed
         if "attitude" in want:
-            assert distance(many.attitude[i], alone.attitude) < 2e-11 * max(1, size)
+            assert distance(many.attitude[i], alone.attitude) < max(2e-11, allowed / size) * max(1, size)
 
 
 @pytest.mark.parametrize(("rtol", "bound"), [(1e-6, 1e-4), (1e-9, 1e-7), (1e-12, 1e-10), (1e-16, 3e-14)])

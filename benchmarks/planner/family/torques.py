@@ -37,7 +37,9 @@ def heavy_fast(dice, draft):
 def heavy_asleep(dice, draft):
     """A top that spins next to the pole, faster or slower than what keeps it up."""
     a, c = dice.uniform(0.3, 1), dice.uniform(0.1, 0.55)
-    draft.moments = np.array([a, a * (1 - dice.pick((0.0, dice.decade(-6, -0.7)))), c])
+    # Within the triangle inequality.
+    unlike = min(dice.pick((0.0, dice.decade(-6, -0.7))), 0.999 * c / a, 0.999 * (2 - c / a))
+    draft.moments = np.array([a, a * (1 - unlike), c])
     draft.attitude = dice.near_vertical(dice.decade(-9, -1))
     draft.omega = draft.pace * (np.array([0, 0, 1.0]) + dice.decade(-9, -2) * dice.direction())
     off = dice.pick((0.0, dice.decade(-6, -2))) * dice.direction()

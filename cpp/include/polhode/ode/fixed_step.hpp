@@ -8,17 +8,18 @@
 
 namespace polhode::ode {
 
-/// Steps of equal length. Their times are t0 + n h and do not drift. Only the last step of a run may be shorter.
+/// Steps of equal length. Their times are t0 + n h and do not drift. Only the last step of a run may be shorter. Far from
+/// time zero those times are rounded coarsely, and each step then goes from one rounded time to the next.
 class FixedStepper : public Stepper {
  public:
   StepResult advance(double t_end) final {
     const double rest = t_end - t_;
-    // The rounding of t0 + n h must neither leave a tiny last step nor change the length of the last step.
+    // The rounding of t0 + n h must not leave a tiny last step.
     const double rounding = 4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(t_), std::abs(t_end));
     const double h = std::copysign(step_, rest);
     const bool last = std::abs(rest) <= step_ + rounding;
-    h_taken_ = last && std::abs(rest) < step_ - rounding ? rest : h;
     const double t_new = last ? t_end : t0_ + static_cast<double>(counts_.steps + 1) * h;
+    h_taken_ = std::abs((t_new - t_) - h) <= time_rounding(t_new) ? h : t_new - t_;
     if (t_new == t_) return StepResult::underflow;
     if (const StepResult result = step(t_, h_taken_); result != StepResult::accepted) return result;
     t_old_ = t_;
@@ -36,6 +37,9 @@ class FixedStepper : public Stepper {
 
   double fraction(double t) const { return (t - t_old_) / (t_ - t_old_); }
   double h_taken() const { return h_taken_; }
+
+  /// What n h itself is rounded by at time t, whatever t0 is.
+  double time_rounding(double t) const { return 4 * std::numeric_limits<double>::epsilon() * std::abs(t - t0_); }
 
  private:
   double t0_, step_, h_taken_ = 0.0;

@@ -48,7 +48,7 @@ class RungeKuttaStepper final : public Stepper {
     for (;;) {
       const double rest = t_end - t_;
       const bool last = std::abs(h_) * 1.01 >= std::abs(rest);
-      const double h = last ? rest : h_;
+      const double h = last ? rest : representable_step(t_, h_);
       if (!(std::abs(h) > 8 * std::numeric_limits<double>::epsilon() * std::abs(t_)) && !last) {
         return finite ? StepResult::underflow : StepResult::not_finite;
       }

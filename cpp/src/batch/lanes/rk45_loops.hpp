@@ -173,7 +173,7 @@ class Rk45Lanes {
     const Wide zero(0.0), one(1.0), t = load(b_.time), t_end = load(b_.t_end), tried = load(b_.step);
     const Wide rest = t_end - t;
     const Mask last = abs(rest) <= abs(tried) * Wide(1.01);
-    const Wide h = select(last, rest, tried);
+    const Wide h = select(last, rest, (t + tried) - t);   // ode::representable_step
     const Mask moves = ((abs(h) > Wide(8 * 0x1p-52) * abs(t)) | last) & (Wide(0x1p-1022) <= abs(h));
 
     for (int i = 0; i < N; ++i) y_[i] = load(b_.y[i]), k_[0][i] = load(b_.f[i]);

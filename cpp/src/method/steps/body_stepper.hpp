@@ -54,8 +54,7 @@ class BodyStepper final : public ode::FixedStepper {
 
   void interpolate(double t, double* out) override {
     // At the end of a step, up to the rounding of its time, the state itself is returned.
-    const double rounding = 4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(t_), std::abs(t_old_));
-    if (std::abs(t - t_) <= rounding) return body_.leave(L_, q_, out);
+    if (std::abs(t - t_) <= time_rounding(t_)) return body_.leave(L_, q_, out);
     evaluate_segment(segment(), fraction(t), out);
   }
 

@@ -64,7 +64,7 @@ class RadauStepper final : public ode::Stepper {
     for (;;) {
       const double rest = t_end - t_;
       const bool last = std::abs(h_) * 1.01 >= std::abs(rest);
-      const double h = last ? rest : h_;
+      const double h = last ? rest : ode::representable_step(t_, h_);
       const double least =
           last ? std::numeric_limits<double>::min() : 8 * std::numeric_limits<double>::epsilon() * std::abs(t_);
       if (!(std::abs(h) > least)) return finite ? StepResult::underflow : StepResult::not_finite;

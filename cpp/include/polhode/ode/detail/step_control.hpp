@@ -37,6 +37,12 @@ inline double rough_exp2(double x) {
   return scale * (1.0 + f * (0.6951 + f * (0.2276 + f * 0.0773)));
 }
 
+/// The step from t that ends at a number: the time t + h is rounded, and a step of h itself would miss it. The difference
+/// is half a unit in the last place of t a step, which tells where times lie close together and far from zero.
+inline double representable_step(double t, double h) {
+  return (t + h) - t;
+}
+
 /// x^y for 0 < x < infinity to 1e-3. It is enough for a step size and costs a tenth of std::pow.
 inline double rough_power(double x, double y) { return rough_exp2(y * rough_log2(x)); }
 
