@@ -26,11 +26,11 @@ py::dict solve_batch(const py::list& scenes, const py::object& moments, const py
     if (!starts) return *list[body];
     const Scene& common = *list[0];
     const double *a = rates + 3 * body, *b = turns + 4 * body;
-    InertiaTensor inertia = common.inertia_B();
+    InertiaTensor inertia = common.given_inertia_B();
     if (moment != nullptr)
       inertia = InertiaTensor::from_moments({moment[3 * body], moment[3 * body + 1], moment[3 * body + 2]});
     return Scene(SceneParts{inertia, {a[0], a[1], a[2]}, {b[0], b[1], b[2], b[3]}, common.torques(), common.times(),
-                            common.want(), common.t0(), ""});
+                            common.want(), common.t0(), "", common.rotors()});
   };
   const auto target = [](const py::object& array) {
     return array.is_none() ? nullptr : array.cast<py::array_t<double, py::array::c_style>>().mutable_data();

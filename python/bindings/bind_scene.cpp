@@ -50,21 +50,38 @@ InertiaTensor to_inertia(py::handle value, const char* name) {
 }
 
 void bind_scene(py::module_& m) {
+  bind_scene_rotor(m);
   // The Python class keeps the torques' objects, so that their functions live as long.
   py::class_<Scene>(m, "Scene")
       .def(py::init([](py::handle inertia, py::handle omega, py::handle attitude, const py::iterable& torques,
-                       py::handle times, py::handle want, py::handle t0, const py::object& name) {
+                       py::handle times, py::handle want, py::handle t0, const py::object& name,
+                       const py::iterable& rotors) {
              if (!py::isinstance<py::str>(name)) throw InvalidInput("scene.name", "text", std::string(py::repr(name)));
              std::vector<AnyTorque> list;
              for (const py::handle one : torques)
                list.push_back(to_torque(one, "scene.torques[" + std::to_string(list.size()) + "]"));
+             std::vector<Rotor> wheels;
+             for (const py::handle rotor : rotors)
+               wheels.push_back(to_rotor(rotor, "scene.rotors[" + std::to_string(wheels.size()) + "]"));
              return Scene(SceneParts{to_inertia(inertia, "scene.inertia"), to_vector3(omega, "scene.omega"),
                                      to_attitude(attitude, "scene.attitude", 2), std::move(list), to_times(times),
-                                     to_wanted(want), to_real(t0, "scene.t0"), name.cast<std::string>()});
+                                     to_wanted(want), to_real(t0, "scene.t0"), name.cast<std::string>(),
+                                     std::move(wheels)});
            }),
            py::arg("inertia"), py::arg("omega"), py::arg("attitude"), py::arg("torques"), py::arg("times"),
-           py::arg("want"), py::arg("t0"), py::arg("name"))
-      .def_property_readonly("inertia", &Scene::inertia_B)
+           py::arg("want"), py::arg("t0"), py::arg("name"), py::arg("rotors"))
+      .def_property_readonly("inertia", &Scene::given_inertia_B)
+      .def_property_readonly("carrier_inertia", &Scene::inertia_B,
+                             "InertiaTensor J that moves with omega: `inertia` less the axial moments of free rotors.")
+      .def_property_readonly(
+          "rotor_momentum", [](const Scene& scene) { return from_vector3(scene.rotor_momentum()); },
+          "h, the sum of the rotors' momenta in body axes at the start, shape (3,) [kg m^2/s].")
+      .def_property_readonly("rotors",
+                             [](const Scene& scene) {
+                               py::list list;
+                               for (const Rotor& rotor : scene.rotors()) list.append(rotor);
+                               return py::tuple(list);
+                             })
       .def_property_readonly("omega", [](const Scene& scene) { return from_vector3(scene.omega()); })
       .def_property_readonly("attitude", [](const Scene& scene) { return from_quat(scene.attitude()); })
       .def_property_readonly("times",

@@ -2,6 +2,7 @@
 
 #include "bind.hpp"
 #include "polhode/inertia/inertia_tensor.hpp"
+#include "polhode/scene/rotor.hpp"
 #include "polhode/torque/torques.hpp"
 
 namespace polhode::python {
@@ -11,5 +12,13 @@ InertiaTensor to_inertia(py::handle value, const char* name);
 
 /// The torque of a Python object. The object must outlive all copies of the torque.
 AnyTorque to_torque(py::handle value, const std::string& name);
+
+/// polhode.Rotor: a wheel in a body.
+void bind_scene_rotor(py::module_& m);
+Rotor to_rotor(py::handle value, const std::string& name);
+
+/// Windows of time: pairs (begin, end), or one pair.
+std::vector<torques::Window> to_windows(py::handle value, const char* name);
+py::tuple from_windows(const std::vector<torques::Window>& windows);
 
 }  // namespace polhode::python

@@ -157,16 +157,21 @@ void bind_solve(py::module_& m) {
     }
     return energy;
   });
-  m.def("angular_momentum", [](const Scene& scene, const Array& omega, const Array& attitude) {
+  m.def("angular_momentum", [](const Scene& scene, const Array& t, const Array& omega, const Array& attitude) {
     Array L({omega.shape(0), py::ssize_t{3}});
-    const double *w = omega.data(), *q = attitude.data();
+    const double *in = t.data(), *w = omega.data(), *q = attitude.data();
     double* out = L.mutable_data();
     const std::size_t count = rows(omega);
     {
       const WithoutGil nogil;
-      compute_angular_momentum(scene, count, w, q, out);
+      compute_angular_momentum(scene, count, in, w, q, out);
     }
     return L;
+  });
+  m.def("rotor_speed", [](const Scene& scene, const Array& t, const Array& omega) {
+    Array speed({omega.shape(0), static_cast<py::ssize_t>(scene.rotors().size())});
+    compute_rotor_speed(scene, rows(omega), t.data(), omega.data(), speed.mutable_data());
+    return speed;
   });
   m.def("drift", [](const Scene& scene, const Array& t, const py::object& omega, const py::object& attitude) {
     Motion motion;

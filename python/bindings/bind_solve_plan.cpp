@@ -12,6 +12,8 @@ namespace {
 py::dict describe_facts(const Facts& facts) {
   py::dict all;
   all["free"] = facts.is_free();
+  const Vector3d& h = facts.rotor_momentum;
+  all["rotor_momentum"] = py::make_tuple(h[0], h[1], h[2]);
   all["symmetry"] = to_text(facts.symmetry);
   all["gaps"] = py::make_tuple(facts.gap_low, facts.gap_high);
   all["off_axis"] = facts.off_axis;
@@ -26,8 +28,9 @@ py::dict describe_facts(const Facts& facts) {
   all["sees_rates"] = facts.torques.uses_rates;
   py::list kept;
   if (facts.is_free() || facts.torques.keeps_energy) kept.append("energy");
-  if (facts.is_free()) kept.append("angular_momentum");
-  if (!facts.is_free() && facts.torques.keeps_vertical) kept.append("vertical_momentum");
+  const bool no_torque = facts.torques.acting == (facts.torques.rotors ? 1 : 0);
+  if (no_torque) kept.append("angular_momentum");
+  if (!no_torque && facts.torques.keeps_vertical) kept.append("vertical_momentum");
   if (facts.torques.keeps_jacobi) kept.append("jacobi");
   all["keeps"] = kept;
   all["may_spin_up"] = facts.may_spin_up;

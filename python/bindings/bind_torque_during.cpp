@@ -24,30 +24,35 @@ LastingTorque to_lasting(py::handle value) {
       to_torque(value, "During.torque"));
 }
 
-std::vector<Window> to_windows(py::handle value) {
-  const Array array = to_array(value, "During.windows");
+}  // namespace
+
+std::vector<Window> to_windows(py::handle value, const char* name) {
+  const Array array = to_array(value, name);
   const bool pairs = array.ndim() == 2 && array.shape(1) == 2, one = array.ndim() == 1 && array.shape(0) == 2;
   if (!pairs && !one && array.size() != 0) {
-    throw InvalidInput("During.windows", "pairs (begin, end)", "shape " + std::string(py::str(array.attr("shape"))));
+    throw InvalidInput(name, "pairs (begin, end)", "shape " + std::string(py::str(array.attr("shape"))));
   }
   std::vector<Window> windows;
   for (py::ssize_t i = 0; i + 1 < array.size(); i += 2) windows.push_back({array.data()[i], array.data()[i + 1]});
   return windows;
 }
 
-py::tuple from_windows(const During& torque) {
-  py::tuple windows(torque.windows().size());
-  for (std::size_t i = 0; i < torque.windows().size(); ++i) {
-    windows[i] = py::make_tuple(torque.windows()[i].begin, torque.windows()[i].end);
-  }
-  return windows;
+py::tuple from_windows(const std::vector<Window>& windows) {
+  py::tuple pairs(windows.size());
+  for (std::size_t i = 0; i < windows.size(); ++i) pairs[i] = py::make_tuple(windows[i].begin, windows[i].end);
+  return pairs;
 }
+
+namespace {
 
 std::unique_ptr<OwnDuring> make_during(const py::object& torque, py::handle windows) {
-  return std::unique_ptr<OwnDuring>(new OwnDuring{torque, During(to_lasting(torque), to_windows(windows))});
+  During during(to_lasting(torque), to_windows(windows, "During.windows"));
+  return std::unique_ptr<OwnDuring>(new OwnDuring{torque, std::move(during)});
 }
 
-py::tuple get_during_state(const OwnDuring& own) { return py::make_tuple(own.inner, from_windows(own.torque)); }
+py::tuple get_during_state(const OwnDuring& own) {
+  return py::make_tuple(own.inner, from_windows(own.torque.windows()));
+}
 
 constexpr const char* during_doc =
     R"doc(During(torque, windows)
@@ -76,14 +81,14 @@ void bind_torque_during(py::module_& m) {
   py::class_<OwnDuring>(m, "During", during_doc, py::custom_type_setup(&show_references<OwnDuring>))
       .def(py::init(&make_during), py::arg("torque"), py::arg("windows"))
       .def_property_readonly("torque", [](const OwnDuring& own) { return own.inner; }, "The torque that acts.")
-      .def_property_readonly("windows", [](const OwnDuring& own) { return from_windows(own.torque); },
+      .def_property_readonly("windows", [](const OwnDuring& own) { return from_windows(own.torque.windows()); },
                              "tuple of (begin, end) [s], in the order of time.")
       .def_property_readonly("traits", [](const OwnDuring& own) { return describe_traits(own.torque.traits()); },
                              "dict: uses_time, uses_attitude, uses_rates, has_potential.")
       .def("__repr__",
            [](const OwnDuring& own) {
              return "polhode.torques.During(" + std::string(py::repr(own.inner)) +
-                    ", windows=" + std::string(py::repr(from_windows(own.torque))) + ")";
+                    ", windows=" + std::string(py::repr(from_windows(own.torque.windows()))) + ")";
            })
       .def("__eq__",
            [](const OwnDuring& a, const py::object& b) {

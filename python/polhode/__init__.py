@@ -22,6 +22,7 @@ from ._core import FreeMotion as FreeMotion
 from ._core import HeavyTop as HeavyTop
 from ._core import IntegrationFailure as IntegrationFailure
 from ._core import InvalidInput as InvalidInput
+from ._core import Rotor as Rotor
 from ._core import __version__ as __version__
 from ._scene.scene import Scene as Scene
 from ._solve.motion import Motion as Motion

@@ -73,6 +73,11 @@ def smoke_principal_axes():
     assert isinstance(ph.InertiaTensor(np.diag(BLOCK)).principal(), ph.PrincipalAxes)
 
 
+def smoke_rotor():
+    wheel = ph.Rotor((0, 0, 1), inertia=0.1, speed=5.0)
+    assert wheel.axis.tolist() == [0, 0, 1] and scene(rotors=[wheel]).rotor_momentum.tolist() == [0, 0, 0.5]
+
+
 def smoke_scene():
     assert pickle.loads(pickle.dumps(scene())) == scene() and scene(t0=1.0) != scene()
 
@@ -137,6 +142,7 @@ SMOKE = {
     "Plan": smoke_plan,
     "PrincipalAxes": smoke_principal_axes,
     "Rotation": smoke_rotation,
+    "Rotor": smoke_rotor,
     "Scene": smoke_scene,
     "__version__": smoke_build_info,
     "body_rates": smoke_body_rates,

@@ -27,7 +27,8 @@ State derivative(const Problem& p, Real t, const State& y) {
     for (int m = 0; m < 3; ++m) tau[i] -= p.damping[i][m] * w[m];
     tau[i] -= p.weight * (p.arm[j] * R[6 + k] - p.arm[k] * R[6 + j]);
     tau[i] += 3 * p.mean_motion * p.mean_motion * (u[j] * I[k] * u[k] - u[k] * I[j] * u[j]);
-    f[i] = (tau[i] - (w[j] * I[k] * w[k] - w[k] * I[j] * w[j])) / I[i];
+    const Real Lj = I[j] * w[j] + p.rotors[j], Lk = I[k] * w[k] + p.rotors[k];  // of body and rotors
+    f[i] = (tau[i] - (w[j] * Lk - w[k] * Lj)) / I[i];
     for (int row = 0; row < 3; ++row)  // R' = R [w]x
       f[3 + 3 * row + i] = R[3 * row + j] * w[k] - R[3 * row + k] * w[j];
   }

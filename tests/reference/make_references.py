@@ -33,7 +33,8 @@ ORDER, TOLERANCE, STAGES = 40, -35, 12
 # Largest and first step of the collocation [s]: about half a radian, and the boundary layer of S7b resolved.
 STEPS = {
     "S1": (0.125, 0), "S2": (0.1, 0), "S3": (0.2, 0), "S4": (0.1, 0), "S5": (0.1, 0), "S5c": (0.1, 0), "S6": (40.0, 0),
-    "S7": (0.02, 0), "S7b": (0.0125, 2e-6), "S9": (0.1, 0), "N2": (0.1, 0), "Z1": (0.025, 0),
+    "S7": (0.02, 0), "S7b": (0.0125, 2e-6), "S9": (0.1, 0), "S10": (0.1, 0), "S11": (0.1, 0), "N2": (0.1, 0),
+    "Z1": (0.025, 0),
 }  # fmt: skip
 # A stiff scene is bounded by stability, which a high order hardly helps.
 LOW_ORDER = {"S7b": (24, 30)}
@@ -91,7 +92,19 @@ def inputs(scene: dict) -> dict[str, list]:
             found["damping"] = list(np.ravel(torque.get("matrix") or np.diag(torque["diagonal"])))
         else:
             raise ValueError(f"no reference for this torque: {torque}")
+    if "rotors" in scene:
+        found["rotors"] = rotor_momentum(scene["rotors"])
     return found
+
+
+def rotor_momentum(rotors: list[dict]) -> list:
+    """The sum of the momenta relative to the body, of rotors held at constant speed on body axes."""
+    total = [0.0, 0.0, 0.0]
+    for rotor in rotors:
+        if sorted(rotor["axis"]) != [0.0, 0.0, 1.0] or set(rotor) != {"axis", "momentum"}:
+            raise ValueError(f"no reference for this rotor: {rotor}")
+        total[rotor["axis"].index(1.0)] += rotor["momentum"]
+    return total
 
 
 def compile_programs(folder: Path) -> None:

@@ -30,9 +30,10 @@ inline Vector read_vector(std::istream& in) {
 }
 
 /// Principal moments I, rates w [rad/s] in body axes, attitude q = (x, y, z, w) body to space, and the torques of
-/// the scenes: -weight g at the arm (g = R^T e_z), 3 n^2 u x (I u), a constant, -C w.
+/// the scenes: -weight g at the arm (g = R^T e_z), 3 n^2 u x (I u), a constant, -C w. Rotors have the momentum h
+/// relative to the body, and act by h x w.
 struct Problem {
-  Vector moments{}, omega{}, arm{}, constant{};
+  Vector moments{}, omega{}, arm{}, constant{}, rotors{};
   std::array<Real, 4> attitude{0, 0, 0, 1};
   std::array<Vector, 3> damping{};
   Real weight = 0, mean_motion = 0, phase = 0;
@@ -49,6 +50,7 @@ struct Problem {
       else if (key == "gravity") p.weight = read_real(in), p.arm = read_vector(in);
       else if (key == "gravity_gradient") p.mean_motion = read_real(in), p.phase = read_real(in);
       else if (key == "constant") p.constant = read_vector(in);
+      else if (key == "rotors") p.rotors = read_vector(in);
       else if (key == "damping") for (Vector& row : p.damping) row = read_vector(in);
       else if (key == "options" || key == "times") {
         std::size_t count = 0;

@@ -99,6 +99,10 @@ class Taylor {
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
         if (p_.damping[i][j] != 0) tau[i] -= p_.damping[i][j] * w_[j][n];
+    for (int i = 0; i < 3; ++i) {  // h x w
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      tau[i] += p_.rotors[j] * w_[k][n] - p_.rotors[k] * w_[j][n];
+    }
     if (p_.weight != 0) {  // tau = -weight r x g, g = third row of R
       g_[0][n] = 2 * (product(x_, z_, n) - product(s_, y_, n));
       g_[1][n] = 2 * (product(y_, z_, n) + product(s_, x_, n));

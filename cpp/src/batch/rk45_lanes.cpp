@@ -65,10 +65,12 @@ class EulerLaneProblem final : public LaneProblem {
   const Scene& scene() const { return scene_; }
   bool diagonal() const { return diagonal_; }
   bool attitude() const { return attitude_; }
+  bool rotors() const { return !scene_.rotor_momentum().isZero(0.0); }
 
   std::string kind() const override {
     std::string kind = {static_cast<char>(diagonal_), static_cast<char>(attitude_)};
     for (const AnyTorque& torque : scene_.torques()) kind += static_cast<char>(*describe(torque));
+    if (rotors()) kind += static_cast<char>(LaneTorque::Kind::rotors);
     return kind;
   }
 
@@ -91,9 +93,11 @@ class Rk45Integrator final : public LaneIntegrator {
   Rk45Integrator(const EulerLaneProblem& first, const ode::Tolerances& tolerances)
       : kernels_(find_kernels(first.diagonal(), first.attitude())),
         tolerances_(tolerances),
-        torques_(first.scene().torques().size()) {
+        torques_(first.scene().torques().size() + first.rotors()) {
     b_.rtol = tolerances.rtol, b_.atol = tolerances.atol;
-    for (std::size_t i = 0; i < torques_.size(); ++i) torques_[i].kind = *describe(first.scene().torques()[i]);
+    const std::vector<AnyTorque>& given = first.scene().torques();
+    for (std::size_t i = 0; i < given.size(); ++i) torques_[i].kind = *describe(given[i]);
+    if (first.rotors()) torques_.back().kind = LaneTorque::Kind::rotors;   // last, as in SeveralTorques
     b_.torques = torques_.data(), b_.torque_count = static_cast<int>(torques_.size());
   }
 
@@ -101,11 +105,13 @@ class Rk45Integrator final : public LaneIntegrator {
 
   void load(int lane, const LaneProblem& problem) override {
     const auto& body = static_cast<const EulerLaneProblem&>(problem);
-    for (std::size_t i = 0; i < torques_.size(); ++i) {
+    const std::vector<AnyTorque>& given = body.scene().torques();
+    for (std::size_t i = 0; i < given.size(); ++i) {
       double values[9] = {};
-      describe(body.scene().torques()[i], values);
+      describe(given[i], values);
       put(torques_[i].values, lane, values, 9);
     }
+    if (body.rotors()) put(torques_.back().values, lane, body.scene().rotor_momentum().data(), 3);
     if (body.diagonal()) {
       body.attitude() ? start<true, true>(lane, body.scene()) : start<true, false>(lane, body.scene());
     } else {
@@ -129,7 +135,7 @@ class Rk45Integrator final : public LaneIntegrator {
   template <bool diagonal, bool attitude>
   void start(int lane, const Scene& scene) {
     using Problem = EulerProblem<SeveralTorques, diagonal, attitude>;
-    const SeveralTorques torques{scene.torques()};
+    const SeveralTorques torques = scene.all_torques();
     const Problem problem(scene.inertia_B(), torques);
     put(b_.inertia, lane, scene.inertia_B().matrix().data(), 9), put(b_.inverse, lane, problem.inverse().data(), 9);
     put(b_.difference, lane, problem.difference(), 3), put(b_.inverse_moment, lane, problem.inverse_moment(), 3);

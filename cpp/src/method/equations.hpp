@@ -33,14 +33,15 @@ Trajectory integrate_euler(const Scene& scene, const RunOptions& options) {
     return trajectory;
   };
   const auto& torques = scene.torques();
-  const SeveralTorques all{torques};
+  const SeveralTorques all = scene.all_torques();
+  const bool rotors = !scene.rotor_momentum().isZero(0.0);
   if (!inertia.is_diagonal())
     return with_attitude ? run.template operator()<false, true>(all) : run.template operator()<false, false>(all);
-  if (torques.empty()) {
+  if (!all.any()) {
     return with_attitude ? run.template operator()<true, true>(NoTorque{})
                          : run.template operator()<true, false>(NoTorque{});
   }
-  if (torques.size() == 1 && with_attitude) {
+  if (torques.size() == 1 && with_attitude && !rotors) {
     if (const auto* gravity = std::get_if<torques::Gravity>(&torques.front()))
       return run.template operator()<true, true>(*gravity);
     if (const auto* gradient = std::get_if<torques::GravityGradient>(&torques.front()))
@@ -59,7 +60,7 @@ Trajectory integrate_lagrangian(const Scene& scene, const RunOptions& options) {
     throw InvalidInput("formulation 'lagrangian'", "started away from theta = 0 and pi",
                        "theta = " + to_text(theta) + " rad", cause);
   }
-  const SeveralTorques torques{scene.torques()};
+  const SeveralTorques torques = scene.all_torques();
   const Problem problem(scene.inertia_B(), torques);
   Trajectory trajectory = integrate_problem<Method>(scene, problem, options);
   if (trajectory.status == Status::failed) trajectory.message += std::string(": ") + cause;

@@ -30,6 +30,7 @@ std::string degrees(double angle) {
 
 /// The gravity of a scene in which it is the only torque.
 const torques::Gravity* find_only_gravity(const Scene& scene) {
+  if (scene.torque_sum().rotors) return nullptr;
   const torques::Gravity* found = nullptr;
   for (const AnyTorque& torque : scene.torques()) {
     if (traits(torque).vanishes) continue;
@@ -62,6 +63,8 @@ std::string refuse_free(const Scene& scene, const Facts& facts) {
     if (!names.empty()) names += " and ";
     names += torque_name(torque);
   }
+  if (facts.torques.rotors && facts.torques.acting == 1) return "rotors turn with the body";
+  if (facts.torques.rotors) names += " and rotors";
   return "not free: " + names + (facts.torques.acting == 1 ? " acts" : " act");
 }
 
@@ -113,6 +116,7 @@ std::string refuse_triaxial(const Scene& scene, const Facts& facts) { return ref
 
 std::string refuse_top(const Scene& scene, const Facts& facts) {
   if (facts.is_free()) return "no gravity acts";
+  if (facts.torques.rotors) return "rotors turn with the body";
   const torques::Gravity* gravity = find_only_gravity(scene);
   if (gravity == nullptr) return "needs gravity as the only torque";
   if (std::min(facts.gap_low, facts.gap_high) > symmetry_gap) {

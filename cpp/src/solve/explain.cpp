@@ -108,6 +108,8 @@ void explain_steps(const Scene& scene, const Facts& facts, const SolveOptions& o
   if (facts.is_free() || options.formulation == Formulation::lagrangian) {
     if (options.formulation == Formulation::lagrangian)
       reasons.push_back("Lagrange's equations were requested, so they are integrated.");
+  } else if (facts.torques.rotors && facts.torques.acting == 1) {
+    reasons.push_back("Rotors act on the body by h x omega, so the equations are integrated.");
   } else if (has(scene, "Gravity") && facts.torques.acting == 1) {
     reasons.push_back("Gravity acts, but no closed form is known: " + exact_models().back().refuse(scene, facts) + ".");
   } else {
@@ -167,6 +169,14 @@ void explain_steps(const Scene& scene, const Facts& facts, const SolveOptions& o
   }
 }
 
+void explain_rotors(const Scene& scene, PlanReport& report) {
+  for (std::size_t i = 0; i < scene.rotors().size(); ++i) {
+    if (!scene.rotors()[i].axis_was_scaled()) continue;
+    report.reasons.push_back(format("The axis of rotor %d was not a unit vector. Only its direction counts.",
+                                    static_cast<int>(i)));
+  }
+}
+
 void explain_left_out(const Scene& scene, const Facts& facts, const SolveOptions& options, PlanReport& report) {
   auto& left = report.left_out;
   std::string names;
@@ -209,6 +219,7 @@ PlanReport explain(const Decision& decision, const SolveOptions& options) {
   } else {
     explain_steps(scene, facts, options, report);
   }
+  explain_rotors(scene, report);
   if (facts.only_at_end) report.reasons.push_back("Only one sample time is given, so nothing is interpolated.");
   explain_left_out(scene, facts, options, report);
   return report;

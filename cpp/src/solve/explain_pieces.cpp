@@ -66,6 +66,9 @@ PlanReport explain_pieces(const Decision& decision, const SolveOptions& options)
     report.reasons.push_back(
         "No piece has a closed form, so each is integrated. No step crosses a jump of the torque.");
   }
+  if (has_rotor_windows(scene)) {
+    report.reasons.push_back("The rates jump where a rotor starts or stops: J omega + h is continuous.");
+  }
   report.reasons.push_back("A pilot run estimated the start states of the pieces.");
   if (!report.plan.certify && formulas < parts.size()) {
     report.reasons.push_back("The error is expected, not bounded, because no certificate was requested.");

@@ -44,12 +44,14 @@ void compute_energy(const Scene& scene, std::size_t n, const double* t, const do
   }
 }
 
-void compute_angular_momentum(const Scene& scene, std::size_t n, const double* omega, const double* attitude,
-                              double* L_W) {
+void compute_angular_momentum(const Scene& scene, std::size_t n, const double* t, const double* omega,
+                              const double* attitude, double* L_W) {
+  const bool rotors = scene.torque_sum().rotors;
   for (std::size_t i = 0; i < n; ++i) {
     if (i % rows_between_checks == 0) check_interrupt();
     const double *w = omega + 3 * i, *q = attitude + 4 * i;
-    const Vector3d L_B = scene.inertia_B().matrix() * Vector3d{w[0], w[1], w[2]};
+    Vector3d L_B = scene.inertia_B().matrix() * Vector3d{w[0], w[1], w[2]};
+    if (rotors) L_B += scene.rotor_momentum(t[i]);
     const Vector3d L = rotate({q[0], q[1], q[2], q[3]}, L_B);
     std::copy_n(L.data(), 3, L_W + 3 * i);
   }
@@ -72,8 +74,8 @@ std::map<std::string, double> compute_drift(const Scene& scene, const Motion& mo
   double L0[3] = {};
   double largest_L = 0.0;
   if (has_attitude) {
-    compute_angular_momentum(scene, n, motion.omega.data(), motion.attitude.data(), L.data());
-    compute_angular_momentum(scene, 1, start_omega, start_attitude, L0);
+    compute_angular_momentum(scene, n, motion.t.data(), motion.omega.data(), motion.attitude.data(), L.data());
+    compute_angular_momentum(scene, 1, &motion.start.t, start_omega, start_attitude, L0);
     for (std::size_t i = 0; i < n; ++i)
       largest_L = std::max(largest_L, math::hypot(L[3 * i], L[3 * i + 1], L[3 * i + 2]));
     largest_L = std::max(largest_L, math::hypot(L0[0], L0[1], L0[2]));
@@ -83,7 +85,10 @@ std::map<std::string, double> compute_drift(const Scene& scene, const Motion& mo
     for (std::size_t i = 0; i < n; ++i) {
       moved = std::max(moved, math::hypot(L[3 * i] - L0[0], L[3 * i + 1] - L0[1], L[3 * i + 2] - L0[2]));
     }
-    drift["angular_momentum"] = relative(moved, math::hypot(L0[0], L0[1], L0[2]));
+    // The momenta of a body and its rotors may nearly cancel.
+    const double own = (scene.inertia_B().matrix() * scene.omega()).norm();
+    const double scale = sum.rotors ? own + scene.rotor_momentum().norm() : math::hypot(L0[0], L0[1], L0[2]);
+    drift["angular_momentum"] = relative(moved, scale);
   }
   if (!free && sum.keeps_vertical && has_attitude) {
     double moved = 0.0;

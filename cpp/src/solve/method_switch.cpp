@@ -140,6 +140,7 @@ bool plan_damped(Decision& decision, const SolveOptions& options) {
       options.certify ? std::max(main_coarse, pair_ratio * main.least_rtol) : plan.rtol, turns);
   std::vector<std::string> names;
   for (const AnyTorque& torque : scene.torques()) names.emplace_back(torque_name(torque));
+  if (!scene.rotor_momentum().isZero(0.0)) names.emplace_back("rotors");
   double turns_before = 0.0;
   for (std::size_t i = 0; i < run->t.size() && run->t[i] <= when; ++i) turns_before = run->work[i] / all * turns;
   plan.pieces = {{.begin = scene.t0(),

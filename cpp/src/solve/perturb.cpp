@@ -59,6 +59,14 @@ Torque perturb_torque(const Torque& torque, Perturber& perturber) {
       torque);
 }
 
+Rotor perturb_rotor(const Rotor& rotor, Perturber& perturber) {
+  RotorParts parts = rotor.parts();
+  perturber.apply(parts.axis);
+  for (std::optional<double>* number : {&parts.momentum, &parts.inertia, &parts.speed})
+    if (*number) perturber.apply(**number);
+  return Rotor(std::move(parts));
+}
+
 /// Changes each end of a window by its own value, so that equal ends of two torques stay equal.
 AnyTorque perturb_windows(const AnyTorque& torque, double first, double last, double t0) {
   const auto* during = std::get_if<torques::During>(&torque);
@@ -91,20 +99,25 @@ State perturb_state(const State& state, double units, int seed) {
 
 Scene perturb(const Scene& scene, int units) {
   Perturber perturber(units);
-  Matrix3d I = scene.inertia_B().matrix();
+  Matrix3d I = scene.given_inertia_B().matrix();
   const bool cut = has_windows(scene);   // then equal moments stay equal, because a piece may have a closed form
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j <= i; ++j)
       I(i, j) = I(j, i) = cut ? perturb_alone(I(i, j), units) : perturber(I(i, j));
   SceneParts parts = scene.parts();
-  parts.inertia_B = InertiaTensor::from_trusted(I, scene.inertia_B().physical());
+  parts.inertia_B = InertiaTensor::from_trusted(I, scene.given_inertia_B().physical());
   perturber.apply(parts.omega);
   const Quat& q = scene.attitude();
   parts.attitude = {perturber(q.x), perturber(q.y), perturber(q.z), perturber(q.w)};
   const auto [least, most] = std::minmax_element(scene.times().begin(), scene.times().end());
   const double first = std::min(*least, scene.t0()), last = std::max(*most, scene.t0());
-  for (AnyTorque& torque : parts.torques)
-    torque = perturb_windows(perturb_torque(torque, perturber), first, last, scene.t0());
+  // The rates jump where a rotor starts or stops, so a sample there would move with the time of the jump.
+  const bool windows_stay = has_rotor_windows(scene);
+  for (AnyTorque& torque : parts.torques) {
+    torque = perturb_torque(torque, perturber);
+    if (!windows_stay) torque = perturb_windows(torque, first, last, scene.t0());
+  }
+  for (Rotor& rotor : parts.rotors) rotor = perturb_rotor(rotor, perturber);
   return Scene(std::move(parts));
 }
 

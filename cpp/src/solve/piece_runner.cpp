@@ -32,6 +32,7 @@ class PieceRunner {
   /// Returns false if a piece did not reach its end.
   bool run_direction(const std::vector<Piece>& pieces, const std::vector<std::size_t>& order, const Wanted& want) {
     State start = scene_.start();
+    Vector3d h = scene_.rotor_momentum();
     std::size_t next = 0;
     for (const Piece& piece : pieces) {
       const bool forward = piece.end >= piece.begin, last = &piece == &pieces.back();
@@ -43,11 +44,15 @@ class PieceRunner {
         times.push_back(t);
       }
       if (!last || times.empty()) times.push_back(piece.end);
+      if (const Vector3d h_piece = sum_momenta(piece.rotors, scene_.omega()); h_piece != h) {
+        start.omega += compute_rate_jump(scene_.inertia_B(), h_piece - h);
+        h = h_piece;
+      }
       const Scene part = make_piece_scene(scene_, piece, start, std::move(times), want);
       if (part.torque_sum().acting > 0) require_true_claims(part);
       Motion motion = run_(part, piece, make_options(pieces.back().end));
       add(motion);
-      place(part, motion, std::span(order).subspan(first, next - first));
+      place(part, motion, std::span(order).subspan(first, next - first), piece.end);
       const bool finished = motion.status == Status::finished;
       motion_.t_reached = finished ? piece.end : find_reached(motion, piece);
       if (finished && !last) start = get_end(motion, piece.end, want);
@@ -82,12 +87,18 @@ class PieceRunner {
       motion_.error = std::isnan(motion_.error) ? part.error : std::max(part.error, motion_.error);
   }
 
-  /// Copies the rows of a piece into the rows of the motion.
-  void place(const Scene& part, const Motion& motion, std::span<const std::size_t> order) {
+  /// Copies the rows of a piece into the rows of the motion. A sample at the end of a forward piece has the rates after
+  /// the jump there, because a window includes its begin.
+  void place(const Scene& part, const Motion& motion, std::span<const std::size_t> order, double end) {
     std::size_t row = 0;
+    Vector3d jump = Vector3d::Zero();
+    if (const Vector3d dh = scene_.rotor_momentum(end) - part.rotor_momentum(); !dh.isZero(0.0))
+      jump = compute_rate_jump(scene_.inertia_B(), dh);
     for (std::size_t i = 0; i < order.size() && row < motion.t.size(); ++i) {
       if (motion.t[row] != part.times()[i]) continue;
       if (!motion_.omega.empty()) std::copy_n(motion.omega.data() + 3 * row, 3, motion_.omega.data() + 3 * order[i]);
+      if (!motion_.omega.empty() && motion.t[row] == end)
+        for (int k = 0; k < 3; ++k) motion_.omega[3 * order[i] + static_cast<std::size_t>(k)] += jump[k];
       if (!motion_.attitude.empty())
         std::copy_n(motion.attitude.data() + 4 * row, 4, motion_.attitude.data() + 4 * order[i]);
       reached_[order[i]] = 1;

@@ -37,11 +37,36 @@ std::vector<AnyTorque> find_acting(const Scene& scene, double begin, double end)
   return acting;
 }
 
+/// The rotors that rotate between two times, without their windows.
+std::vector<Rotor> find_rotating(const std::vector<Rotor>& rotors, double begin, double end) {
+  std::vector<Rotor> rotating;
+  for (const Rotor& rotor : rotors) {
+    if (!(begin < end ? rotor.rotates_throughout(begin, end) : rotor.rotates_at(begin))) continue;
+    RotorParts parts = rotor.parts();
+    parts.windows.clear();
+    rotating.emplace_back(std::move(parts));
+  }
+  return rotating;
+}
+
 }  // namespace
 
 bool has_windows(const Scene& scene) {
-  return std::any_of(scene.torques().begin(), scene.torques().end(),
+  return has_rotor_windows(scene) ||
+         std::any_of(scene.torques().begin(), scene.torques().end(),
                      [](const AnyTorque& torque) { return std::holds_alternative<During>(torque); });
+}
+
+bool has_rotor_windows(const Scene& scene) {
+  return std::any_of(scene.rotors().begin(), scene.rotors().end(),
+                     [](const Rotor& rotor) { return !rotor.windows().empty(); });
+}
+
+Vector3d compute_rate_jump(const InertiaTensor& J_B, const Vector3d& dh_B) {
+  const Matrix3d& J = J_B.matrix();
+  if (J_B.is_diagonal()) return {-dh_B[0] / J(0, 0), -dh_B[1] / J(1, 1), -dh_B[2] / J(2, 2)};
+  const Vector3d dh_P = J_B.axes().transpose() * dh_B;
+  return -(J_B.axes() * dh_P.cwiseQuotient(J_B.moments()));
 }
 
 Pieces cut(const Scene& scene, std::vector<double> method_switches) {
@@ -57,15 +82,26 @@ Pieces cut(const Scene& scene, std::vector<double> method_switches) {
       }
     }
   }
+  const SceneParts parts = scene.parts();   // free rotors have their momentum
+  bool ends_at_jump = false;
+  for (const Rotor& rotor : parts.rotors) {
+    for (const torques::Window& window : rotor.windows()) {
+      for (const double t : {window.begin, window.end}) {
+        if (first < t && t < last) edges.push_back(t);
+        ends_at_jump = ends_at_jump || t == last;
+      }
+    }
+  }
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
 
   Pieces pieces;
-  pieces.whole = edges.empty();
+  pieces.whole = edges.empty() && !ends_at_jump;
   pieces.method_switches = std::move(method_switches);
   const auto add = [&](std::vector<Piece>& direction, double end) {
     const double begin = direction.empty() ? t0 : direction.back().end;
-    direction.push_back({begin, end, find_acting(scene, std::min(begin, end), std::max(begin, end))});
+    const double from = std::min(begin, end), to = std::max(begin, end);
+    direction.push_back({begin, end, find_acting(scene, from, to), find_rotating(parts.rotors, from, to)});
   };
   if (std::any_of(scene.times().begin(), scene.times().end(), [t0](double t) { return t >= t0; })) {
     for (const double t : edges) {
@@ -84,20 +120,22 @@ Pieces cut(const Scene& scene, std::vector<double> method_switches) {
 
 Scene make_piece_scene(const Scene& scene, const Piece& piece, const State& start, std::vector<double> times,
                        const Wanted& want) {
-  return Scene(SceneParts{.inertia_B = scene.inertia_B(),
+  return Scene(SceneParts{.inertia_B = scene.given_inertia_B(),
                           .omega = start.omega,
                           .attitude = start.attitude,
                           .torques = piece.torques,
                           .times = std::move(times),
                           .want = want,
                           .t0 = start.t,
-                          .name = scene.name()});
+                          .name = scene.name(),
+                          .rotors = piece.rotors});
 }
 
 Scene drop_windows(const Scene& scene) {
   const auto [first, last] = find_span(scene);
   SceneParts parts = scene.parts();
   parts.torques = find_acting(scene, first, last);
+  parts.rotors = find_rotating(parts.rotors, first, last);
   return Scene(std::move(parts));
 }
 

@@ -7,13 +7,14 @@
 
 #include "polhode/solve/solve.hpp"
 
-// A span that is cut where torques start or stop. Each piece is integrated from the end of the last.
+// A span that is cut where torques or rotors start or stop. Each piece is integrated from the end of the last.
 namespace polhode {
 
-/// A part of the span with a fixed set of torques. `end` is before `begin` in a backward run.
+/// A part of the span with a fixed set of torques and rotors. `end` is before `begin` in a backward run.
 struct Piece {
   double begin, end;
   std::vector<AnyTorque> torques;   ///< those that act, without their windows
+  std::vector<Rotor> rotors;        ///< those that rotate, without their windows
   PiecePlan plan = {};              ///< its model and method; no method before planning
 };
 
@@ -28,6 +29,10 @@ struct Pieces {
 };
 
 bool has_windows(const Scene& scene);
+bool has_rotor_windows(const Scene& scene);
+
+/// The change of omega where the momentum of the rotors jumps by dh: -J^-1 dh, because J w + h is continuous.
+Vector3d compute_rate_jump(const InertiaTensor& J_B, const Vector3d& dh_B);
 
 /// @param method_switches  further times at which to cut
 Pieces cut(const Scene& scene, std::vector<double> method_switches = {});

@@ -127,6 +127,7 @@ class PiecePlanner {
     for (const AnyTorque& torque : part.torques()) {
       if (!traits(torque).vanishes) plan.torques.emplace_back(torque_name(torque));
     }
+    if (!part.rotor_momentum().isZero(0.0)) plan.torques.emplace_back("rotors");
     std::optional<ClosedForm> form;
     if (method_is_free(options_) || options_.method == "exact") form = find_closed_form(part, facts);
     if (form) {
@@ -204,6 +205,7 @@ class PiecePlanner {
         acting.push_back(torque);
     }
     all.torques = summarize(acting);
+    if (scene_.torque_sum().rotors) add_rotors(all.torques, scene_.torque_sum().steady_rotors);
     all.turns = turns_, all.stiffness = 0.0, all.decay = 0.0, all.may_spin_up = false, all.call_seconds = call_seconds_;
     for (const Facts& facts : facts_) {
       all.stiffness += facts.stiffness;

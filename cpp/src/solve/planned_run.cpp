@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "method/method.hpp"
 #include "polhode/core/error.hpp"
@@ -27,6 +28,13 @@ std::optional<Scene> zero_negligible_rates(const Scene& piece, const Scene& whol
   SceneParts parts = piece.parts();
   parts.omega.setZero();
   return Scene(std::move(parts));
+}
+
+/// Adds the rounding of a jump of the rates, and of the momentum behind it, to the errors that a trace carries.
+void add_jump(const Scene& part, const Vector3d& dh, ode::ErrorTrace& trace) {
+  constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
+  const double size = rounding * trace.scale * dh.norm() / part.inertia_B().moments()[0];
+  for (int i = 0; i < 3; ++i) trace.spread[i] += std::copysign(size, trace.spread[i]);
 }
 
 void copy_plans(const std::vector<Piece>& from, std::vector<Piece>& to) {
@@ -63,6 +71,7 @@ Motion run_planned(const Decision& decision, const Scene& scene, const SolveOpti
     const double least = taylor_method.record.least_rtol;
     return Motion(taylor_method.integrate(start, to_run_options(piece_options, {std::max(rtol, least)})));
   };
+  Vector3d h = Vector3d::Zero();   // of the rotors before the piece
   const auto run_piece = [&](const Scene& part, const Piece& piece, const SolveOptions& piece_options) {
     if (trace == nullptr) return run_one(part, piece, piece_options);
     if (piece.begin == scene.t0()) {
@@ -71,7 +80,10 @@ Motion run_planned(const Decision& decision, const Scene& scene, const SolveOpti
       const double start[ode::series_width] = {w[0], w[1], w[2], 0.0, q.x, q.y, q.z, q.w};
       trace->start(start);
       trace->continued = true;
+      h = scene.rotor_momentum();
     }
+    if (part.rotor_momentum() != h) add_jump(part, part.rotor_momentum() - h, *trace);
+    h = part.rotor_momentum();
     Motion motion = run_one(part, piece, piece_options);
     trace->before += std::abs(piece.end - piece.begin);
     return motion;

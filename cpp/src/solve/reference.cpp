@@ -60,7 +60,7 @@ class LongDoubleSeries {
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) I_[i][j] = I(i, j);
     invert();
-    for (int i = 0; i < 3; ++i) w_[index(i)][0] = scene.omega()[i];
+    for (int i = 0; i < 3; ++i) w_[index(i)][0] = scene.omega()[i], h_[index(i)] = scene.rotor_momentum()[i];
     const Quat& q = scene.attitude();
     const Real parts[4] = {q.x, q.y, q.z, q.w};   // a unit quaternion up to float64 rounding
     const Real size = std::sqrt(parts[0] * parts[0] + parts[1] * parts[1] + parts[2] * parts[2] + parts[3] * parts[3]);
@@ -71,7 +71,7 @@ class LongDoubleSeries {
   void expand(Real t) {
     for (int n = 0; n < order_; ++n) {
       const auto at = index(n), next = index(n + 1);
-      for (int i = 0; i < 3; ++i) L_[index(i)][at] = apply(I_, i, w_, n);
+      for (int i = 0; i < 3; ++i) L_[index(i)][at] = apply(I_, i, w_, n) + (n == 0 ? h_[index(i)] : 0);
       Real tau[3];
       for (int i = 0; i < 3; ++i) {   // L x w
         const auto j = index((i + 1) % 3), k = index((i + 2) % 3);
@@ -109,6 +109,12 @@ class LongDoubleSeries {
   void state(Real s, Real* y) const {
     for (int i = 0; i < 3; ++i) y[i] = evaluate(w_[index(i)], s);
     for (int i = 0; i < 4; ++i) y[3 + i] = evaluate(q_[index(i)], s);
+  }
+  /// Changes the rates of a state where the momentum of the rotors jumps from that of this body: J w + h is continuous.
+  void jump(const Vector3d& h, Real* y) const {
+    const Real dh[3] = {h[0] - h_[0], h[1] - h_[1], h[2] - h_[2]};
+    for (std::size_t i = 0; i < 3; ++i)
+      y[i] -= inverse_[i][0] * dh[0] + inverse_[i][1] * dh[1] + inverse_[i][2] * dh[2];
   }
   void restart(const Real* y) {
     for (int i = 0; i < 3; ++i) w_[index(i)][0] = y[i];
@@ -206,6 +212,7 @@ class LongDoubleSeries {
   const Scene* scene_;
   int order_;
   Square I_{}, inverse_{};
+  std::array<Real, 3> h_{};     // of the rotors
   Vector w_, L_, row_x_, row_y_, row_z_;
   std::array<Series, 4> q_;
   struct Orbit {
@@ -227,7 +234,15 @@ void follow(const Scene& scene, const ReferenceOptions& options, const std::vect
         make_piece_scene(scene, piece, {piece.begin, scene.omega(), scene.attitude()}, {piece.end}, scene.want()));
   }
   std::size_t at = 0;
-  LongDoubleSeries body(scenes[at], options.order);
+  LongDoubleSeries body(scene, options.order);
+  const auto enter_piece = [&](Real* y) {
+    body.jump(scenes[at].rotor_momentum(), y);
+    body = LongDoubleSeries(scenes[at], options.order);
+    body.restart(y);
+  };
+  Real start[7];
+  body.state(0, start);
+  enter_piece(start);
   Real t = scene.t0();
   std::size_t next = 0;
   for (long steps = 0; next < visit.size(); ++steps) {
@@ -242,6 +257,8 @@ void follow(const Scene& scene, const ReferenceOptions& options, const std::vect
       if (std::fabs(s) > size) break;
       Real y[7];
       body.state(s, y);
+      const double when = scene.times()[visit[next]];
+      if (when == pieces[at].end) body.jump(scene.rotor_momentum(when), y);
       for (std::size_t i = 0; i < 3; ++i) found.omega[3 * visit[next] + i] = static_cast<double>(y[i]);
       for (std::size_t i = 0; i < 4; ++i) found.attitude[4 * visit[next] + i] = static_cast<double>(y[3 + i]);
     }
@@ -251,8 +268,8 @@ void follow(const Scene& scene, const ReferenceOptions& options, const std::vect
     t += h;
     ++found.steps;
     if (std::fabs(left) <= size && at + 1 < pieces.size()) {
-      body = LongDoubleSeries(scenes[++at], options.order);
-      body.restart(y);
+      ++at;
+      enter_piece(y);
       t = Real(pieces[at].begin);
     }
   }

@@ -13,12 +13,13 @@ std::string show(const Window& window) {
   return std::string("[").append(to_text(window.begin)).append(", ").append(to_text(window.end)).append("]");
 }
 
-/// Sorts the windows by time and merges windows that touch.
-std::vector<Window> arrange(std::vector<Window> windows) {
+}  // namespace
+
+std::vector<Window> arrange(std::vector<Window> windows, std::string_view where) {
   for (const Window& window : windows) {
     if (window.begin < window.end) continue;
     const bool known = !std::isnan(window.begin) && !std::isnan(window.end);
-    throw InvalidInput("During.windows", "pairs of a begin and a later end", show(window),
+    throw InvalidInput(where, "pairs of a begin and a later end", show(window),
                        !known                 ? ""
                        : window.begin == window.end ? "the window is empty"
                                               : "begin and end are swapped");
@@ -27,7 +28,7 @@ std::vector<Window> arrange(std::vector<Window> windows) {
   std::vector<Window> merged;
   for (const Window& window : windows) {
     if (!merged.empty() && window.begin < merged.back().end) {
-      throw InvalidInput("During.windows", "apart from each other", show(merged.back()) + " and " + show(window),
+      throw InvalidInput(where, "apart from each other", show(merged.back()) + " and " + show(window),
                          "give two torques if both should act at once");
     }
     if (!merged.empty() && window.begin == merged.back().end) {
@@ -39,10 +40,8 @@ std::vector<Window> arrange(std::vector<Window> windows) {
   return merged;
 }
 
-}  // namespace
-
 During::During(LastingTorque torque, std::vector<Window> windows)
-    : torque_(std::move(torque)), windows_(arrange(std::move(windows))) {}
+    : torque_(std::move(torque)), windows_(arrange(std::move(windows), "During.windows")) {}
 
 const TorqueRecord& During::record() {
   static constexpr TorqueRecord record{

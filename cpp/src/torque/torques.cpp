@@ -4,6 +4,7 @@ namespace polhode {
 
 void SeveralTorques::add(const TorqueInput& in, double* tau_B) const {
   for (const AnyTorque& torque : torques) std::visit([&](const auto& one) { one.add(in, tau_B); }, torque);
+  if (!rotor_momentum.isZero(0.0)) add_rotors(rotor_momentum.data(), in.omega, tau_B);
 }
 
 TorqueTraits traits(const AnyTorque& torque) {
@@ -39,6 +40,15 @@ TorqueSum summarize(std::span<const AnyTorque> torques) {
   sum.keeps_energy = sum.has_potential && !rotating && stationary;
   sum.keeps_jacobi = sum.has_potential && rotating && same_pattern;
   return sum;
+}
+
+void add_rotors(TorqueSum& sum, bool steady) {
+  ++sum.acting;
+  sum.rotors = sum.uses_rates = true;
+  sum.steady_rotors = steady;
+  if (steady) return;
+  sum.uses_time = true;
+  sum.keeps_energy = sum.keeps_jacobi = false;   // the motor of a wheel does work
 }
 
 }  // namespace polhode

@@ -596,12 +596,97 @@ class HeavyTop:
         """
         Signed along the symmetry axis [N m].
         """
+class Rotor:
+    """
+    Rotor(axis, *, momentum=None, inertia=None, speed=None, free=False, during=None)
+
+    A symmetric rotor on an axis fixed in the body: a wheel, a propeller, a spinning platform.
+
+    Euler's equations of the body become ``J omega' + omega x (J omega + h) = torque``. All rotors of a scene together give
+    h. The inertia of a scene always includes its rotors, locked. A rotor that a motor holds at a constant relative speed
+    leaves J as it is, and ``h = inertia * speed * axis``. A rotor that is free on its bearing has a constant absolute
+    momentum about its axis, ``inertia * (speed + axis . omega)``. J is then less its axial moment.
+
+    Parameters
+    ----------
+    axis : array_like, shape (3,)
+        Direction in body axes. It is divided by its length.
+    momentum : float, optional
+        Angular momentum about the axis [kg m^2/s]. Held: relative to the body. Free: absolute.
+    inertia : float, optional
+        Moment of inertia about the axis [kg m^2].
+    speed : float, optional
+        Speed relative to the body at the start [rad/s]. Give `momentum`, or `inertia` and `speed`, or `momentum` and
+        `inertia`.
+    free : bool
+        True if no motor holds the speed. Without `inertia`, the scene's inertia must leave out the axial moment already.
+    during : array_like, shape (n, 2) or (2,), optional
+        Windows of time [s] in which a held rotor rotates; outside them it is at rest in the body. J omega + h is continuous
+        where it starts or stops, so omega jumps by ``-J^-1 dh``.
+
+    Raises
+    ------
+    InvalidInput
+        For an axis that is zero or not finite, numbers that are not finite, an inertia that is not positive, too many or
+        too few numbers, and windows of a free rotor.
+
+    Notes
+    -----
+    Wittenburg 1977, Dynamics of Systems of Rigid Bodies, sec. 4.6; Hughes 1986, Spacecraft Attitude Dynamics, ch. 6.
+    """
+    def __eq__(self, arg0: typing.Any) -> bool:
+        ...
+    def __getstate__(self) -> tuple[typing.Any, ...]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, axis: typing.Any, *, momentum: typing.Any = None, inertia: typing.Any = None, speed: typing.Any = None, free: typing.Any = False, during: typing.Any = None) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
+        ...
+    @property
+    def axis(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Unit vector in body axes, shape (3,).
+        """
+    @property
+    def during(self) -> typing.Any:
+        """
+        tuple of (begin, end) [s], in the order of time, or None.
+        """
+    @property
+    def free(self) -> bool:
+        """
+        True if it is free on its bearing.
+        """
+    @property
+    def inertia(self) -> float | None:
+        """
+        Moment about the axis [kg m^2], or None.
+        """
+    @property
+    def momentum(self) -> float | None:
+        """
+        As given [kg m^2/s], or None.
+        """
+    @property
+    def speed(self) -> float | None:
+        """
+        Relative to the body at the start [rad/s], or None.
+        """
 class Scene:
-    def __init__(self, inertia: typing.Any, omega: typing.Any, attitude: typing.Any, torques: collections.abc.Iterable[typing.Any], times: typing.Any, want: typing.Any, t0: typing.Any, name: typing.Any) -> None:
+    def __init__(self, inertia: typing.Any, omega: typing.Any, attitude: typing.Any, torques: collections.abc.Iterable[typing.Any], times: typing.Any, want: typing.Any, t0: typing.Any, name: typing.Any, rotors: collections.abc.Iterable[typing.Any]) -> None:
         ...
     @property
     def attitude(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
+    @property
+    def carrier_inertia(self) -> InertiaTensor:
+        """
+        InertiaTensor J that moves with omega: `inertia` less the axial moments of free rotors.
+        """
     @property
     def inertia(self) -> InertiaTensor:
         ...
@@ -610,6 +695,14 @@ class Scene:
         ...
     @property
     def omega(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def rotor_momentum(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        h, the sum of the rotors' momenta in body axes at the start, shape (3,) [kg m^2/s].
+        """
+    @property
+    def rotors(self) -> tuple[typing.Any, ...]:
         ...
     @property
     def t0(self) -> float:
@@ -692,7 +785,7 @@ def _nome(arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg1: t
     ...
 def _solve_many(scenes: list[typing.Any], moments: typing.Any, omega: typing.Any, attitude: typing.Any, bodies: typing.SupportsInt | typing.SupportsIndex, times: typing.SupportsInt | typing.SupportsIndex, omega_out: typing.Any, attitude_out: typing.Any, options: dict[str, typing.Any], threads: typing.SupportsInt | typing.SupportsIndex) -> dict[str, typing.Any]:
     ...
-def angular_momentum(arg0: Scene, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+def angular_momentum(arg0: Scene, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg3: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
     ...
 def build_info() -> dict[str, str]:
     """
@@ -750,6 +843,8 @@ def require_kept(array: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     """
     Raises InvalidInput for a number that this thread takes for 0.
     """
+def rotor_speed(arg0: Scene, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+    ...
 def shape_records() -> list[typing.Any]:
     """
     (name, doc, ((parameter, size, doc), ...)) of every shape.

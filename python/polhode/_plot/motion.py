@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import torques
 from .._attitude.rotation import Rotation
-from .._core import InvalidInput, energy
+from .._core import InvalidInput, angular_momentum, energy
 from .._solve.motion import Floats, Motion
 from .._solve.solve import solve
 from . import style
@@ -119,7 +119,7 @@ def _faded(axes: Any, points: Floats, front: Any, colour: str, width: float, zor
 def _polhode(figure: Any, cell: Any, motion: Motion, curve: Curve) -> None:
     axes, view = figure.add_subplot(cell), make_view()
     paper = np.stack([view.right, view.up], axis=1)
-    inertia = motion.scene.inertia
+    inertia = motion.scene.carrier_inertia
     moments = np.asarray(inertia.moments)
     w = curve.omega @ np.asarray(inertia.axes)   # R_BP^T omega_B
     energies = w**2 @ moments
@@ -132,7 +132,8 @@ def _polhode(figure: Any, cell: Any, motion: Motion, curve: Curve) -> None:
     semi = np.sqrt(energies[0] / moments)
     axes.fill(*outline(semi, view).T, facecolor="#f3f6f9", edgecolor=style.FLOOR, linewidth=1.0, zorder=1)
     plain, separatrix = family(moments, float(energies[0]))
-    for points, colour, width in ((plain, style.FLOOR, 0.7), (separatrix, style.QUIET, 1.2)):
+    curves = ((plain, style.FLOOR, 0.7), (separatrix, style.QUIET, 1.2))
+    for points, colour, width in () if motion.scene.rotors else curves:   # the family is that of free bodies
         for path in points:
             _faded(axes, path @ paper, in_front(path, semi, view), colour, width, 2)
     for k in range(3):
@@ -153,7 +154,7 @@ def _herpolhode(figure: Any, cell: Any, motion: Motion, curve: Curve) -> None:
     axes = figure.add_subplot(cell)
     assert curve.attitude is not None
     turn = Rotation.from_quat(curve.attitude)
-    momentum = turn[0].apply(curve.omega[0] @ motion.scene.inertia.matrix)
+    momentum = turn[0].apply(_momentum(motion, curve.t[:1], curve.omega[:1])[0])
     axes.set_aspect("equal")
     axes.set_title("herpolhode: the tip of ω in space, across L")
     axes.set_xlabel("rad/s")
@@ -165,6 +166,12 @@ def _herpolhode(figure: Any, cell: Any, motion: Motion, curve: Curve) -> None:
     axes.plot(0, 0, marker="+", markersize=9, color=style.QUIET)
     axes.annotate("L", (0, 0), xytext=(5, 4), textcoords="offset points", color=style.QUIET, fontsize=9)
     _square(axes, path)
+
+
+def _momentum(motion: Motion, t: Floats, omega: Floats) -> Floats:
+    """The momentum of body and rotors in body axes."""
+    identity = np.tile([0.0, 0.0, 0.0, 1.0], (len(t), 1))
+    return np.asarray(angular_momentum(motion.scene, np.ascontiguousarray(t), np.ascontiguousarray(omega), identity))
 
 
 def _square(axes: Any, path: Floats) -> None:
@@ -236,8 +243,8 @@ def _invariants(figure: Any, cell: Any, motion: Motion, curve: Curve) -> None:
         axes.set_ylabel("relative, from the start")
         axes.legend(frameon=False, fontsize=8.5, loc="upper left", markerscale=3)
         return
-    kinetic = 0.5 * np.sum(motion.omega * (motion.omega @ motion.scene.inertia.matrix), axis=1)
-    size = np.linalg.norm(motion.omega @ motion.scene.inertia.matrix, axis=1)
+    kinetic = 0.5 * np.sum(motion.omega * (motion.omega @ motion.scene.carrier_inertia.matrix), axis=1)
+    size = np.linalg.norm(_momentum(motion, motion.t, motion.omega), axis=1)
     for name, values, colour in (("kinetic energy", kinetic, "#d55e00"), ("|L|", size, "#0072b2")):
         start = values[order][0]
         axes.plot(motion.t[order], (values / start if start > 0 else values)[order], color=colour, linewidth=1.5,
@@ -251,7 +258,7 @@ def _moves(motion: Motion) -> dict[str, Floats]:
     """How far energy and momentum are from their start, relative, of those that `motion.drift` says should hold."""
     assert motion.omega is not None
     scene, found = motion.scene, {}
-    kinetic = 0.5 * np.sum(motion.omega * (motion.omega @ scene.inertia.matrix), axis=1)
+    kinetic = 0.5 * np.sum(motion.omega * (motion.omega @ scene.carrier_inertia.matrix), axis=1)
     if "energy" in motion.drift:
         total = np.asarray(energy(scene, motion.t, motion.omega, motion.attitude))
         size = max(float(kinetic.max()), float(np.abs(total).max()))

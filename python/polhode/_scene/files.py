@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal, Union
 import numpy as np
 
 from .. import _files, torques
-from .._core import InvalidInput
+from .._core import InvalidInput, Rotor
 from .bodies import attitude_of, body_inertia, body_model, place_meshes
 from .scene import Scene, scene_folder
 from .validation import euler_model, kinds, model, one_of, validate
@@ -45,9 +45,13 @@ def scene_model() -> Any:
                    samples=(Annotated[int, Field(ge=1, le=MOST_SAMPLES)] | None, None))
     any_torque: Any = Union[tuple(_torque_models())]
     torque: Any = Annotated[any_torque, Field(discriminator="kind")]
+    rotor: Any = model("Rotor", axis=(kind.vector, ...), momentum=(kind.number | None, None),
+                       inertia=(kind.number | None, None), speed=(kind.number | None, None), free=(bool, False),
+                       during=(kind.windows | None, None))
     return model("SceneFile", name=(str, ""), title=(str, ""), about=(str, ""),
                   want=(list[Literal["omega", "attitude"]], ["omega", "attitude"]),
-                  body=(body_model(), ...), start=(start, ...), torques=(list[torque], []), times=(times, ...))
+                  body=(body_model(), ...), start=(start, ...), torques=(list[torque], []), rotors=(list[rotor], []),
+                  times=(times, ...))
 
 
 def _torque_models() -> list[Any]:
@@ -104,6 +108,16 @@ def _torque(entry: Any) -> Any:
     return torque if entry.during is None else torques.During(torque, entry.during)
 
 
+def _rotors(entries: list[Any]) -> list[Rotor]:
+    rotors = []
+    for i, entry in enumerate(entries):
+        try:
+            rotors.append(Rotor(**entry.model_dump()))
+        except InvalidInput as error:
+            raise InvalidInput(f"rotors[{i}]: {error}") from None
+    return rotors
+
+
 def make_scene(data: dict[str, Any], where: str = "scene") -> Scene:
     """Build a scene from the content of a scene file."""
     entry = validate(scene_model(), data, where)
@@ -125,6 +139,7 @@ def make_scene(data: dict[str, Any], where: str = "scene") -> Scene:
             want=entry.want,
             t0=start.t0,
             name=entry.name,
+            rotors=_rotors(entry.rotors),
         )
     except InvalidInput as error:
         raise InvalidInput(f"{where}: {error}") from None

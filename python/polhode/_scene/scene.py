@@ -1,4 +1,4 @@
-"""Scenes: a body, its start, its torques, and the requested samples."""
+"""Scenes: a body with its rotors, its start, its torques, and the requested samples."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 
 
 class Scene(_core.Scene):
-    """A body, its start, its torques, and the sample times.
+    """A body with its rotors, its start, its torques, and the sample times.
 
     Parameters
     ----------
     inertia : InertiaTensor, or array_like of shape (3,) or (3, 3)
         About the centre of mass, or about the pivot of a body with one [kg m^2]. Three numbers are principal moments
-        about the body axes, in any order.
+        about the body axes, in any order. Rotors are part of the body, locked.
     omega : array_like, shape (3,)
         Angular velocity in body axes at `t0` [rad/s].
     attitude : array_like, shape (4,), or Rotation
@@ -37,6 +37,8 @@ class Scene(_core.Scene):
         Start time [s].
     name : str
         Name in tables and charts.
+    rotors : iterable of Rotor, optional
+        Wheels in the body, in any number. See `Rotor`.
 
     Raises
     ------
@@ -58,11 +60,14 @@ class Scene(_core.Scene):
         want: Iterable[str] = ("omega", "attitude"),
         t0: float = 0.0,
         name: str = "",
+        rotors: Iterable[_core.Rotor] = (),
     ) -> None:
         if not isinstance(torques, Iterable):
             torques = (torques,)
+        if not isinstance(rotors, Iterable):
+            rotors = (rotors,)
         kept = tuple(torques)
-        super().__init__(inertia, omega, attitude, kept, times, want, t0, name)
+        super().__init__(inertia, omega, attitude, kept, times, want, t0, name, rotors)
         self._torques = kept   # the compiled scene holds plain pointers to their functions
 
     @property
@@ -93,6 +98,7 @@ class Scene(_core.Scene):
             "want": self.want,
             "t0": self.t0,
             "name": self.name,
+            "rotors": self.rotors,
         }
 
     def replace(self, **changes: Any) -> Scene:
@@ -117,7 +123,8 @@ class Scene(_core.Scene):
         moments = ", ".join(f"{m:.6g}" for m in self.inertia.moments)
         names = ", ".join(type(torque).__name__ for torque in self.torques) or "none"
         times = self.times
-        return (f"Scene({self.name or 'unnamed'}: moments ({moments}), torques {names}, "
+        rotors = f", {len(self.rotors)} rotor{'s' * (len(self.rotors) > 1)}" if self.rotors else ""
+        return (f"Scene({self.name or 'unnamed'}: moments ({moments}), torques {names}{rotors}, "
                 f"{times.size} times from {times.min():g} to {times.max():g} s)")
 
 

@@ -129,25 +129,36 @@ class Motion:
 
     @property
     def energy(self) -> Floats:
-        """Kinetic plus potential energy at the samples, shape (n,) [J]."""
+        """Kinetic plus potential energy at the samples, shape (n,) [J], without that inside rotors."""
         self._need("omega", *(["attitude"] if any(t.traits["has_potential"] for t in self.scene.torques) else []))
         assert self.omega is not None
         return _core.energy(self.scene, self.t, self.omega, self.attitude)
 
     @property
     def angular_momentum(self) -> Floats:
-        """Angular momentum in space axes at the samples, shape (n, 3) [kg m^2/s]."""
+        """Angular momentum of body and rotors in space axes at the samples, shape (n, 3) [kg m^2/s]."""
         self._need("omega", "attitude")
         assert self.omega is not None and self.attitude is not None
-        return _core.angular_momentum(self.scene, self.omega, self.attitude)
+        return _core.angular_momentum(self.scene, self.t, self.omega, self.attitude)
+
+    @property
+    def rotor_speed(self) -> Floats:
+        """The speeds of the scene's rotors relative to the body at the samples, shape (n, rotors) [rad/s].
+
+        A free rotor's speed changes with the body's rates. The speed of a held rotor is constant, and 0 outside its
+        windows. A rotor without an inertia has NaN.
+        """
+        self._need("omega")
+        assert self.omega is not None
+        return _core.rotor_speed(self.scene, self.t, self.omega)
 
     @property
     def drift(self) -> dict[str, float]:
         """The largest relative change of each invariant over the samples.
 
-        The keys are "energy", "angular_momentum" (free bodies), "vertical_momentum" (under gravity) and "jacobi"
-        (gravity gradient: energy less mean motion times L_z). Quantities that the scene does not conserve are left out,
-        and those that need a state that was not requested.
+        The keys are "energy", "angular_momentum" (free bodies, with their rotors), "vertical_momentum" (under gravity)
+        and "jacobi" (gravity gradient: energy less mean motion times L_z). Quantities that the scene does not conserve
+        are left out, and those that need a state that was not requested.
         """
         kept = self.__dict__.get("_drift")
         if kept is None:

@@ -27,7 +27,7 @@ class Piece(NamedTuple):
 
     begin: float                # [s]
     end: float                  # [s]
-    torques: tuple[str, ...]    # the names of the acting torques
+    torques: tuple[str, ...]    # the names of the acting torques, and "rotors"
     model: str                  # a closed form's name, or "euler" or "lagrangian"
     method: str                 # "exact", or a name of `methods()`
     turns: float                # expected revolutions
@@ -58,8 +58,9 @@ class Plan:
     predicted_error, predicted_seconds : float
         The expected error, and the expected time of `solve` [s] with its plan and every run of the certificate.
     facts : dict
-        The properties of the scene that determine the plan, dimensionless except "span" [s], "decay" [1/s] and
-        "call_seconds" [s]. "effort" is the number of revolutions that take as many steps as the motion. "call_seconds"
+        The properties of the scene that determine the plan, dimensionless except "span" [s], "decay" [1/s],
+        "rotor_momentum" [N m s] and "call_seconds" [s]. "rotor_momentum" is the sum h of the rotors' momenta in body
+        axes at the start. "effort" is the number of revolutions that take as many steps as the motion. "call_seconds"
         is the measured time of a call of your own torques; no choice depends on it.
     candidates : tuple of Candidate
         All models and methods that were considered, exact models first.
@@ -194,10 +195,13 @@ def _name(torque: Any) -> str:
 
 def _describe_torques(plan: Plan) -> str:
     facts = plan.facts
-    names = ", ".join(_name(torque) for torque in plan.scene.torques) or "none"
+    parts = [_name(torque) for torque in plan.scene.torques]
+    if count := len(plan.scene.rotors):
+        parts.append(f"{count} rotor{'' if count == 1 else 's'}")
+    names = ", ".join(parts) or "none"
     if not facts["free"]:
         seen = [name for name in ("time", "attitude", "rates") if facts[f"sees_{name}"]]
-        verb = "they depend" if len(plan.scene.torques) > 1 else "it depends"
+        verb = "they depend" if len(parts) > 1 or count > 1 else "it depends"
         names += f"; {verb} on {' and '.join(seen) or 'nothing'}"
     kept = [_KEPT[name] for name in facts["keeps"]]
     if not kept:

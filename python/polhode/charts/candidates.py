@@ -78,12 +78,12 @@ def _closed_form(name: str, source: str, make: Callable[[Scene], Any], refuses: 
 
 
 def _free(scene: Scene) -> str:
-    return "the body is not free" if scene.torques else ""
+    return "the body is not free" if scene.torques or scene.rotors else ""
 
 
 def _top(scene: Scene) -> str:
     """Why the scene is not Lagrange's top about body z."""
-    if len(scene.torques) != 1 or not isinstance(scene.torques[0], torques.Gravity):
+    if scene.rotors or len(scene.torques) != 1 or not isinstance(scene.torques[0], torques.Gravity):
         return "not a body under gravity alone"
     matrix = scene.inertia.matrix
     if (matrix != np.diag(np.diag(matrix))).any() or matrix[0, 0] != matrix[1, 1] or scene.torques[0].arm[:2].any():

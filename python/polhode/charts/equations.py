@@ -87,6 +87,8 @@ def unwritten(scene: Scene) -> str:
     for torque in scene.torques:
         if type(torque) not in _TORQUES:
             return f"no right-hand side outside polhode for the torque {type(torque).__name__}"
+    if any(rotor.during is not None for rotor in scene.rotors):
+        return "no right-hand side outside polhode for rotors that start or stop"
     return ""
 
 
@@ -105,7 +107,7 @@ def refuses(scene: Scene, implicit: bool = False) -> str:
 def derivatives(scene: Scene, t: Any, y: Numbers, cos: Function = math.cos, sin: Function = math.sin) -> list[Any]:
     """Return the seven derivatives of y = (omega, quaternion)."""
     w, q = y[:3], y[3:]
-    inertia = scene.inertia.matrix
+    inertia = scene.carrier_inertia.matrix
     if (inertia == np.diag(np.diag(inertia))).all():
         a, b, c = np.diag(inertia).tolist()
         tau = [_dot([b - c], [w[1] * w[2]]), _dot([c - a], [w[2] * w[0]]), _dot([a - b], [w[0] * w[1]])]
@@ -116,6 +118,8 @@ def derivatives(scene: Scene, t: Any, y: Numbers, cos: Function = math.cos, sin:
     for torque in scene.torques:
         more = _TORQUES[type(torque)](torque, scene, t, w, q, cos, sin)
         tau = [_dot([1.0, 1.0], pair) for pair in zip(tau, more)]
+    if scene.rotor_momentum.any():
+        tau = [_dot([1.0, 1.0], pair) for pair in zip(tau, _cross(scene.rotor_momentum.tolist(), w))]
     x, y_, z, s = q
     a, b, c = (0.5 * v for v in w)
     return [*(_dot(row, tau) for row in inverse), s * a + y_ * c - z * b, s * b + z * a - x * c, s * c + x * b - y_ * a,

@@ -43,6 +43,8 @@ def _point(point: Point) -> dict[str, Any]:
 
 def _scene(scene: Scene) -> dict[str, Any]:
     torques = ", ".join(re.sub(r"(?<!^)(?=[A-Z])", " ", type(torque).__name__).lower() for torque in scene.torques)
+    if scene.rotors:
+        torques = ", ".join(filter(None, [torques, "rotors"]))
     return {"moments": [float(v) for v in scene.inertia.moments], "omega": [float(v) for v in scene.omega],
             "torques": torques}
 

@@ -6,6 +6,7 @@
 
 #include "polhode/core/state.hpp"
 #include "polhode/inertia/inertia_tensor.hpp"
+#include "polhode/scene/rotor.hpp"
 #include "polhode/torque/torques.hpp"
 
 namespace polhode {
@@ -19,7 +20,8 @@ struct Wanted {
 
 /// The parts of a scene, to be filled by name.
 struct SceneParts {
-  InertiaTensor inertia_B;                       ///< about the centre of mass, or about the pivot of a body held at one
+  InertiaTensor inertia_B;                       ///< about the centre of mass, or about the pivot of a body held at
+                                                 ///< one; of all, rotors included and locked
   Vector3d omega = Vector3d::Zero();             ///< w_B at t0 [rad/s]
   Quat attitude = {};                            ///< q_WB at t0
   std::vector<AnyTorque> torques = {};
@@ -27,34 +29,50 @@ struct SceneParts {
   Wanted want = {};
   double t0 = 0.0;                               ///< time of the start [s]
   std::string name = {};
+  std::vector<Rotor> rotors = {};                ///< in the body, in any number
 };
 
-/// What there is: a body, its start, its torques, and what is wanted. Checked here, once, and never changed; copies
-/// share their parts.
+/// What there is: a body with its rotors, its start, its torques, and what is wanted. Checked here, once, and never
+/// changed; copies share their parts.
 class Scene {
  public:
   /// @throws InvalidInput, naming what is wrong, for a body that cannot turn (a moment of zero), a start or times that
-  ///         are not finite, no times at all, or nothing wanted
+  ///         are not finite, no times at all, nothing wanted, or free rotors that leave no inertia to the body
   explicit Scene(SceneParts parts);
 
-  const InertiaTensor& inertia_B() const { return parts_->inertia_B; }
+  /// The inertia J that moves with omega: the given one, less the axial moments of free rotors.
+  const InertiaTensor& inertia_B() const { return carrier_ ? *carrier_ : parts_->inertia_B; }
+  const InertiaTensor& given_inertia_B() const { return parts_->inertia_B; }   ///< of all, rotors included and locked
   const Vector3d& omega() const { return parts_->omega; }
   const Quat& attitude() const { return parts_->attitude; }
   const std::vector<AnyTorque>& torques() const { return parts_->torques; }
   const std::vector<double>& times() const { return parts_->times; }
   const Wanted& want() const { return parts_->want; }
+  const std::vector<Rotor>& rotors() const { return parts_->rotors; }
+  /// h_B, the sum of the rotors' momenta at the start [N m s].
+  const Vector3d& rotor_momentum() const { return rotor_momentum_; }
+  Vector3d rotor_momentum(double t) const;
   double t0() const { return parts_->t0; }
   const std::string& name() const { return parts_->name; }
 
   State start() const { return {parts_->t0, parts_->omega, parts_->attitude}; }
-  /// What all torques together depend on and keep.
+  /// What all torques and rotors together depend on and keep.
   const TorqueSum& torque_sum() const { return torque_sum_; }
-  /// A copy of all parts, for a scene that differs in some of them.
-  SceneParts parts() const { return *parts_; }
+  /// All torques and rotors, to be evaluated together. It refers to this scene.
+  SeveralTorques all_torques() const { return {parts_->torques, rotor_momentum_}; }
+  /// A copy of all parts, for a scene that differs in some of them. Free rotors have the momentum of this start.
+  SceneParts parts() const;
 
  private:
   std::shared_ptr<const SceneParts> parts_;
+  std::shared_ptr<const InertiaTensor> carrier_;   ///< null without free rotors
+  Vector3d rotor_momentum_ = Vector3d::Zero();
   TorqueSum torque_sum_;
 };
+
+/// The speeds of all rotors relative to the body [rad/s] in n states, as (n, rotors): of a free rotor as the body's
+/// rates change it, of a held one constant, and 0 outside its windows. NaN for a rotor without an inertia.
+/// @param omega  (n, 3), body axes
+void compute_rotor_speed(const Scene& scene, std::size_t n, const double* t, const double* omega, double* speed);
 
 }  // namespace polhode

@@ -7,14 +7,15 @@ namespace polhode {
 /// The properties of a scene that determine its plan. Most are dimensionless, so that no plan depends on units.
 struct Facts {
   TorqueSum torques = {};          ///< dependence and conserved quantities of the acting torques
+  Vector3d rotor_momentum = Vector3d::Zero();   ///< h_B at the start [N m s]
   Symmetry symmetry = Symmetry::triaxial;
   double gap_low = 0.0;            ///< (I2 - I1) / I3
   double gap_high = 0.0;           ///< (I3 - I2) / I3
   double off_axis = 0.0;           ///< angle between omega and the nearest principal axis [rad]
-  double separatrix = 1.0;         ///< distance from L^2 = 2 T I2: see compute_separatrix_distance()
+  double separatrix = 1.0;         ///< distance from L^2 = 2 T I2: see compute_separatrix_distance(); 1 with rotors
   double before = 0.0, after = 0.0;   ///< span before and after the start [s]
   bool only_at_end = false;        ///< all sample times are equal
-  double turns = 0.0;              ///< expected revolutions over the whole span
+  double turns = 0.0;              ///< expected revolutions over the whole span, or those of a wheel's nutation
   bool may_spin_up = false;        ///< a torque may increase |omega| without bound, so `turns` is a guess
   double decay = 0.0;              ///< fastest rate at which the torques damp omega [1/s]
   double stiffness = 0.0;          ///< decay x span, which limits the steps of explicit methods
@@ -46,7 +47,8 @@ double compute_separatrix_distance(const Scene& scene);
 /// A scale of the torques [N m]: their size at the start, or the largest size of gravity over all attitudes.
 double compute_torque_scale(const Scene& scene);
 
-/// Revolutions over a time [s], from |omega| at the start and what the torques can add to it.
+/// Revolutions over a time [s], from |omega| at the start, the nutation that rotors cause, and what the torques can
+/// add.
 double estimate_turns(const Scene& scene, const TorqueSum& torques, double span);
 
 /// True if a torque may increase |omega| without bound: it has no potential and is not pure damping.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "polhode/torque/list.hpp"
@@ -11,6 +12,9 @@ struct Window {
   double begin, end;
   friend bool operator==(const Window&, const Window&) = default;
 };
+
+/// Sorts windows by time and merges windows that touch. @throws InvalidInput at `where`, as During does
+std::vector<Window> arrange(std::vector<Window> windows, std::string_view where);
 
 /// Another torque that acts within windows of time only: the firings of a thruster, a brake that is released.
 ///

@@ -28,6 +28,14 @@ POLHODE_INLINE void add_damping(const N* C, const N* w_B, N* tau_B) {
   for (int i = 0; i < 3; ++i) tau_B[i] = tau_B[i] - row_product(C, i, w_B);
 }
 
+/// tau_B += h x w_B: the gyroscopic torque of rotors with the momentum h, which is constant in the body.
+template <class N>
+POLHODE_INLINE void add_rotors(const N* h_B, const N* w_B, N* tau_B) {
+  tau_B[0] = tau_B[0] + (h_B[1] * w_B[2] - h_B[2] * w_B[1]);
+  tau_B[1] = tau_B[1] + (h_B[2] * w_B[0] - h_B[0] * w_B[2]);
+  tau_B[2] = tau_B[2] + (h_B[0] * w_B[1] - h_B[1] * w_B[0]);
+}
+
 /// u_B = R_WB^T (cos a, sin a, 0), from any positive multiple of a unit quaternion.
 template <class N>
 POLHODE_INLINE void compute_radial(N cosine, N sine, const N* q, N* u_B) {

@@ -23,6 +23,8 @@ struct TorqueSum {
   bool uses_time = false;
   bool uses_attitude = false;
   bool uses_rates = false;
+  bool rotors = false;              ///< rotors act, whose gyroscopic torque h x w does no work ...
+  bool steady_rotors = true;        ///< ... and is constant: none of them starts or stops
   bool has_potential = true;        ///< all of them have one
   bool keeps_vertical = true;       ///< none has a component about space z
   bool keeps_energy = true;         ///< all potentials are fixed in space
@@ -30,14 +32,19 @@ struct TorqueSum {
   double pattern_rate = 0.0;
 };
 
-/// Torques acting together, of any kinds: one function for all that evaluates them, compiled once.
+/// Torques acting together, of any kinds, and the gyroscopic torque of rotors: one function for all that evaluates
+/// them, compiled once.
 struct SeveralTorques {
   const std::vector<AnyTorque>& torques;
+  Vector3d rotor_momentum = Vector3d::Zero();   ///< h_B [N m s]
+  bool any() const { return !torques.empty() || !rotor_momentum.isZero(0.0); }
   void add(const TorqueInput& in, double* tau_B) const;
 };
 
 TorqueTraits traits(const AnyTorque& torque);
 std::string_view torque_name(const AnyTorque& torque);   ///< of its record
 TorqueSum summarize(std::span<const AnyTorque> torques);
+/// Adds the gyroscopic torque of rotors with a momentum that is not zero. `steady`: it is constant.
+void add_rotors(TorqueSum& sum, bool steady);
 
 }  // namespace polhode

@@ -4,9 +4,9 @@
 
 namespace polhode {
 
-/// One torque of eight bodies: the arguments of its formula in torque/formulas.hpp, one row a number.
+/// One torque of eight bodies, or their rotors: the arguments of its formula in torque/formulas.hpp, one row a number.
 struct alignas(64) LaneTorque {
-  enum class Kind { body_constant, space_constant, weight, gradient, damping };
+  enum class Kind { body_constant, space_constant, weight, gradient, damping, rotors };
   LaneState::Row values[9] = {};
   Kind kind = Kind::body_constant;
 };

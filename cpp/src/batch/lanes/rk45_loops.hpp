@@ -54,6 +54,7 @@ POLHODE_INLINE void add_torques(const Rk45Block& b, Pass pass, Wide t, const Wid
         break;
       }
       case LaneTorque::Kind::weight: add_weight(v, q, tau); break;
+      case LaneTorque::Kind::rotors: add_rotors(v, w, tau); break;
       case LaneTorque::Kind::gradient: {
         Wide u[3], I[9], sine, cosine;   // v: mean motion, phase, strength
         sincos_lanes(v[0] * t + v[1], sine, cosine);

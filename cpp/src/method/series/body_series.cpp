@@ -58,7 +58,8 @@ BodySeries::BodySeries(const Scene& scene, bool attitude) {
     q_WP = q_WB * q_BP;
     omega_P = R_BP_.transpose() * scene.omega();
   }
-  if (triaxial) choose_variables(omega_P);
+  // The separatrix of a body with rotors lies elsewhere.
+  if (triaxial && scene.rotor_momentum().isZero(0.0)) choose_variables(omega_P);
   if (terms_.variables == RateVariables::plain) {
     for (int i = 0; i < 3; ++i) {
       const DD product = math::two_diff(I_[(i + 1) % 3], I_[(i + 2) % 3]) / DD(I_[i]);
@@ -83,7 +84,8 @@ void BodySeries::find_invariants(const Scene& scene) {
   using Sees = SeriesInvariants::Sees;
   vertical_ = !attitude_ && moment_P_ != Vector3d::Zero();
   const Sees sees = attitude_ ? Sees::attitude : vertical_ ? Sees::vertical : Sees::nothing;
-  invariants_ = SeriesInvariants(scene, terms_, I_, moment_P_, gradients_, orbit_phase_, half_over_k_, sees);
+  const Vector3d h_P = R_BP_.transpose() * scene.rotor_momentum();
+  invariants_ = SeriesInvariants(scene, terms_, I_, moment_P_, h_P, gradients_, orbit_phase_, half_over_k_, sees);
   keep_invariants(scene.t0());
 }
 
@@ -147,6 +149,10 @@ void BodySeries::add_torques(const Scene& scene) {
       ++gradients_;
       orbit_rate_ = gradient->mean_motion(), orbit_phase_ = gradient->phase();
     }
+  }
+  if (const Vector3d h_P = R_PB * scene.rotor_momentum(); !h_P.isZero(0.0)) {
+    for (int j = 0; j < 3; ++j) set_column(terms_.damping[j], h_P.cross(Vector3d::Unit(j)));
+    terms_.damped = true;
   }
   // Gravity's torque is -moment x (R^T e_z), a space torque is R^T tau. Each is linear in one vector.
   moment_P_ = R_PB * moment;

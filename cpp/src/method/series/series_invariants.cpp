@@ -17,14 +17,15 @@ struct SeriesInvariants::Values {
 };
 
 SeriesInvariants::SeriesInvariants(const Scene& scene, const SeriesTerms& terms, const Vector3d& I_P,
-                                   const Vector3d& moment_P, int gradients, double orbit_phase, const DD& half_over_k,
-                                   Sees sees)
+                                   const Vector3d& moment_P, const Vector3d& h_P, int gradients, double orbit_phase,
+                                   const DD& half_over_k, Sees sees)
     : separatrix_(terms.variables == RateVariables::separatrix),
       sees_(sees),
       orbit_phase_(orbit_phase),
       half_over_k_(half_over_k) {
   const TorqueSum& sum = scene.torque_sum();
-  if (sum.acting == 0 || sees == Sees::nothing) return;
+  momentum_ = sum.rotors && sum.acting == 1;
+  if (sum.acting == 0 || (sees == Sees::nothing && !momentum_)) return;
   const bool jacobi = sum.has_potential && !sum.keeps_energy && sum.keeps_jacobi && sees == Sees::attitude;
   first_ = (sum.has_potential && sum.keeps_energy) || jacobi;
   second_ = sum.keeps_vertical && sum.pattern_rate == 0.0;
@@ -32,14 +33,17 @@ SeriesInvariants::SeriesInvariants(const Scene& scene, const SeriesTerms& terms,
   // Scaled by powers of two, because squares of 1e160 rad/s overflow.
   const double light = 1.0 / math::power_of_two_below(I_P.maxCoeff());
   const double fall = std::sqrt(light * moment_P.cwiseAbs().maxCoeff());
-  const double rate = std::max({scene.omega().cwiseAbs().maxCoeff(), fall, std::abs(orbit_rate_)});
+  const double rate = std::max({scene.omega().cwiseAbs().maxCoeff(), fall, std::abs(orbit_rate_),
+                                light * h_P.cwiseAbs().maxCoeff()});
   if (!(rate > 0.0)) first_ = second_ = false;
   slow_ = 1.0 / math::power_of_two_below(rate);
   orbit_ = orbit_rate_ * slow_, tidal_ = 1.5 * gradients * orbit_ * orbit_;
   for (int i = 0; i < 3; ++i) {
     I_[i] = light * I_P[i], moment_[i] = light * moment_P[i] * slow_ * slow_;
-    alone_[i] = !separatrix_ && !terms.damped && terms.product[i] == 0.0 && terms.torque[i] == 0.0;
+    h_[i] = light * h_P[i] * slow_;
+    alone_[i] = !separatrix_ && terms.product[i] == 0.0 && terms.torque[i] == 0.0;
     alone_[i] = alone_[i] && terms.tidal[0][i] == 0.0;
+    for (const auto& column : terms.damping) alone_[i] = alone_[i] && column[i] == 0.0;
     for (const auto& vector : terms.pull)
       for (const auto& column : vector) alone_[i] = alone_[i] && column[i] == 0.0;
   }
@@ -62,7 +66,10 @@ SeriesInvariants::Values SeriesInvariants::compute(DD t, const double* y, const 
   }
   DD g[3];
   Values values{};
-  if (sees_ == Sees::vertical) {
+  if (momentum_) {
+    // In place of the vertical, L / 2: its product with L is |L|^2 / 2, whose gradient has twice its size.
+    for (int i = 0; i < 3; ++i) g[i] = (w[i] * DD(I_[i]) + DD(h_[i])) * DD(0.5);
+  } else if (sees_ == Sees::vertical) {
     for (int i = 0; i < 3; ++i) g[i] = DD(y[4 + i], carry[4 + i]);
   } else {
     DD q[4], two(2.0), norm(0.0);
@@ -87,11 +94,11 @@ SeriesInvariants::Values SeriesInvariants::compute(DD t, const double* y, const 
     }
   }
   for (int i = 0; i < 3; ++i) {
-    const DD L = w[i] * DD(I_[i]);
-    values.kept[0] = values.kept[0] + L * w[i] * DD(0.5) + g[i] * DD(moment_[i]);
+    const DD own = w[i] * DD(I_[i]), L = own + DD(h_[i]);
+    values.kept[0] = values.kept[0] + own * w[i] * DD(0.5) + g[i] * DD(moment_[i]);
     values.kept[1] = values.kept[1] + L * g[i];
     const double relative = w[i].hi - orbit_ * g[i].hi;
-    values.slope[0][i] = I_[i] * relative, values.slope[1][i] = I_[i] * g[i].hi;
+    values.slope[0][i] = I_[i] * relative, values.slope[1][i] = (momentum_ ? 2.0 : 1.0) * I_[i] * g[i].hi;
     values.moving += I_[i] * relative * relative;
   }
   if (orbit_ != 0.0) values.kept[0] = values.kept[0] - values.kept[1] * DD(orbit_);

@@ -13,7 +13,7 @@ struct SeriesTerms {
   double product[4] = {};              ///< r' = product * (u w2, v w2, (v - u)(v + u)), or (w2 w3, w3 w1, w1 w2) ...
   double product_low[4] = {};          ///< ... and its rounding error
   double torque[4] = {};               ///< + constant
-  double damping[3][4] = {};           ///< + sum_j damping[j] w_j
+  double damping[3][4] = {};           ///< + sum_j damping[j] w_j, with h x w of rotors
   bool damped = false;
   int fixed_vectors = 0;               ///< number of vectors fixed in space: 0, 1 or 2
   double pull[2][3][4] = {};           ///< + sum_j pull[i][j] * (vector i)_j

@@ -6,8 +6,10 @@
 namespace polhode {
 namespace {
 
-/// weight times arm of gravity with its arm along the axis of symmetry; 0 without a torque, NaN with any other torque.
+/// weight times arm of gravity with its arm along the axis of symmetry; 0 without a torque, NaN with any other torque or
+/// with rotors.
 double find_weight_arm(const Scene& scene) {
+  if (!scene.rotor_momentum().isZero(0.0)) return NAN;
   if (scene.torques().empty()) return 0.0;
   const auto* gravity = std::get_if<torques::Gravity>(&scene.torques().front());
   if (scene.torques().size() != 1 || !gravity || gravity->arm()[0] != 0.0 || gravity->arm()[1] != 0.0) return NAN;
@@ -77,6 +79,7 @@ class Leapfrog {
 std::string refuse_leapfrog(const Scene& scene) {
   const Matrix3d& I = scene.inertia_B().matrix();
   if (!scene.inertia_B().is_diagonal() || I(0, 0) != I(1, 1)) return "a body without I1 = I2 about body z";
+  if (!scene.rotor_momentum().isZero(0.0)) return "rotors, whose momentum changes p_phi and p_psi";
   if (std::isnan(find_weight_arm(scene))) return "a torque other than gravity along body z";
   const double s =
       math::hypot(scene.attitude().x, scene.attitude().y) * math::hypot(scene.attitude().z, scene.attitude().w);
@@ -93,7 +96,8 @@ const BodyMethod leapfrog_method{
         .adaptive = false,
         .cheap = true,
         .keeps = "L_z",
-        .needs = "I1 = I2 about body z, gravity along body z as the only torque, and theta away from 0 and pi",
+        .needs = "I1 = I2 about body z, gravity along body z as the only torque, no rotors, and theta away from 0 and "
+                 "pi",
         .doc = "Leapfrog in the textbook's z-x-z angles. It conserves p_phi and p_psi, and its energy error stays "
                "bounded away from theta = 0 and pi.",
         .source = "Goldstein, Classical Mechanics, sec. 5.7; Hairer, Lubich & Wanner 2003, Acta Numerica 12, 399",

@@ -15,8 +15,8 @@ class PrincipalBody {
  public:
   /// @param ascending  order the principal axes by their moments, if these differ
   PrincipalBody(const Scene& scene, double step, bool ascending = false)
-      : torques_{scene.torques()}, I_B_(scene.inertia_B().matrix()), diagonal_(scene.inertia_B().is_diagonal()),
-        driven_(!scene.torques().empty()), uses_rates_(scene.torque_sum().uses_rates) {
+      : torques_(scene.all_torques()), I_B_(scene.inertia_B().matrix()), diagonal_(scene.inertia_B().is_diagonal()),
+        driven_(torques_.any()), uses_rates_(scene.torque_sum().uses_rates) {
     const InertiaTensor& inertia = scene.inertia_B();
     const bool as_given = diagonal_ && !(ascending && inertia.moments()[0] < inertia.moments()[1] &&
                                          inertia.moments()[1] < inertia.moments()[2]);

@@ -20,7 +20,7 @@ class Body {
   using Plain = EulerProblem<SeveralTorques, false, true>;
 
   explicit Body(const Scene& scene)
-      : I_B_(scene.inertia_B().matrix()), diagonal_(scene.inertia_B().is_diagonal()), all_{scene.torques()},
+      : I_B_(scene.inertia_B().matrix()), diagonal_(scene.inertia_B().is_diagonal()), all_(scene.all_torques()),
         plain_(scene.inertia_B(), all_) {
     Plain::pack(scene.start(), start_);
     const InertiaTensor& inertia = scene.inertia_B();
@@ -48,6 +48,11 @@ class Body {
       } else {
         linear_ = linear_ && !std::visit([](const auto& acting) { return acting.traits().uses_rates; }, torque);
       }
+    }
+    if (const Vector3d& h = scene.rotor_momentum(); !h.isZero(0.0)) {   // h x w is linear in w, like damping
+      Matrix3d C;
+      C << 0, h[2], -h[1], -h[2], 0, h[0], h[1], -h[0], 0;
+      add_damping(R_BP.transpose() * C * R_BP);
     }
   }
 
@@ -87,7 +92,7 @@ class Body {
     }
     const double rate = separatrix_->rate().hi, u = y[0], v = y[1], w2 = y[2];
     f[0] = rate * w2 * u, f[1] = -rate * w2 * v, f[2] = separatrix_->middle().hi * ((v - u) * (v + u));
-    if (!all_.torques.empty()) add_torques(t, y, f);
+    if (all_.any()) add_torques(t, y, f);
   }
 
   /// The derivative of f by the rate variables, approximate, as Newton's method allows.

@@ -90,6 +90,7 @@ class ExactDrift {
 };
 
 std::string refuse_symplectic(const Scene& scene) {
+  if (!scene.rotor_momentum().isZero(0.0)) return "rotors, whose torque h x omega depends on the rates";
   return scene.torque_sum().uses_rates ? "a torque that depends on the rates" : "";
 }
 
@@ -102,7 +103,7 @@ const BodyMethod symplectic_method{
         .dense_order = 4,
         .adaptive = false,
         .keeps = "energy, |L|, L",
-        .needs = "torques that do not depend on the rates",
+        .needs = "no rotors, and torques that do not depend on the rates",
         .doc = "Splitting into the exact free motion and kicks by the torque, at a fixed step. The map is symplectic, "
                "so the energy error stays bounded.",
         .source = "Blanes & Moan 2002, J. Comput. Appl. Math. 142, 313 (SRKN6b)",

@@ -21,7 +21,7 @@ def found() -> str:
 
 
 def _refuses(scene: Scene) -> str:
-    if scene.torques:
+    if scene.torques or scene.rotors:
         return "only free bodies are written down for it here"
     if not scene.inertia.physical:
         return "it refuses inertias that break the triangle inequality"

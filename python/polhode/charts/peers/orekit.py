@@ -48,7 +48,7 @@ def _class() -> Any:
 
 
 def _refuses(scene: Scene) -> str:
-    if scene.torques:
+    if scene.torques or scene.rotors:
         return "its closed form is of free bodies"
     matrix = scene.inertia.matrix
     return "" if (matrix == np.diag(np.diag(matrix))).all() else "only principal axes are written down for it here"

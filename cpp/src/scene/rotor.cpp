@@ -1,0 +1,106 @@
+#include "polhode/scene/rotor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "polhode/core/error.hpp"
+
+namespace polhode {
+namespace {
+
+void require_finite(const char* where, const std::optional<double>& value) {
+  if (value && !std::isfinite(*value)) throw InvalidInput(where, "finite", to_text(*value));
+}
+
+/// The axis as a unit vector. An axis that is unit to rounding keeps its bits.
+bool scale_axis(Vector3d& axis) {
+  for (int i = 0; i < 3; ++i) {
+    if (!std::isfinite(axis[i])) {
+      throw InvalidInput("Rotor.axis", "finite", to_text(axis[i]) + " in component " + std::to_string(i));
+    }
+  }
+  const double largest = axis.cwiseAbs().maxCoeff();
+  if (largest == 0.0) throw InvalidInput("Rotor.axis", "a direction", "(0, 0, 0)", "a zero vector has no direction");
+  constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
+  if (std::abs(axis.squaredNorm() - 1.0) <= rounding) return false;
+  axis *= std::ldexp(1.0, -std::ilogb(largest));   // squares of 1e200 overflow
+  axis /= std::sqrt(axis.squaredNorm());
+  return true;
+}
+
+/// Refuses numbers that say too little, or the same twice.
+void require_enough(const RotorParts& parts) {
+  if (parts.momentum && parts.speed) {
+    throw InvalidInput("Rotor.momentum", "left out beside a speed", to_text(*parts.momentum),
+                       parts.inertia ? "inertia and speed give the momentum already"
+                                     : "give inertia with the speed, or the momentum alone");
+  }
+  if (parts.momentum) return;
+  if (!parts.inertia && !parts.speed) {
+    throw InvalidInput("Rotor.momentum", "given, or inertia and speed in its place", "none of them");
+  }
+  if (!parts.inertia) {
+    throw InvalidInput("Rotor.inertia", "given with a speed", "the speed alone",
+                       "the momentum is the inertia about the axis times the speed");
+  }
+  if (!parts.speed) {
+    throw InvalidInput("Rotor.speed", "given with an inertia", "the inertia alone", "a locked rotor has speed = 0");
+  }
+}
+
+}  // namespace
+
+Rotor::Rotor(RotorParts parts) : parts_(std::move(parts)) {
+  axis_was_scaled_ = scale_axis(parts_.axis);
+  require_finite("Rotor.momentum", parts_.momentum);
+  require_finite("Rotor.inertia", parts_.inertia);
+  require_finite("Rotor.speed", parts_.speed);
+  if (parts_.inertia && !(*parts_.inertia > 0.0)) {
+    throw InvalidInput("Rotor.inertia", "positive", to_text(*parts_.inertia),
+                       "the sense of rotation is the sign of the speed or the momentum");
+  }
+  require_enough(parts_);
+  if (parts_.inertia && parts_.speed && !std::isfinite(*parts_.inertia * *parts_.speed)) {
+    throw InvalidInput("Rotor.speed", "such that inertia times speed is finite", to_text(*parts_.speed));
+  }
+  if (parts_.free && !parts_.windows.empty()) {
+    throw InvalidInput("Rotor.during", "left out with free=True", std::to_string(parts_.windows.size()) + " windows",
+                       "no motor changes the speed of a rotor that is free on its bearing");
+  }
+  parts_.windows = torques::arrange(std::move(parts_.windows), "Rotor.during");
+}
+
+double Rotor::compute_momentum(const Vector3d& w_B) const {
+  if (parts_.momentum) return *parts_.momentum;
+  return *parts_.inertia * (parts_.free ? *parts_.speed + parts_.axis.dot(w_B) : *parts_.speed);
+}
+
+double Rotor::compute_speed(double momentum, const Vector3d& w_B) const {
+  if (!parts_.inertia) return std::numeric_limits<double>::quiet_NaN();
+  if (!parts_.free && parts_.speed) return *parts_.speed;
+  const double total = momentum / *parts_.inertia;
+  return parts_.free ? total - parts_.axis.dot(w_B) : total;
+}
+
+bool Rotor::rotates_at(double t) const {
+  if (parts_.windows.empty()) return true;
+  return std::any_of(parts_.windows.begin(), parts_.windows.end(),
+                     [t](const torques::Window& window) { return window.begin <= t && t < window.end; });
+}
+
+bool Rotor::rotates_throughout(double begin, double end) const {
+  if (parts_.windows.empty()) return true;
+  return std::any_of(parts_.windows.begin(), parts_.windows.end(), [=](const torques::Window& window) {
+    return window.begin <= begin && end <= window.end;
+  });
+}
+
+Vector3d sum_momenta(const std::vector<Rotor>& rotors, const Vector3d& w_B) {
+  Vector3d sum = Vector3d::Zero();
+  for (const Rotor& rotor : rotors) sum += rotor.compute_momentum(w_B) * rotor.axis();
+  return sum;
+}
+
+}  // namespace polhode
