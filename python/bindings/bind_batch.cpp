@@ -1,6 +1,7 @@
 #include "convert.hpp"
 #include "gil.hpp"
 #include "polhode/batch/free_motion.hpp"
+#include "polhode/batch/gyrostat.hpp"
 #include "polhode/batch/heavy_top.hpp"
 #include "polhode/core/error.hpp"
 
@@ -45,6 +46,16 @@ std::size_t batch_free_motion(const py::object& inertia, const Array& omega, con
   return free_motion(batch, w, q, threads);
 }
 
+std::size_t batch_gyrostat(const py::object& inertia, const Array& momentum, const Array& omega, const Array& attitude,
+                           const Array& t, const py::object& omega_out, const py::object& attitude_out, int threads) {
+  Array moments;
+  auto batch = make_batch<GyrostatBatch>(inertia, moments, omega, attitude, t);
+  batch.momentum = momentum.data();
+  double *w = target(batch, omega_out, 3), *q = target(batch, attitude_out, 4);
+  const WithoutGil nogil;
+  return gyrostat(batch, w, q, threads);
+}
+
 std::size_t batch_heavy_top(const py::object& inertia, const Array& weight_arm, const Array& omega,
                             const Array& attitude, const Array& t, const py::object& omega_out,
                             const py::object& attitude_out, int threads) {
@@ -60,6 +71,7 @@ std::size_t batch_heavy_top(const py::object& inertia, const Array& weight_arm, 
 
 void bind_batch(py::module_& m) {
   m.def("_free_motion", &batch_free_motion);
+  m.def("_gyrostat", &batch_gyrostat);
   m.def("_heavy_top", &batch_heavy_top);
 }
 

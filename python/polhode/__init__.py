@@ -13,12 +13,14 @@ from ._attitude.kinematics import body_rates as body_rates
 from ._attitude.kinematics import euler_rates as euler_rates
 from ._attitude.rotation import Rotation as Rotation
 from ._batch.closed_forms import free_motion as free_motion
+from ._batch.closed_forms import gyrostat as gyrostat
 from ._batch.closed_forms import heavy_top as heavy_top
 from ._batch.solve_many import Motions as Motions
 from ._batch.solve_many import solve_many as solve_many
 from ._build import build_info as build_info
 from ._build import cmake_prefix as cmake_prefix
 from ._core import FreeMotion as FreeMotion
+from ._core import Gyrostat as Gyrostat
 from ._core import HeavyTop as HeavyTop
 from ._core import IntegrationFailure as IntegrationFailure
 from ._core import InvalidInput as InvalidInput

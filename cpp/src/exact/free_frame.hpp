@@ -31,4 +31,8 @@ Quat first_attitude(const Series& series) {
 FreeFrame make_free_frame(const Matrix3d& R_BP, const Matrix3d& M, double time_scale, const Quat& first,
                           const Quat& attitude);
 
+/// (phi, theta, psi), intrinsic z-x-z, of the body axes in a space frame whose z axis is the momentum (space z rotated to
+/// it the shortest way).
+Vector3d euler_angles_about(const Vector3d& momentum_W, const Quat& q_WB);
+
 }  // namespace polhode::exact

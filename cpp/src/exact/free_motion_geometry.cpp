@@ -1,7 +1,7 @@
 #include <cmath>
-#include <numbers>
 #include <string>
 
+#include "exact/free_frame.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/core/interrupt.hpp"
 #include "polhode/exact/free_motion.hpp"
@@ -13,27 +13,11 @@ namespace {
 
 using math::DD;
 
-/// The shortest rotation that takes space z to the direction v.
-Quat shortest_rotation_to(const Vector3d& v) {
-  const Vector3d d = v.normalized();
-  // (e_z + d) / |e_z + d| bisects; for d near -e_z any axis perpendicular to z serves, and x is taken.
-  const double c = math::hypot(d[0], d[1]);
-  if (d[2] < 0.0 && c < 1e-150) return {1.0, 0.0, 0.0, 0.0};
-  if (c == 0.0) return {};
-  const math::SinCosPair half = math::sincos(0.5 * math::atan2(c, d[2]));
-  return {-d[1] / c * half.sin, d[0] / c * half.sin, 0.0, half.cos};
-}
-
 }  // namespace
 
 Vector3d FreeMotion::euler_angles(double t) const {
   if (form_ == Form::rest) throw InvalidInput("omega", "other than zero for angles about the angular momentum", "rest");
-  const Quat q_WL = shortest_rotation_to(rotate(attitude_, momentum_direction()));
-  const Quat q_LB = conjugate(q_WL) * at(t).attitude;
-  const double sum = math::atan2(q_LB.z, q_LB.w), difference = math::atan2(q_LB.y, q_LB.x);
-  const double theta = 2.0 * math::atan2(math::hypot(q_LB.x, q_LB.y), math::hypot(q_LB.z, q_LB.w));
-  constexpr double turn = 2.0 * std::numbers::pi;
-  return {std::remainder(sum + difference, turn), theta, std::remainder(sum - difference, turn)};
+  return exact::euler_angles_about(rotate(attitude_, momentum_direction()), at(t).attitude);
 }
 
 Vector3d FreeMotion::polhode(double t) const {

@@ -84,6 +84,69 @@ def free_motion(
     return evaluate([*own, (speeds, 1), (attitudes, 1)], times, out, want, kernel)
 
 
+def gyrostat(
+    inertia: InertiaTensor | npt.ArrayLike,
+    momentum: npt.ArrayLike,
+    omega: npt.ArrayLike,
+    attitude: Any,
+    t: npt.ArrayLike,
+    *,
+    out: Any = None,
+    want: str | Sequence[str] = ("omega", "attitude"),
+    threads: int | None = None,
+) -> Any:
+    """Compute the torque-free motion of many gyrostats at many times; all arguments broadcast.
+
+    Parameters
+    ----------
+    inertia : array_like, shape (..., 3), or InertiaTensor
+        Principal moments in the body axes with the rotors locked, in any order [kg m^2]; or one tensor for all.
+    momentum : array_like, shape (..., 3)
+        The rotors' momentum in body axes [kg m^2/s].
+    omega : array_like, shape (..., 3)
+        Angular velocity at t = 0, in body axes [rad/s].
+    attitude : array_like, shape (..., 4), or Rotation
+        Attitude at t = 0, body to space, unit, (x, y, z, w).
+    t : array_like, shape (...)
+        Times [s]. Bodies (B, 1) and times (T,) give the full grid (B, T), each body set up once.
+    out, want, threads
+        As for :func:`free_motion`.
+
+    Returns
+    -------
+    omega : ndarray, shape (..., 3)
+        In body axes [rad/s].
+    attitude : ndarray, shape (..., 4)
+        Body to space, unit, (x, y, z, w).
+
+    Raises
+    ------
+    InvalidInput
+        Shapes that do not broadcast, and what :class:`Gyrostat` refuses, with the number of the body.
+    MemoryError
+        The result would not fit into this machine: before anything is computed, with the number of bytes.
+
+    Warns
+    -----
+    RuntimeWarning
+        Once, with their count, when rows came out NaN because their input is not finite.
+
+    Notes
+    -----
+    The formulas of :class:`Gyrostat`; see docs/gyrostat.md.
+    """
+    workers = check_threads(threads)
+    speeds, attitudes = to_rows(omega, "omega", 3), to_attitudes(attitude, 3)
+    times = to_rows(t, "t", None)
+    rotors = to_rows(momentum, "momentum", 3)
+    common, own = _split(inertia)
+
+    def kernel(*arguments: Any) -> int:
+        return _core._gyrostat(*(*common, *arguments, workers))
+
+    return evaluate([*own, (rotors, 1), (speeds, 1), (attitudes, 1)], times, out, want, kernel)
+
+
 def heavy_top(
     inertia: InertiaTensor | npt.ArrayLike,
     weight_arm: npt.ArrayLike,

@@ -471,6 +471,136 @@ class FreeMotion:
         """
         Mean rate of precession about the angular momentum [rad/s].
         """
+class Gyrostat:
+    """
+    Torque-free motion of a rigid body with rotors, in closed form at any time.
+
+    Euler's equations are J omega' = (J omega + h) x omega with the rotors' momentum h constant in the body. One class for
+    every body and every h: near and on steady turns, separatrices and symmetries too. The error against the exact motion of
+    the same float64 input is a few units of rounding at every time. With h = 0 the answers are those of FreeMotion.
+
+    Parameters
+    ----------
+    inertia : InertiaTensor, or array_like of shape (3,)
+        About the centre of mass, in body axes, with the rotors locked [kg m^2]; three numbers are principal moments in the
+        given axes, in any order. For rotors that are free on their bearings: less their axial parts.
+    rotors : iterable of Rotor, optional
+        Rotors at constant speed relative to the body.
+    momentum : array_like, shape (3,), optional
+        In their place: the rotors' momentum h in body axes [kg m^2/s]. 0 if neither is given.
+    omega : array_like, shape (3,)
+        Angular velocity of the body at t = 0, in body axes [rad/s].
+    attitude : array_like of shape (4,), or a Rotation
+        Body to space at t = 0, (x, y, z, w).
+
+    Raises
+    ------
+    InvalidInput
+        Not finite, a body no mass makes, one without a moment about some axis, or an attitude that is not unit.
+
+    Notes
+    -----
+    Zhukovsky (1885); Volterra (1899), Acta Math. 22; Wittenburg (1977), Dynamics of Systems of Rigid Bodies; see
+    docs/gyrostat.md.
+    """
+    def __eq__(self: Gyrostat, arg0: object) -> bool:
+        ...
+    def __getstate__(self: Gyrostat) -> tuple[InertiaTensor, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        ...
+    def __hash__(self: Gyrostat) -> int:
+        ...
+    def __init__(self: Gyrostat, inertia: typing.Any, *, rotors: typing.Any = None, momentum: typing.Any = None, omega: typing.Any, attitude: typing.Any = (0, 0, 0, 1)) -> None:
+        ...
+    def __repr__(self: Gyrostat) -> str:
+        ...
+    def __setstate__(self: Gyrostat, arg0: tuple[typing.Any, ...]) -> None:
+        ...
+    def at(self: Gyrostat, t: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        """
+        Angular velocity and attitude at the given times.
+
+        Parameters
+        ----------
+        t : array_like, any shape
+            Times [s], negative ones too, up to abs(omega t) = 1e25 rad.
+
+        Returns
+        -------
+        omega : ndarray, shape (..., 3)
+            In body axes [rad/s].
+        attitude : ndarray, shape (..., 4)
+            Body to space, unit, (x, y, z, w).
+        """
+    def euler_angles(self: Gyrostat, t: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Angles about the total momentum.
+
+        Parameters
+        ----------
+        t : array_like, any shape
+            Times [s].
+
+        Returns
+        -------
+        ndarray, shape (..., 3)
+            (phi, theta, psi) [rad], intrinsic z-x-z of the body axes in a space frame whose z axis is the total momentum
+            (space z turned there the shortest way): precession, nutation and spin. phi and psi in [-pi, pi].
+        """
+    def polhode(self: Gyrostat, t: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The total momentum in body axes.
+
+        Parameters
+        ----------
+        t : array_like, any shape
+            Times [s].
+
+        Returns
+        -------
+        ndarray, shape (..., 3)
+            J omega + h [kg m^2/s]: on a sphere about 0 and on an ellipsoid of constant energy about h.
+        """
+    @property
+    def angular_momentum(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3,) total momentum in space axes, constant [kg m^2/s].
+        """
+    @property
+    def attitude(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (4,) attitude at t = 0.
+        """
+    @property
+    def energy(self) -> float:
+        """
+        omega . J omega / 2, constant [J].
+        """
+    @property
+    def inertia(self) -> InertiaTensor:
+        """
+        The InertiaTensor.
+        """
+    @property
+    def kind(self) -> str:
+        """
+        'rest', 'steady' (omega is constant), 'precession' (omega on a circle at a constant rate), 'paired' (a
+        second curve of the same energy and momentum exists), 'single' (none does) or 'separatrix'.
+        """
+    @property
+    def momentum(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3,) the rotors' momentum h in body axes [kg m^2/s].
+        """
+    @property
+    def omega(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3,) omega at t = 0, in body axes [rad/s].
+        """
+    @property
+    def period(self) -> float:
+        """
+        Period of omega [s]: infinite on a separatrix, 0 where omega is constant.
+        """
 class HeavyTop:
     """
     Lagrange's top: a symmetric body held at a point of its axis, under gravity.
@@ -776,6 +906,8 @@ class Answer:
 def _complete_K(arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
     ...
 def _free_motion(arg0: typing.Any, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg3: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg4: typing.Any, arg5: typing.Any, arg6: typing.SupportsInt | typing.SupportsIndex) -> int:
+    ...
+def _gyrostat(arg0: typing.Any, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg3: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg4: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg5: typing.Any, arg6: typing.Any, arg7: typing.SupportsInt | typing.SupportsIndex) -> int:
     ...
 def _heavy_top(arg0: typing.Any, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg3: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg4: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg5: typing.Any, arg6: typing.Any, arg7: typing.SupportsInt | typing.SupportsIndex) -> int:
     ...

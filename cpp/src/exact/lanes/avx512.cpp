@@ -6,15 +6,18 @@
 #include "math/lanes/avx512.hpp"
 // The loops need `Wide`, which the line above defines.
 #include "exact/lanes/free_bodies.hpp"
+#include "exact/lanes/gyrostat_loops.hpp"
 #include "exact/lanes/heavy_top_loops.hpp"
 
 namespace polhode::exact {
 const FreeKernels* avx512_free_kernels() { return &POLHODE_ISA::kernels; }
 const HeavyTopKernels* avx512_heavy_top_kernels() { return &POLHODE_ISA::heavy_top_kernels; }
+const GyrostatKernels* avx512_gyrostat_kernels() { return &POLHODE_ISA::gyrostat_kernels; }
 }  // namespace polhode::exact
 #else
 namespace polhode::exact {
 const FreeKernels* avx512_free_kernels() { return nullptr; }
 const HeavyTopKernels* avx512_heavy_top_kernels() { return nullptr; }
+const GyrostatKernels* avx512_gyrostat_kernels() { return nullptr; }
 }  // namespace polhode::exact
 #endif

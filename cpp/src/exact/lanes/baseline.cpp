@@ -7,6 +7,7 @@ using Wide = One;
 }
 
 #include "exact/lanes/free_bodies.hpp"
+#include "exact/lanes/gyrostat_loops.hpp"
 #include "exact/lanes/heavy_top_loops.hpp"
 #include "exact/lanes/levels.hpp"
 
@@ -14,5 +15,6 @@ namespace polhode::exact {
 
 const FreeKernels* baseline_free_kernels() { return &POLHODE_ISA::kernels; }
 const HeavyTopKernels* baseline_heavy_top_kernels() { return &POLHODE_ISA::heavy_top_kernels; }
+const GyrostatKernels* baseline_gyrostat_kernels() { return &POLHODE_ISA::gyrostat_kernels; }
 
 }  // namespace polhode::exact

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "polhode/exact/detail/free_kernels.hpp"
+#include "polhode/exact/detail/gyrostat_kernels.hpp"
 #include "polhode/exact/detail/heavy_top_kernels.hpp"
 
 namespace polhode::exact {
@@ -12,5 +13,8 @@ const FreeKernels* avx512_free_kernels();
 const HeavyTopKernels* baseline_heavy_top_kernels();
 const HeavyTopKernels* avx2_heavy_top_kernels();
 const HeavyTopKernels* avx512_heavy_top_kernels();
+const GyrostatKernels* baseline_gyrostat_kernels();
+const GyrostatKernels* avx2_gyrostat_kernels();
+const GyrostatKernels* avx512_gyrostat_kernels();
 
 }  // namespace polhode::exact

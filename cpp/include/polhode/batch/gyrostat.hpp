@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+
+#include "polhode/inertia/inertia_tensor.hpp"
+
+namespace polhode {
+
+/// Many free gyrostats at many times, on plain C-contiguous arrays.
+struct GyrostatBatch {
+  std::size_t bodies = 0, times = 0;
+  const double* moments = nullptr;     ///< (bodies, 3) principal moments in the body axes [kg m^2]
+  const double* momentum = nullptr;    ///< (bodies, 3) of the rotors, body axes [kg m^2/s]
+  const double* omega = nullptr;       ///< (bodies, 3) at t = 0, body axes [rad/s]
+  const double* attitude = nullptr;    ///< (bodies, 4) at t = 0, (x, y, z, w)
+  const double* t = nullptr;           ///< (times) for all bodies, or (bodies, times) with own_times [s]
+  bool own_times = false;
+  const InertiaTensor* tensor = nullptr;  ///< of all bodies, in any body axes; then `moments` is null
+};
+
+/// Writes omega (bodies, times, 3) and attitude (bodies, times, 4); either may be null. The bits of the result do not
+/// depend on the number of threads (0: chosen by the machine and the amount of work).
+///
+/// A row with an input that is not finite becomes NaN; returns the number of such rows. Throws InvalidInput, with the
+/// number of the body, for what Gyrostat refuses.
+std::size_t gyrostat(const GyrostatBatch& batch, double* omega, double* attitude, int threads = 0);
+
+}  // namespace polhode

@@ -1,0 +1,19 @@
+#include "polhode/exact/detail/gyrostat_kernels.hpp"
+
+#include "exact/lanes/levels.hpp"
+
+namespace polhode::exact {
+
+const GyrostatKernels& gyrostat_kernels(SimdLevel level) {
+  const GyrostatKernels* found = nullptr;
+  if (level == SimdLevel::avx512) found = avx512_gyrostat_kernels();
+  if (found == nullptr && level != SimdLevel::baseline) found = avx2_gyrostat_kernels();
+  return found != nullptr ? *found : *baseline_gyrostat_kernels();
+}
+
+const GyrostatKernels& gyrostat_kernels() {
+  static const GyrostatKernels& chosen = gyrostat_kernels(simd_level());
+  return chosen;
+}
+
+}  // namespace polhode::exact

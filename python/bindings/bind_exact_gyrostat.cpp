@@ -1,0 +1,183 @@
+#include <pybind11/operators.h>
+#include <pybind11/typing.h>
+
+#include "bind_exact.hpp"
+#include "convert.hpp"
+#include "gil.hpp"
+#include "polhode/core/error.hpp"
+#include "polhode/exact/gyrostat.hpp"
+
+namespace polhode::python {
+namespace {
+
+/// The momentum of held rotors in body axes: of each the axis times the momentum along it.
+Vector3d sum_of_rotors(const py::object& rotors) {
+  Vector3d sum = Vector3d::Zero();
+  for (const py::handle rotor : rotors) {
+    if (py::hasattr(rotor, "free") && py::cast<bool>(rotor.attr("free"))) {
+      throw InvalidInput("rotors", "held at a constant speed", "a rotor free on its bearing",
+                         "give momentum= and an inertia less the rotor's axial part, as docs/gyrostat.md shows");
+    }
+    if (py::hasattr(rotor, "momentum_vector")) {
+      sum += to_vector3(rotor.attr("momentum_vector"), "rotors");
+    } else if (py::hasattr(rotor, "axis") && py::hasattr(rotor, "momentum")) {
+      sum += to_vector3(rotor.attr("axis"), "rotors") * to_real(rotor.attr("momentum"), "rotors");
+    } else {
+      throw InvalidInput("rotors", "objects with an axis and a momentum",
+                         py::cast<std::string>(py::repr(rotor)).substr(0, 60));
+    }
+  }
+  return sum;
+}
+
+Gyrostat make_gyrostat(py::handle inertia, const py::object& rotors, const py::object& momentum, py::handle omega,
+                       py::handle attitude) {
+  if (!rotors.is_none() && !momentum.is_none()) {
+    throw InvalidInput("momentum", "given without rotors, or not at all", "both",
+                       "momentum is the sum of all the rotors");
+  }
+  Vector3d h = Vector3d::Zero();
+  if (!rotors.is_none()) h = sum_of_rotors(rotors);
+  if (!momentum.is_none()) h = to_vector3(momentum, "momentum");
+  const Vector3d w = to_vector3(omega, "omega");
+  const Quat q = to_attitude(attitude, "attitude");
+  if (py::isinstance<InertiaTensor>(inertia)) return {inertia.cast<const InertiaTensor&>(), h, w, q};
+  return {to_moments(inertia, "inertia"), h, w, q};
+}
+
+using Curve = Vector3d (Gyrostat::*)(double) const;
+
+template <Curve curve>
+Array along_gyrostat(const Gyrostat& motion, py::handle t) {
+  const Array times = to_array(t, "t");
+  Array points = result_for(times, 3);
+  const double* in = times.data();
+  double* out = points.mutable_data();
+  const py::ssize_t n = times.size();
+  const WithoutGil nogil;
+  for (py::ssize_t i = 0; i < n; ++i) {
+    if (i % 1024 == 0) check_interrupt();
+    Eigen::Map<Vector3d>(out + 3 * i) = (motion.*curve)(in[i]);
+  }
+  return points;
+}
+
+}  // namespace
+
+void bind_exact_gyrostat(py::module_& m) {
+  py::class_<Gyrostat> cls(m, "Gyrostat", R"(Torque-free motion of a rigid body with rotors, in closed form at any time.
+
+Euler's equations are J omega' = (J omega + h) x omega with the rotors' momentum h constant in the body. One class for
+every body and every h: near and on steady turns, separatrices and symmetries too. The error against the exact motion of
+the same float64 input is a few units of rounding at every time. With h = 0 the answers are those of FreeMotion.
+
+Parameters
+----------
+inertia : InertiaTensor, or array_like of shape (3,)
+    About the centre of mass, in body axes, with the rotors locked [kg m^2]; three numbers are principal moments in the
+    given axes, in any order. For rotors that are free on their bearings: less their axial parts.
+rotors : iterable of Rotor, optional
+    Rotors at constant speed relative to the body.
+momentum : array_like, shape (3,), optional
+    In their place: the rotors' momentum h in body axes [kg m^2/s]. 0 if neither is given.
+omega : array_like, shape (3,)
+    Angular velocity of the body at t = 0, in body axes [rad/s].
+attitude : array_like of shape (4,), or a Rotation
+    Body to space at t = 0, (x, y, z, w).
+
+Raises
+------
+InvalidInput
+    Not finite, a body no mass makes, one without a moment about some axis, or an attitude that is not unit.
+
+Notes
+-----
+Zhukovsky (1885); Volterra (1899), Acta Math. 22; Wittenburg (1977), Dynamics of Systems of Rigid Bodies; see
+docs/gyrostat.md.)");
+  cls.attr("__module__") = "polhode";
+  cls.def(py::init(&make_gyrostat), py::arg("inertia"), py::kw_only(), py::arg("rotors") = py::none(),
+          py::arg("momentum") = py::none(), py::arg("omega"), py::arg("attitude") = py::make_tuple(0, 0, 0, 1))
+      .def("at", &at<Gyrostat>, py::arg("t"), R"(Angular velocity and attitude at the given times.
+
+Parameters
+----------
+t : array_like, any shape
+    Times [s], negative ones too, up to abs(omega t) = 1e25 rad.
+
+Returns
+-------
+omega : ndarray, shape (..., 3)
+    In body axes [rad/s].
+attitude : ndarray, shape (..., 4)
+    Body to space, unit, (x, y, z, w).)")
+      .def("euler_angles", &along_gyrostat<&Gyrostat::euler_angles>, py::arg("t"), R"(Angles about the total momentum.
+
+Parameters
+----------
+t : array_like, any shape
+    Times [s].
+
+Returns
+-------
+ndarray, shape (..., 3)
+    (phi, theta, psi) [rad], intrinsic z-x-z of the body axes in a space frame whose z axis is the total momentum
+    (space z turned there the shortest way): precession, nutation and spin. phi and psi in [-pi, pi].)")
+      .def("polhode", &along_gyrostat<&Gyrostat::polhode>, py::arg("t"), R"(The total momentum in body axes.
+
+Parameters
+----------
+t : array_like, any shape
+    Times [s].
+
+Returns
+-------
+ndarray, shape (..., 3)
+    J omega + h [kg m^2/s]: on a sphere about 0 and on an ellipsoid of constant energy about h.)")
+      .def_property_readonly(
+          "kind", [](const Gyrostat& g) { return to_text(g.kind()); },
+          "'rest', 'steady', 'precession', 'paired', 'single' or 'separatrix'.\n\n"
+          "'steady': omega is constant. 'precession': omega runs on a circle at a constant rate. 'paired': there is\n"
+          "a second curve of the same energy and momentum. 'single': there is none.")
+      .def_property_readonly("period", &Gyrostat::period,
+                             "Period of omega [s]: infinite on a separatrix, 0 where omega is constant.")
+      .def_property_readonly("energy", &Gyrostat::energy, "omega . J omega / 2, constant [J].")
+      .def_property_readonly(
+          "angular_momentum", [](const Gyrostat& g) { return from_vector3(g.angular_momentum()); },
+          "(3,) total momentum in space axes, constant [kg m^2/s].")
+      .def_property_readonly("inertia", &Gyrostat::inertia, "The InertiaTensor.")
+      .def_property_readonly(
+          "momentum", [](const Gyrostat& g) { return from_vector3(g.momentum()); },
+          "(3,) the rotors' momentum h in body axes [kg m^2/s].")
+      .def_property_readonly(
+          "omega", [](const Gyrostat& g) { return from_vector3(g.omega()); },
+          "(3,) omega at t = 0, in body axes [rad/s].")
+      .def_property_readonly(
+          "attitude", [](const Gyrostat& g) { return from_quat(g.attitude()); }, "(4,) attitude at t = 0.")
+      .def(py::self == py::self)
+      .def("__hash__",
+           [](const Gyrostat& g) {
+             return py::hash(py::make_tuple(g.momentum()[0], g.momentum()[1], g.momentum()[2], g.omega()[0],
+                                            g.omega()[1], g.omega()[2]));
+           })
+      .def("__repr__", [](const Gyrostat& g) {
+        const auto text = [](const Array& a) { return py::cast<std::string>(py::str(a.attr("tolist")())); };
+        return "Gyrostat(" + py::cast<std::string>(py::repr(py::cast(g.inertia()))) +
+               ", momentum=" + text(from_vector3(g.momentum())) + ", omega=" + text(from_vector3(g.omega())) +
+               ", attitude=" + text(from_quat(g.attitude())) + ")";
+      });
+  cls.def(py::pickle(
+      [](const Gyrostat& g) {
+        return py::make_tuple(g.inertia(), from_vector3(g.momentum()), from_vector3(g.omega()),
+                              from_quat(g.attitude()));
+      },
+      [](const py::tuple& state) {
+        return from_state("Gyrostat", state, 4, [](const py::tuple& s) {
+          const auto& inertia = s[0].cast<const InertiaTensor&>();
+          const Array q = to_array_with_tail(s[3], "attitude", {4});
+          return Gyrostat(inertia, to_vector3(s[1], "momentum"), to_vector3(s[2], "omega"),
+                          {q.data()[0], q.data()[1], q.data()[2], q.data()[3]});
+        });
+      }));
+}
+
+}  // namespace polhode::python
