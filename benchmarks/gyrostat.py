@@ -77,6 +77,8 @@ def measure_errors():
 def find_steady_turns(moments, h):
     """The directions M with M parallel to omega on the sphere |M| = 1, and whether each is stable."""
     moments, h = np.array(moments), np.array(h)
+    if not h.any():
+        return [(side * axis, k != 1) for k, axis in enumerate(np.eye(3)) for side in (-1, 1)]
     poles = 1 / moments
     found = []
     for low, high in zip([-400, *np.sort(poles)], [*np.sort(poles), 400], strict=True):
@@ -102,17 +104,17 @@ def draw():
     view = ph.Rotation.from_euler("ZX", [-2.2, -1.1])     # the wheel's side of the sphere
     figure, axes = plt.subplots(1, 4, figsize=(12, 3.4))
     rng = np.random.default_rng(3)
-    starts = rng.normal(size=(70, 3))
+    starts = rng.normal(size=(48, 3))
     starts /= np.linalg.norm(starts, axis=1, keepdims=True)
     for axis, size in zip(axes, (0.0, 0.08, 0.3, 0.8), strict=True):
         h = size * direction / np.linalg.norm(direction)
         for M in starts:
             motion = ph.Gyrostat(moments, momentum=h, omega=(M - h) / moments)
             period = motion.period if 0 < motion.period < 500 else 500.0
-            points = view.apply(motion.polhode(np.linspace(0, period, 500)))
+            points = view.apply(motion.polhode(np.linspace(0, period, 200)))
             points[points[:, 2] < 0] = np.nan
             axis.plot(points[:, 0], points[:, 1], lw=0.6, color="C0" if motion.kind == "paired" else "C1")
-        for M, stable in find_steady_turns(moments, h + 1e-9):
+        for M, stable in find_steady_turns(moments, h):
             x, y, z = view.apply(M)
             if z > 0:
                 axis.plot(x, y, "o" if stable else "x", color="black", ms=4)
