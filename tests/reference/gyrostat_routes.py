@@ -304,7 +304,7 @@ class Taylor:
         self.start, self.order = ([mpf(c) for c in omega], unit([mpf(c) for c in attitude])), order
         rate = max(abs(c) for c in omega) + max(abs(c) / i for c, i in zip(h, J))
         spread = max(abs(a - b) / c for a in J for b in J for c in J)
-        self.speed = float(rate * max(1, min(spread, 40))) or 1.0
+        self.speed = float(rate * max(1, spread)) or 1.0
 
     def advance(self, state, time):
         steps = int(abs(time) * self.speed * 5) + 1

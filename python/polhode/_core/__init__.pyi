@@ -583,8 +583,10 @@ class Gyrostat:
     @property
     def kind(self) -> str:
         """
-        'rest', 'steady' (omega is constant), 'precession' (omega on a circle at a constant rate), 'paired' (a
-        second curve of the same energy and momentum exists), 'single' (none does) or 'separatrix'.
+        'rest', 'steady', 'precession', 'paired', 'single' or 'separatrix'.
+
+        'steady': omega is constant. 'precession': omega runs on a circle at a constant rate. 'paired': there is
+        a second curve of the same energy and momentum. 'single': there is none.
         """
     @property
     def momentum(self) -> numpy.typing.NDArray[numpy.float64]:
