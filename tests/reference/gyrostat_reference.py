@@ -12,7 +12,7 @@ import multiprocessing
 import pathlib
 import random
 
-from gyrostat_routes import DIGITS, Taylor, Theta, distance, dot, product
+from gyrostat_routes import DIGITS, Taylor, Theta, conjugate, distance, dot, product
 from mpmath import mp, mpf
 
 TABLE = pathlib.Path(__file__).with_name("gyrostat.json")
