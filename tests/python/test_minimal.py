@@ -51,6 +51,16 @@ def smoke_free_motion():
     assert np.allclose(omega, ph.FreeMotion(BLOCK, OMEGA).at(TIMES)[0], rtol=1e-13)
 
 
+def smoke_pendulum():
+    swing = ph.Pendulum(BLOCK, 2.0, (0, 0, -0.5), (1e-3, 0, 0))
+    assert np.allclose(swing.at(2.0)[0][0], 1e-3 * np.cos(2.0 * swing.frequency), atol=1e-9)
+
+
+def smoke_damped_free():
+    motion = ph.DampedFree(BLOCK, 0.5, OMEGA)
+    assert np.allclose(motion.at(2.0)[0], np.exp(-1.0) * motion.free.at(motion.slowed_time(2.0))[0])
+
+
 def smoke_heavy_top():
     top = ph.HeavyTop((1, 1, 0.5), 2.0, (0, 0, 6), ph.Rotation.from_euler("ZXZ", (0, 0.5, 0)))
     assert np.allclose(top.at(TIMES)[0][:, 2], 6.0)
@@ -131,8 +141,10 @@ def smoke_solve_many():
 
 SMOKE = {
     "Event": smoke_event,
+    "DampedFree": smoke_damped_free,
     "FreeMotion": smoke_free_motion_object,
     "HeavyTop": smoke_heavy_top,
+    "Pendulum": smoke_pendulum,
     "InertiaTensor": smoke_inertia_tensor,
     "IntegrationFailure": smoke_errors,
     "InvalidInput": smoke_errors,
@@ -226,7 +238,10 @@ def instances():
         "Candidate": motion.plan.candidates[0], "Rotation": motion.rotation, "InertiaTensor": tensor,
         "Motions": ph.solve_many([scene()]), "MassProperties": ph.shapes.box(1, (1, 2, 3)),
         "PrincipalAxes": tensor.principal(), "FreeMotion": ph.FreeMotion(BLOCK, OMEGA),
-        "HeavyTop": ph.HeavyTop((1, 1, 0.5), 2.0, OMEGA), "Event": ph.Event(lambda t, omega, attitude: omega[0]),
+        "DampedFree": ph.DampedFree(BLOCK, 0.5, OMEGA),
+        "HeavyTop": ph.HeavyTop((1, 1, 0.5), 2.0, OMEGA),
+        "Pendulum": ph.Pendulum(BLOCK, 2.0, (0, 0, -0.5), (1, 0, 0)),
+        "Event": ph.Event(lambda t, omega, attitude: omega[0]),
         "Diagnosis": ph.inertia.diagnose(np.diag(BLOCK)), "Damping": ph.torques.Damping((1, 2, 3)),
     }
 

@@ -8,10 +8,11 @@ import pytest
 from bodies import scene
 
 import polhode as ph
-from polhode.torques import Constant, Custom, Damping, Gravity, GravityGradient
+from polhode.torques import AngularDamping, Constant, Custom, Damping, Gravity, GravityGradient
 
 SAMPLES = [Constant((1, 2, 3)), Constant((1, 2, 3), frame="space"), Gravity(2, (0.3, 0.2, 0.5)),
-           GravityGradient(1e-3, phase=0.2), Damping((1, 2, 3)), Damping(np.arange(9.0).reshape(3, 3))]
+           GravityGradient(1e-3, phase=0.2), Damping((1, 2, 3)), Damping(np.arange(9.0).reshape(3, 3)),
+           AngularDamping(0.3)]
 
 
 @pytest.mark.parametrize("torque", SAMPLES, ids=repr)
@@ -61,7 +62,8 @@ OMEGA = np.array([0.1, 0.2, 0.3])
     (GravityGradient(0.3, phase=0.7), lambda R: 0.27 * np.cross(
         R.T @ (np.cos(1.3), np.sin(1.3), 0), np.array((1, 2, 2.5)) * (R.T @ (np.cos(1.3), np.sin(1.3), 0)))),
     (Damping(np.arange(9.0).reshape(3, 3)), lambda R: -np.arange(9.0).reshape(3, 3) @ OMEGA),
-], ids=["body", "space", "gravity", "gradient", "damping"])
+    (AngularDamping(0.3), lambda R: -0.3 * np.array((1, 2, 2.5)) * OMEGA),
+], ids=["body", "space", "gravity", "gradient", "damping", "angular damping"])
 def test_each_torque_is_its_formula(torque, formula):
     np.testing.assert_allclose(acceleration(torque, OMEGA, Q, t0=2.0), formula(matrix(Q)), rtol=1e-9, atol=1e-10)
 

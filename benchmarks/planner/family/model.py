@@ -159,6 +159,8 @@ class Coefficients:
             case ph.torques.Damping():
                 C = mp.matrix(np.asarray(torque.matrix).tolist())
                 self.D = body.accelerate(-(body.R.T * C * body.R))
+            case ph.torques.AngularDamping():
+                self.D = one * mp.mpf(-float(torque.rate))
             case ph.torques.Custom(function=Brake() as own):
                 self.D = body.accelerate(one * mp.mpf(-own.c))
             case ph.torques.Custom(function=Wheel() as own):

@@ -28,8 +28,8 @@ void put(Row* rows, int lane, const double* values, int n) {
   for (int i = 0; i < n; ++i) rows[i][lane] = values[i];
 }
 
-/// The kind of a torque, and its numbers if `values` is given; nothing for a torque that lanes do not have.
-std::optional<LaneTorque::Kind> describe(const AnyTorque& torque, double* values = nullptr) {
+/// The kind of a torque of a scene, and its numbers if `values` is given; nothing for a torque that lanes do not have.
+std::optional<LaneTorque::Kind> describe(const Scene& scene, const AnyTorque& torque, double* values = nullptr) {
   using Kind = LaneTorque::Kind;
   const auto give = [values](const double* numbers, int n) {
     if (values != nullptr) std::copy_n(numbers, n, values);
@@ -51,6 +51,10 @@ std::optional<LaneTorque::Kind> describe(const AnyTorque& torque, double* values
     give(damping->matrix().data(), 9);
     return Kind::damping;
   }
+  if (const auto* angular = std::get_if<torques::AngularDamping>(&torque)) {
+    give(angular->compute_matrix(scene.inertia_B().matrix()).data(), 9);
+    return Kind::damping;
+  }
   return std::nullopt;
 }
 
@@ -69,7 +73,7 @@ class EulerLaneProblem final : public LaneProblem {
 
   std::string kind() const override {
     std::string kind = {static_cast<char>(diagonal_), static_cast<char>(attitude_)};
-    for (const AnyTorque& torque : scene_.torques()) kind += static_cast<char>(*describe(torque));
+    for (const AnyTorque& torque : scene_.torques()) kind += static_cast<char>(*describe(scene_, torque));
     if (rotors()) kind += static_cast<char>(LaneTorque::Kind::rotors);
     return kind;
   }
@@ -96,7 +100,7 @@ class Rk45Integrator final : public LaneIntegrator {
         torques_(first.scene().torques().size() + first.rotors()) {
     b_.rtol = tolerances.rtol, b_.atol = tolerances.atol;
     const std::vector<AnyTorque>& given = first.scene().torques();
-    for (std::size_t i = 0; i < given.size(); ++i) torques_[i].kind = *describe(given[i]);
+    for (std::size_t i = 0; i < given.size(); ++i) torques_[i].kind = *describe(first.scene(), given[i]);
     if (first.rotors()) torques_.back().kind = LaneTorque::Kind::rotors;   // last, as in SeveralTorques
     b_.torques = torques_.data(), b_.torque_count = static_cast<int>(torques_.size());
   }
@@ -108,7 +112,7 @@ class Rk45Integrator final : public LaneIntegrator {
     const std::vector<AnyTorque>& given = body.scene().torques();
     for (std::size_t i = 0; i < given.size(); ++i) {
       double values[9] = {};
-      describe(given[i], values);
+      describe(body.scene(), given[i], values);
       put(torques_[i].values, lane, values, 9);
     }
     if (body.rotors()) put(torques_.back().values, lane, body.scene().rotor_momentum().data(), 3);
@@ -160,7 +164,8 @@ std::unique_ptr<LaneIntegrator> EulerLaneProblem::make_integrator(const ode::Tol
 
 /// Not a callable, which serves one body at a time, nor a torque with windows, which cut the span into pieces.
 bool accepts_all(const Scene& scene) {
-  return std::ranges::all_of(scene.torques(), [](const AnyTorque& torque) { return describe(torque).has_value(); });
+  return std::ranges::all_of(scene.torques(),
+                             [&](const AnyTorque& torque) { return describe(scene, torque).has_value(); });
 }
 
 }  // namespace

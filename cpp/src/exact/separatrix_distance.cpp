@@ -1,31 +1,12 @@
 #include <initializer_list>
 
+#include "exact/expansion.hpp"
 #include "polhode/exact/detail/free_setup.hpp"
 
-// Exact sums by expansions. Shewchuk 1997, "Adaptive precision floating-point arithmetic", Discrete Comput. Geom. 18,
-// 305.
 namespace polhode::exact {
 namespace {
 
 using math::DD;
-
-/// A sum of doubles that do not overlap, smallest first; exact.
-struct Expansion {
-  double term[48];
-  int size = 0;
-
-  void add(double b) {
-    double carry = b;
-    int kept = 0;
-    for (int i = 0; i < size; ++i) {
-      const DD s = math::two_sum(carry, term[i]);
-      carry = s.hi;
-      if (s.lo != 0.0) term[kept++] = s.lo;
-    }
-    if (carry != 0.0 || kept == 0) term[kept++] = carry;
-    size = kept;
-  }
-};
 
 Expansion product(const Expansion& e, double b) {
   Expansion p;

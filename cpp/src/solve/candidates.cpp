@@ -14,6 +14,8 @@ namespace {
 
 // Costs of a closed form [s], by benchmarks/planner/fit.py.
 constexpr double free_start = 1.5e-6, free_sample = 8e-9, top_start = 3.6e-6, top_sample = 9e-9;
+constexpr double damped_start = 2e-6, damped_sample = 3.5e-8;
+constexpr double pendulum_start = 1e-5, pendulum_sample = 1e-8;
 // Decay x span from which an implicit method may be chosen: below, stability limits no explicit step.
 constexpr double least_implicit_stiffness = 50.0;
 
@@ -121,8 +123,11 @@ double find_atol(const ode::MethodRecord& record, const Scene& scene, double rto
 }
 
 double predict_closed_form(std::string_view model, double samples, const CostFactors* factors) {
-  return (model == "heavy_top" ? top_start + top_sample * samples : free_start + free_sample * samples) *
-         find_factor(factors, model);
+  const double seconds = model == "heavy_top"     ? top_start + top_sample * samples
+                         : model == "damped_free" ? damped_start + damped_sample * samples
+                         : model == "pendulum"    ? pendulum_start + pendulum_sample * samples
+                                                  : free_start + free_sample * samples;
+  return seconds * find_factor(factors, model);
 }
 
 double find_factor(const CostFactors* factors, std::string_view name) {

@@ -13,7 +13,7 @@ namespace {
 
 [[noreturn]] void throw_no_closed_form(const Scene& scene, const Facts& facts) {
   throw InvalidInput("method 'exact'", "used with a scene that has a closed form", "one without",
-                     exact_models().back().refuse(scene, facts) + "; leave method out");
+                     explain_no_closed_form(scene, facts) + "; leave method out");
 }
 
 }  // namespace

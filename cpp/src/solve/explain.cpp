@@ -12,6 +12,7 @@
 #include "solve/options.hpp"
 #include "solve/perturb.hpp"
 #include "solve/proof/proof_plan.hpp"
+#include "solve/proportional_damping.hpp"
 
 namespace polhode {
 namespace {
@@ -79,6 +80,16 @@ void explain_exact(const Scene& scene, const Facts& facts, const ClosedForm& for
         "The start is exactly on the separatrix: the body flips once, described by hyperbolic functions.");
   } else if (model == "triaxial") {
     reasons.push_back("No torque acts: theta functions give each sample directly, without steps.");
+  } else if (model == "damped_free") {
+    const double rate = find_proportional_damping(scene)->rate;
+    reasons.push_back(format(
+        "The damping is -c I omega with c = %.3g /s. The motion is the free one in slowed time, s = (1 - exp(-c t)) / "
+        "c.",
+        rate));
+  } else if (model == "pendulum") {
+    reasons.push_back(
+        "Gravity acts alone, and omega is along a horizontal principal axis across the arm: the body is a plane "
+        "pendulum. Elliptic functions give each sample.");
   } else {
     reasons.push_back(
         "A symmetric body on a pivot on its axis, with gravity alone, is Lagrange's top. It has a closed form.");
@@ -111,7 +122,9 @@ void explain_steps(const Scene& scene, const Facts& facts, const SolveOptions& o
   } else if (facts.torques.rotors && facts.torques.acting == 1) {
     reasons.push_back("Rotors act on the body by h x omega, so the equations are integrated.");
   } else if (has(scene, "Gravity") && facts.torques.acting == 1) {
-    reasons.push_back("Gravity acts, but no closed form is known: " + exact_models().back().refuse(scene, facts) + ".");
+    reasons.push_back("Gravity acts, but no closed form is known: " + explain_no_closed_form(scene, facts) + ".");
+  } else if (has(scene, "Damping") && facts.torques.acting == 1) {
+    reasons.push_back("Damping acts, but no closed form is known: " + explain_no_closed_form(scene, facts) + ".");
   } else {
     reasons.push_back("No closed form is known with these torques, so the equations are integrated.");
   }

@@ -131,7 +131,8 @@ double compute_torque_scale(const Scene& scene) {
 bool may_spin_up(const Scene& scene, const TorqueSum& torques) {
   if (torques.acting == 0 || torques.has_potential) return false;
   for (const AnyTorque& torque : scene.torques()) {
-    const bool damps = std::holds_alternative<torques::Damping>(torque);
+    const bool damps = std::holds_alternative<torques::Damping>(torque) ||
+                       std::holds_alternative<torques::AngularDamping>(torque);
     if (!damps && !traits(torque).has_potential && !traits(torque).vanishes) return true;
   }
   return false;

@@ -8,6 +8,7 @@
 
 #include "polhode/math/detail/coin.hpp"
 #include "solve/pieces.hpp"
+#include "solve/proportional_damping.hpp"
 
 namespace polhode {
 namespace {
@@ -67,6 +68,24 @@ Rotor perturb_rotor(const Rotor& rotor, Perturber& perturber) {
   return Rotor(std::move(parts));
 }
 
+/// A damping matrix proportional to the inertia, as the torque that stays so when both are perturbed. A piece with it
+/// may have a closed form.
+template <class Torque>
+Torque keep_proportional(const Torque& torque, const Matrix3d& inertia_B) {
+  return std::visit(
+      [&]<class T>(const T& kind) -> Torque {
+        if constexpr (std::is_same_v<T, torques::During>) {
+          return T(keep_proportional(kind.torque(), inertia_B), kind.windows());
+        } else if constexpr (std::is_same_v<T, torques::Damping>) {
+          const auto found = find_proportional(kind.matrix(), inertia_B);
+          return found ? Torque(torques::AngularDamping(found->rate)) : Torque(kind);
+        } else {
+          return kind;
+        }
+      },
+      torque);
+}
+
 /// Changes each end of a window by its own value, so that equal ends of two torques stay equal.
 AnyTorque perturb_windows(const AnyTorque& torque, double first, double last, double t0) {
   const auto* during = std::get_if<torques::During>(&torque);
@@ -87,13 +106,17 @@ AnyTorque perturb_windows(const AnyTorque& torque, double first, double last, do
 
 }  // namespace
 
-State perturb_state(const State& state, double units, int seed) {
+State perturb_state(const State& state, double units, int seed, bool keep_zeros) {
   math::Coin coin(static_cast<std::uint64_t>(seed));
   const double size = units * std::numeric_limits<double>::epsilon(), rate = state.omega.norm();
   State perturbed = state;
-  for (int i = 0; i < 3; ++i) perturbed.omega[i] += (coin.toss() ? size : -size) * rate;
+  const auto change = [&](double& part, double by) {
+    const double signed_by = coin.toss() ? by : -by;
+    if (!keep_zeros || part != 0.0) part += signed_by;
+  };
+  for (int i = 0; i < 3; ++i) change(perturbed.omega[i], size * rate);
   for (double* part : {&perturbed.attitude.x, &perturbed.attitude.y, &perturbed.attitude.z, &perturbed.attitude.w})
-    *part += coin.toss() ? size : -size;
+    change(*part, size);
   return perturbed;
 }
 
@@ -114,6 +137,7 @@ Scene perturb(const Scene& scene, int units) {
   // The rates jump where a rotor starts or stops, so a sample there would move with the time of the jump.
   const bool windows_stay = has_rotor_windows(scene);
   for (AnyTorque& torque : parts.torques) {
+    if (cut) torque = keep_proportional(torque, scene.inertia_B().matrix());
     torque = perturb_torque(torque, perturber);
     if (!windows_stay) torque = perturb_windows(torque, first, last, scene.t0());
   }

@@ -9,7 +9,8 @@ namespace polhode {
 /// the span, nor any window if rotors have some.
 Scene perturb(const Scene& scene, int units = 2);
 
-/// A state changed by `units` units of rounding, up or down by a rule that `seed` chooses.
-State perturb_state(const State& state, double units, int seed);
+/// A state changed by `units` units of rounding, up or down by a rule that `seed` chooses. Components that are exactly
+/// 0 may be kept.
+State perturb_state(const State& state, double units, int seed, bool keep_zeros = false);
 
 }  // namespace polhode

@@ -34,6 +34,9 @@ class PieceRunner {
     State start = scene_.start();
     Vector3d h = scene_.rotor_momentum();
     std::size_t next = 0;
+    // A pendulum's axis of rotation is exact, through the pieces before it too.
+    const bool keep_zeros = std::any_of(pieces.begin(), pieces.end(),
+                                        [](const Piece& piece) { return piece.plan.model == "pendulum"; });
     for (const Piece& piece : pieces) {
       const bool forward = piece.end >= piece.begin, last = &piece == &pieces.back();
       std::vector<double> times;
@@ -55,7 +58,7 @@ class PieceRunner {
       place(part, motion, std::span(order).subspan(first, next - first), piece.end);
       const bool finished = motion.status == Status::finished;
       motion_.t_reached = finished ? piece.end : find_reached(motion, piece);
-      if (finished && !last) start = get_end(motion, piece.end, want);
+      if (finished && !last) start = get_end(motion, piece.end, want, keep_zeros);
       motion_.status = motion.status;
       motion_.message = finished ? "" : motion.message;
       if (motion.status == Status::max_steps) motion_.message = describe_max_steps();
@@ -111,7 +114,7 @@ class PieceRunner {
     return motion.t.empty() ? piece.begin : motion.t.back();
   }
 
-  State get_end(const Motion& motion, double t, const Wanted& want) {
+  State get_end(const Motion& motion, double t, const Wanted& want, bool keep_zeros) {
     const double* w = motion.omega.data() + motion.omega.size() - 3;
     State end{t, {w[0], w[1], w[2]}, scene_.attitude()};
     if (want.attitude) {
@@ -119,7 +122,7 @@ class PieceRunner {
       end.attitude = {q[0], q[1], q[2], q[3]};
     }
     ++joins_;
-    return perturb_joins_ ? perturb_state(end, is_exact(motion) ? 8.0 : 2.0, joins_) : end;
+    return perturb_joins_ ? perturb_state(end, is_exact(motion) ? 8.0 : 2.0, joins_, keep_zeros) : end;
   }
 
   std::string describe_max_steps() const {

@@ -73,7 +73,7 @@ class PiecePlanner {
       if (find_closed_form(part, facts)) continue;
       throw InvalidInput("method 'exact'", "used with pieces that all have a closed form",
                          "one without, " + describe_span(*piece),
-                         exact_models().back().refuse(part, facts) + "; leave method out");
+                         explain_no_closed_form(part, facts) + "; leave method out");
     }
   }
 

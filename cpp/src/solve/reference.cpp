@@ -204,6 +204,10 @@ class LongDoubleSeries {
       for (int j = 0; j < 3; ++j) tau[i] -= Real(torque.matrix()(i, j)) * w_[index(j)][index(n)];
   }
 
+  void add(const torques::AngularDamping& torque, Real, int n, Real* tau) const {
+    for (int i = 0; i < 3; ++i) tau[i] -= Real(torque.rate()) * L_[index(i)][index(n)];
+  }
+
   void add(const torques::Custom&, Real, int, Real*) const {
     throw InvalidInput("torques", "without Custom torques, which have no series", "Custom");
   }

@@ -180,6 +180,46 @@ class Damping:
         """
         dict: uses_time, uses_attitude, uses_rates, has_potential.
         """
+class AngularDamping:
+    """
+    AngularDamping(rate)
+
+    Damping proportional to the angular momentum: tau_B = -c I w_B.
+
+    Parameters
+    ----------
+    rate : float
+        c, the rate at which the angular momentum decays; a negative rate drives the body [1/s]
+
+    Raises
+    ------
+    InvalidInput
+        For a wrong shape, or numbers that are not finite.
+
+    References
+    ----------
+    angularDamping of the physics engines; docs/damped_free.md
+    """
+    def __eq__(self, arg0: typing.Any) -> bool:
+        ...
+    def __getstate__(self) -> tuple[typing.Any, ...]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, rate: float) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
+        ...
+    @property
+    def rate(self) -> typing.Any:
+        ...
+    @property
+    def traits(self) -> dict[str, typing.Any]:
+        """
+        dict: uses_time, uses_attitude, uses_rates, has_potential.
+        """
 class Custom:
     """
     Custom(function, *, uses_time=True, uses_attitude=True, uses_rates=True, potential=None, data=None)

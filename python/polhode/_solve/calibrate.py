@@ -41,8 +41,10 @@ def _scenes() -> list[Any]:
         Scene(inertia=(3, 4, 6), omega=(2, 1, 1), times=times), Scene(inertia=block, omega=(1, 2, 3), times=times),
         Scene(inertia=(1, 1, 0.5), omega=(0, 0, 6), attitude=tilted, torques=[torques.Gravity(2, (0, 0, 1))],
               times=times),
+        Scene(inertia=block, omega=(1, 0, 0), torques=[torques.Gravity(2, (0, 0, -0.5))], times=times),
         Scene(inertia=(1, 2, 2.5), omega=(0.3, 0.2, 3), attitude=tilted, torques=[torques.Gravity(2, (0.3, 0.2, 0.5))],
               times=times),
+        Scene(inertia=block, omega=(1, 2, 3), torques=[torques.AngularDamping(0.01)], times=times),
         Scene(inertia=block, omega=(1, 2, 3), torques=[torques.Damping((1e-3, 2e-3, 3e-3))], times=times),
         Scene(inertia=block, omega=(0.1, 0.2, 0.3), torques=[torques.Constant((0.01, -0.02, 0.03))], times=times),
     ]

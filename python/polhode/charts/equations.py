@@ -76,9 +76,14 @@ def _damping(torque: Any, scene: Scene, t: Any, w: Numbers, q: Numbers, cos: Fun
     return [_dot(row, w) for row in (-np.asarray(torque.matrix)).tolist()]
 
 
+def _angular_damping(torque: Any, scene: Scene, t: Any, w: Numbers, q: Numbers, cos: Function,
+                     sin: Function) -> list[Any]:
+    return [_dot(row, w) for row in (-float(torque.rate) * scene.inertia.matrix).tolist()]
+
+
 _TORQUES: dict[type, Callable[..., list[Any]]] = {
     torques.Constant: _constant, torques.Gravity: _gravity, torques.GravityGradient: _gradient,
-    torques.Damping: _damping,
+    torques.Damping: _damping, torques.AngularDamping: _angular_damping,
 }
 
 
@@ -94,7 +99,7 @@ def unwritten(scene: Scene) -> str:
 
 def damps(scene: Scene) -> bool:
     """Whether something may make a scene stiff."""
-    return any(isinstance(torque, torques.Damping) for torque in scene.torques)
+    return any(isinstance(torque, torques.Damping | torques.AngularDamping) for torque in scene.torques)
 
 
 def refuses(scene: Scene, implicit: bool = False) -> str:

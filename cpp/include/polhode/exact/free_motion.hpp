@@ -68,6 +68,7 @@ class FreeMotion {
   }
 
  private:
+  friend class DampedFree;   // the same motion in another time
   enum class Form { rest, intermediate, trig, hyper };
 
   void set_up(const Vector3d& moments, const Matrix3d& R_BP, bool exact_axes);

@@ -7,16 +7,20 @@
 #include <string_view>
 #include <variant>
 
+#include "polhode/exact/damped_free.hpp"
 #include "polhode/exact/free_motion.hpp"
 #include "polhode/exact/heavy_top.hpp"
+#include "polhode/exact/pendulum.hpp"
 #include "polhode/solve/facts.hpp"
 
 namespace polhode {
 
-/// The closed form of a scene: FreeMotion or HeavyTop. Its time counts from the scene's start.
+/// The closed form of a scene. Its time counts from the scene's start.
 class ClosedForm {
  public:
   explicit ClosedForm(FreeMotion motion) : motion_(std::move(motion)) {}
+  explicit ClosedForm(DampedFree motion) : motion_(std::move(motion)) {}
+  explicit ClosedForm(Pendulum motion) : motion_(std::move(motion)) {}
   explicit ClosedForm(HeavyTop motion) : motion_(std::move(motion)) {}
 
   void at(const double* t, std::size_t n, double* omega, double* attitude) const {
@@ -26,7 +30,7 @@ class ClosedForm {
   double rate(const double* omega) const;   ///< a rate of change [rad/s], for the steps of an event search
 
  private:
-  std::variant<FreeMotion, HeavyTop> motion_;
+  std::variant<FreeMotion, DampedFree, Pendulum, HeavyTop> motion_;
 };
 
 /// The record of an exact model, for the planner, the command line and the docs.
@@ -41,12 +45,15 @@ struct ExactModel {
 /// The exact models, simplest first. The planner takes the first that holds.
 std::span<const ExactModel> exact_models();
 
+/// Why a scene without closed form has none.
+std::string explain_no_closed_form(const Scene& scene, const Facts& facts);
+
 /// The closed form of a scene, if one holds.
 std::optional<ClosedForm> find_closed_form(const Scene& scene, const Facts& facts);
 
 /// A bound on the error of the closed form at the scene's times, against the exact motion of the same float64 input. It
 /// is 20 units of rounding (docs/exact.md; the largest measured error is 7). To this it adds the effect of rounding in
-/// times from the start, in weight times arm, and in the principal axes of a full tensor.
+/// times from the start, in weight times arm, in a damping matrix, and in the principal axes of a full tensor.
 double compute_closed_form_error(const Scene& scene, const Facts& facts, const ClosedForm& form);
 
 }  // namespace polhode

@@ -2,6 +2,7 @@
 
 #include <variant>
 
+#include "polhode/torque/angular_damping.hpp"
 #include "polhode/torque/constant.hpp"
 #include "polhode/torque/custom.hpp"
 #include "polhode/torque/damping.hpp"
@@ -15,6 +16,7 @@ using LastingTorque = std::variant<torques::Constant,         //
                                    torques::Gravity,          //
                                    torques::GravityGradient,  //
                                    torques::Damping,          //
+                                   torques::AngularDamping,   //
                                    torques::Custom>;
 
 }  // namespace polhode

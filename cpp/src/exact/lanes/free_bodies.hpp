@@ -1,5 +1,6 @@
 #pragma once
 
+#include "exact/lanes/damped_loops.hpp"
 #include "exact/lanes/free_loops.hpp"
 #include "polhode/exact/detail/free_setup_hyper.hpp"
 
@@ -219,6 +220,9 @@ inline constexpr exact::FreeKernels kernels = {.times = time_kernels,
                                                .hyper = &on_times,
                                                .once = &once,
                                                .set_up = &set_up,
-                                               .prepare = &prepare};
+                                               .prepare = &prepare,
+                                               .damped_trig = &at_slowed_times,
+                                               .damped_hyper = &at_slowed_times,
+                                               .slow = &slow};
 
 }  // namespace polhode::POLHODE_ISA

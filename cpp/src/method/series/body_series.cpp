@@ -121,7 +121,10 @@ void BodySeries::choose_variables(const Vector3d& w) {
 }
 
 void BodySeries::set_column(double* column, const Vector3d& torque_P) const {
-  const double a[3] = {torque_P[0] / I_[0], torque_P[1] / I_[1], torque_P[2] / I_[2]};
+  add_acceleration(column, {torque_P[0] / I_[0], torque_P[1] / I_[1], torque_P[2] / I_[2]});
+}
+
+void BodySeries::add_acceleration(double* column, const Vector3d& a) const {
   if (terms_.variables == RateVariables::plain) {
     for (int i = 0; i < 3; ++i) column[i] += a[i];
   } else {
@@ -144,6 +147,9 @@ void BodySeries::add_torques(const Scene& scene) {
     } else if (const auto* damping = std::get_if<torques::Damping>(&torque)) {
       const Matrix3d C_P = R_PB * damping->matrix() * R_BP_;
       for (int j = 0; j < 3; ++j) set_column(terms_.damping[j], -C_P.col(j));
+      terms_.damped = true;
+    } else if (const auto* angular = std::get_if<torques::AngularDamping>(&torque)) {
+      for (int j = 0; j < 3; ++j) add_acceleration(terms_.damping[j], -angular->rate() * Vector3d::Unit(j));
       terms_.damped = true;
     } else if (const auto* gradient = std::get_if<torques::GravityGradient>(&torque)) {
       ++gradients_;

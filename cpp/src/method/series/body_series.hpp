@@ -77,6 +77,7 @@ class BodySeries {
   void find_invariants(const Scene& scene);
   void keep_invariants(double t0);   ///< those of the start
   void set_column(double* column, const Vector3d& torque_P) const;   ///< adds torque / inertia
+  void add_acceleration(double* column, const Vector3d& a) const;
   void correct_rates(double* y, double* carry) const;
   static void keep_unit(double* y, double* carry);
   void compute_rates(const double* r, double* omega_P) const {

@@ -45,6 +45,8 @@ class Body {
     for (const AnyTorque& torque : scene.torques()) {
       if (const auto* damping = std::get_if<torques::Damping>(&torque)) {
         add_damping(R_BP.transpose() * damping->matrix() * R_BP);
+      } else if (const auto* angular = std::get_if<torques::AngularDamping>(&torque)) {
+        add_damping(angular->compute_matrix(I.asDiagonal()));
       } else {
         linear_ = linear_ && !std::visit([](const auto& acting) { return acting.traits().uses_rates; }, torque);
       }

@@ -119,6 +119,8 @@ void BodyEquations::choose_units() {
       fastest = std::max(fastest, std::abs(gradient->mean_motion()));
     if (const auto* brake = std::get_if<torques::Damping>(&torque))
       damping = std::max(damping, brake->matrix().cwiseAbs().maxCoeff() / least);
+    if (const auto* angular = std::get_if<torques::AngularDamping>(&torque))
+      damping = std::max(damping, std::abs(angular->rate()));
   }
   if (fastest > 0.0 && std::isfinite(fastest)) rate_ = nearest_power(fastest);
   pace_ = damping > rate_ && std::isfinite(damping) ? nearest_power(damping) : rate_;
@@ -233,6 +235,10 @@ class BodyEquations::Maker {
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
         accelerate_by(i, -Interval(damping.matrix()(i, j)) * Interval(part_) * per_rate_, j);
+  }
+
+  void add(const torques::AngularDamping& damping) {
+    for (int i = 0; i < 3; ++i) system_.add_variable(i, i, -Interval(damping.rate()) * per_rate_);
   }
 
   void add(const torques::GravityGradient& gradient) {

@@ -44,6 +44,14 @@ struct FreeKernels {
   /// One body: its constants, and `trig` for k^2 <= 0.97 or `hyper` beyond. `start` is scaled as `analyse` requires.
   void (*prepare)(const FreeStart<double>& start, FreeConstants<double>& constants, FreeTrig<double>& trig,
                   FreeHyper<double>& hyper);
+
+  /// One body under the torque -c I omega, c != 0, at n times.
+  void (*damped_trig)(const FreeTrig<double>&, const FreeFrame&, double c, const double* t, std::size_t n,
+                      double* omega, double* attitude);
+  void (*damped_hyper)(const FreeHyper<double>&, const FreeFrame&, double c, const double* t, std::size_t n,
+                       double* omega, double* attitude);
+  /// The slowed times s = (1 - e^-ct) / c = hi + lo, and e^-ct (n each).
+  void (*slow)(double c, const double* t, std::size_t n, double* hi, double* lo, double* decay);
 };
 
 /// The kernels of a level, or of the next lower level that was compiled.

@@ -92,31 +92,56 @@ POLHODE_INLINE FreeState<T> evaluate(const FreeTrig<C>& body, T t) {
   return evaluate(body, evaluate_pair(body, s, c), s, c, ks, kc);
 }
 
+/// The cycles, to a fraction, of the low part of a time t + t_low.
+template <class T>
+POLHODE_INLINE T low_cycles(T t_low, T rate) {
+  return cycle_fraction(t_low, rate, T(0.0), T(0.0));
+}
+
+/// The same at the time t + t_low.
+template <class T, class C>
+POLHODE_INLINE FreeState<T> evaluate(const FreeTrig<C>& body, T t, T t_low) {
+  T s, c, ks, kc;
+  const T nu(body.nu_hi), kappa(body.kappa_hi);
+  sincos_cycles(cycle_fraction(t, nu, T(body.nu_lo), T(body.phi0) + low_cycles(t_low, nu)), s, c);
+  sincos_cycles(cycle_fraction(t, kappa, T(body.kappa_lo), low_cycles(t_low, kappa)), ks, kc);
+  return evaluate(body, evaluate_pair(body, s, c), s, c, ks, kc);
+}
+
 /// The phase between two flips: v, (-1)^N, e^-|v|, and the rotation of alpha and beta.
 template <class T>
 struct FreePassage {
   T v, flip, E, sine, cosine;
 };
 
-template <class T, class C>
-POLHODE_INLINE FreePassage<T> evaluate_passage(const FreeHyper<C>& body, T t) {
+/// At the time t, or t + t_low if `low` holds the number t_low.
+template <class T, class C, class... Low>
+POLHODE_INLINE FreePassage<T> evaluate_passage(const FreeHyper<C>& body, T t, Low... low) {
   // The theta argument in half cycles, as a pair: near v = 0 its error is multiplied by pi^2 / lambda.
   const auto p = two_prod(t, T(body.rate_hi));
   const T n = rint(p.hi);
-  const auto half_cycles = DoubleDouble<T>(two_sum(p.hi - n, madd(t, T(body.rate_lo), p.lo))) +
+  auto half_cycles = DoubleDouble<T>(two_sum(p.hi - n, madd(t, T(body.rate_lo), p.lo))) +
                      DoubleDouble<T>(T(body.start_hi), T(body.start_lo));
+  if constexpr (sizeof...(low) == 1) {
+    half_cycles = half_cycles + (DoubleDouble<T>(two_prod(low, T(body.rate_hi))) + ...);
+  }
   const T n2 = rint(half_cycles.hi), f = half_cycles.hi - n2;
   const T half = T(0.5) * ((n + n2) + T(body.parity0));
   const T flip = T(1.0) - T(4.0) * abs(half - rint(half));  // (-1)^N
   // On the separatrix f = 0 and v grows with t itself.
   const T argument = select(T(body.homoclinic) > T(0.5), t, f);
   const auto vp = two_prod(argument, T(body.v_hi));
-  const T tail = madd(argument, T(body.v_lo), madd(half_cycles.lo, T(body.v_hi), vp.lo)) + T(body.v0_lo);
+  T tail = madd(argument, T(body.v_lo), madd(half_cycles.lo, T(body.v_hi), vp.lo)) + T(body.v0_lo);
+  if constexpr (sizeof...(low) == 1) {
+    tail = tail + select(T(body.homoclinic) > T(0.5), (low + ...) * T(body.v_hi), T(0.0));
+  }
   const auto vs = two_sum(vp.hi, T(body.v0_hi));
   const T v = vs.hi + (vs.lo + tail);
 
   FreePassage<T> out;
-  const T cycles = madd(T(body.eta), f, cycle_fraction(t, T(body.kappa_hi), T(body.kappa_lo), T(0.0)));
+  T start(0.0);
+  if constexpr (sizeof...(low) == 1) start = (low_cycles(low, T(body.kappa_hi)) + ...);
+  const T cycles = madd(T(body.eta), f, cycle_fraction(t, T(body.kappa_hi), T(body.kappa_lo), start));
   sincos_cycles(cycles - rint(cycles), out.sine, out.cosine);
   out.v = v, out.flip = flip, out.E = exp_minus(abs(v));
   return out;
@@ -167,6 +192,11 @@ POLHODE_INLINE FreeState<T> evaluate(const FreeHyper<C>& body, const FreePassage
 template <class T, class C>
 POLHODE_INLINE FreeState<T> evaluate(const FreeHyper<C>& body, T t) {
   return evaluate(body, evaluate_passage(body, t));
+}
+
+template <class T, class C>
+POLHODE_INLINE FreeState<T> evaluate(const FreeHyper<C>& body, T t, T t_low) {
+  return evaluate(body, evaluate_passage(body, t, t_low));
 }
 
 }  // namespace polhode::exact

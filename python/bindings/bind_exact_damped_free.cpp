@@ -1,0 +1,108 @@
+#include <pybind11/operators.h>
+#include <pybind11/typing.h>
+
+#include "bind_exact.hpp"
+#include "convert.hpp"
+#include "polhode/core/error.hpp"
+#include "polhode/exact/damped_free.hpp"
+
+namespace polhode::python {
+namespace {
+
+DampedFree make_damped_free(py::handle inertia, py::handle damping, py::handle omega, py::handle attitude) {
+  const double rate = to_real(damping, "damping");
+  const Vector3d w = to_vector3(omega, "omega");
+  const Quat q = to_attitude(attitude, "attitude");
+  if (py::isinstance<InertiaTensor>(inertia)) return {inertia.cast<const InertiaTensor&>(), rate, w, q};
+  return {to_vector3(inertia, "inertia"), rate, w, q};
+}
+
+}  // namespace
+
+void bind_exact_damped_free(py::module_& m) {
+  py::class_<DampedFree> cls(m, "DampedFree",
+                             R"(A free body with damping proportional to its angular momentum, -c I omega.
+
+In closed form at any time, for any body: it is the free motion in the slowed time s = (1 - exp(-c t)) / c, with omega
+multiplied by exp(-c t). The error is that of FreeMotion.
+
+Parameters
+----------
+inertia : InertiaTensor, or array_like of shape (3,)
+    About the centre of mass (or a fixed point), in body axes [kg m^2]; three numbers are principal moments in the given
+    axes, in any order.
+damping : float
+    The rate c [1/s]. A negative rate drives the body.
+omega : array_like, shape (3,)
+    Angular velocity at t = 0, in body axes [rad/s].
+attitude : array_like of shape (4,), or a Rotation
+    Body to space at t = 0, (x, y, z, w).
+
+Raises
+------
+InvalidInput
+    Not finite, a body no mass makes, one without a moment about some axis, or an attitude that is not unit.
+
+Notes
+-----
+A change of time in Euler's equations; see docs/damped_free.md.)");
+  cls.attr("__module__") = "polhode";
+  cls.def(py::init(&make_damped_free), py::arg("inertia"), py::arg("damping"), py::arg("omega"),
+          py::arg("attitude") = py::make_tuple(0, 0, 0, 1))
+      .def("at", &at<DampedFree>, py::arg("t"), R"(Angular velocity and attitude at the given times.
+
+Parameters
+----------
+t : array_like, any shape
+    Times [s], negative ones too.
+
+Returns
+-------
+omega : ndarray, shape (..., 3)
+    In body axes [rad/s].
+attitude : ndarray, shape (..., 4)
+    Body to space, unit, (x, y, z, w).
+
+Raises
+------
+InvalidInput
+    A time that is not finite, or at which a driven body is beyond float64.)")
+      .def("slowed_time", &DampedFree::slowed_time, py::arg("t"), R"(The time at which the free body has this attitude.
+
+Parameters
+----------
+t : float
+    Time [s].
+
+Returns
+-------
+float
+    (1 - exp(-c t)) / c [s].)")
+      .def_property_readonly("total_angle", &DampedFree::total_angle,
+                             "Bound on the angle of rotation from t = 0 on, abs(omega) / c [rad]; infinite for c <= 0.")
+      .def_property_readonly("free", &DampedFree::free, "The FreeMotion in slowed time.")
+      .def_property_readonly("damping", &DampedFree::damping, "The rate c [1/s].")
+      .def_property_readonly("inertia", &DampedFree::inertia, "The InertiaTensor.")
+      .def_property_readonly("omega", [](const DampedFree& f) { return from_vector3(f.omega()); },
+                             "(3,) omega at t = 0, in body axes [rad/s].")
+      .def_property_readonly("attitude", [](const DampedFree& f) { return from_quat(f.attitude()); },
+                             "(4,) attitude at t = 0.")
+      .def(py::self == py::self)
+      .def("__hash__",
+           [](const DampedFree& f) {
+             return py::hash(py::make_tuple(f.damping(), f.omega()[0], f.omega()[1], f.omega()[2]));
+           })
+      .def("__repr__", [](const DampedFree& f) {
+        const auto text = [](const Array& a) { return py::cast<std::string>(py::str(a.attr("tolist")())); };
+        return "DampedFree(" + py::cast<std::string>(py::repr(py::cast(f.inertia()))) +
+               ", damping=" + to_text(f.damping()) + ", omega=" + text(from_vector3(f.omega())) +
+               ", attitude=" + text(from_quat(f.attitude())) + ")";
+      });
+  cls.def(py::pickle(
+      [](const DampedFree& f) {
+        return py::make_tuple(f.inertia(), f.damping(), from_vector3(f.omega()), from_quat(f.attitude()));
+      },
+      [](const py::tuple& s) { return make_damped_free(s[0], s[1], s[2], s[3]); }));
+}
+
+}  // namespace polhode::python
