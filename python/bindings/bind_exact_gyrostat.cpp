@@ -2,32 +2,28 @@
 #include <pybind11/typing.h>
 
 #include "bind_exact.hpp"
+#include "bind_scene.hpp"
 #include "convert.hpp"
 #include "gil.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/exact/gyrostat.hpp"
+#include "polhode/scene/scene.hpp"
 
 namespace polhode::python {
 namespace {
 
-/// The momentum of held rotors in body axes: of each the axis times the momentum along it.
-Vector3d sum_of_rotors(const py::object& rotors) {
-  Vector3d sum = Vector3d::Zero();
+/// A body with its rotors. The scene knows what each kind means for the inertia and the momentum.
+Gyrostat make_with_rotors(const InertiaTensor& inertia, const py::object& rotors, const Vector3d& omega,
+                          const Quat& attitude) {
+  std::vector<Rotor> wheels;
   for (const py::handle rotor : rotors) {
-    if (py::hasattr(rotor, "free") && py::cast<bool>(rotor.attr("free"))) {
-      throw InvalidInput("rotors", "held at a constant speed", "a rotor free on its bearing",
-                         "give momentum= and an inertia less the rotor's axial part, as docs/gyrostat.md shows");
-    }
-    if (py::hasattr(rotor, "momentum_vector")) {
-      sum += to_vector3(rotor.attr("momentum_vector"), "rotors");
-    } else if (py::hasattr(rotor, "axis") && py::hasattr(rotor, "momentum")) {
-      sum += to_vector3(rotor.attr("axis"), "rotors") * to_real(rotor.attr("momentum"), "rotors");
-    } else {
-      throw InvalidInput("rotors", "objects with an axis and a momentum",
-                         py::cast<std::string>(py::repr(rotor)).substr(0, 60));
-    }
+    const std::string where = "rotors[" + std::to_string(wheels.size()) + "]";
+    wheels.push_back(to_rotor(rotor, where));
+    if (wheels.back().windows().empty()) continue;
+    throw InvalidInput(where, "one that always turns", "one with windows of time", "solve a Scene with such rotors");
   }
-  return sum;
+  const Scene scene(SceneParts{.inertia_B = inertia, .omega = omega, .times = {0.0}, .rotors = std::move(wheels)});
+  return {scene.inertia_B(), scene.rotor_momentum(), omega, attitude};
 }
 
 Gyrostat make_gyrostat(py::handle inertia, const py::object& rotors, const py::object& momentum, py::handle omega,
@@ -36,18 +32,18 @@ Gyrostat make_gyrostat(py::handle inertia, const py::object& rotors, const py::o
     throw InvalidInput("momentum", "given without rotors, or not at all", "both",
                        "momentum is the sum of all the rotors");
   }
-  Vector3d h = Vector3d::Zero();
-  if (!rotors.is_none()) h = sum_of_rotors(rotors);
-  if (!momentum.is_none()) h = to_vector3(momentum, "momentum");
   const Vector3d w = to_vector3(omega, "omega");
   const Quat q = to_attitude(attitude, "attitude");
-  if (py::isinstance<InertiaTensor>(inertia)) return {inertia.cast<const InertiaTensor&>(), h, w, q};
-  return {to_moments(inertia, "inertia"), h, w, q};
+  const InertiaTensor body = py::isinstance<InertiaTensor>(inertia)
+                                 ? inertia.cast<const InertiaTensor&>()
+                                 : InertiaTensor::from_moments(to_moments(inertia, "inertia"));
+  if (!rotors.is_none() && py::len(rotors) > 0) return make_with_rotors(body, rotors, w, q);
+  return {body, momentum.is_none() ? Vector3d::Zero() : to_vector3(momentum, "momentum"), w, q};
 }
 
-using Curve = Vector3d (Gyrostat::*)(double) const;
+using GyrostatCurve = Vector3d (Gyrostat::*)(double) const;
 
-template <Curve curve>
+template <GyrostatCurve curve>
 Array along_gyrostat(const Gyrostat& motion, py::handle t) {
   const Array times = to_array(t, "t");
   Array points = result_for(times, 3);
@@ -75,9 +71,9 @@ Parameters
 ----------
 inertia : InertiaTensor, or array_like of shape (3,)
     About the centre of mass, in body axes, with the rotors locked [kg m^2]; three numbers are principal moments in the
-    given axes, in any order. For rotors that are free on their bearings: less their axial parts.
-rotors : iterable of Rotor, optional
-    Rotors at constant speed relative to the body.
+    given axes, in any order. Beside `momentum` of rotors that are free on their bearings: less their axial parts.
+rotors : sequence of Rotor, optional
+    Held at a constant speed relative to the body, or free on their bearings, without windows of time.
 momentum : array_like, shape (3,), optional
     In their place: the rotors' momentum h in body axes [kg m^2/s]. 0 if neither is given.
 omega : array_like, shape (3,)

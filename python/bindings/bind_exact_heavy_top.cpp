@@ -11,14 +11,15 @@
 namespace polhode::python {
 namespace {
 
-HeavyTop make_heavy_top(py::handle inertia, py::handle weight_arm, py::handle omega, py::handle attitude) {
-  const double arm = to_real(weight_arm, "weight_arm");
+HeavyTop make_heavy_top(py::handle inertia, py::handle weight_arm, py::handle omega, py::handle attitude,
+                        py::handle rotor) {
+  const double arm = to_real(weight_arm, "weight_arm"), h = to_real(rotor, "rotor");
   const Vector3d w = to_vector3(omega, "omega");
   const Quat q = to_attitude(attitude, "attitude");
-  if (py::isinstance<InertiaTensor>(inertia)) return {inertia.cast<const InertiaTensor&>(), arm, w, q};
+  if (py::isinstance<InertiaTensor>(inertia)) return {inertia.cast<const InertiaTensor&>(), arm, w, q, h};
   const Array array = to_array(inertia, "inertia");
-  if (array.ndim() == 1 && array.shape(0) == 3) return {to_vector3(array, "inertia"), arm, w, q};
-  return {InertiaTensor(to_tensor(array, "inertia")), arm, w, q};
+  if (array.ndim() == 1 && array.shape(0) == 3) return {to_vector3(array, "inertia"), arm, w, q, h};
+  return {InertiaTensor(to_tensor(array, "inertia")), arm, w, q, h};
 }
 
 }  // namespace
@@ -43,6 +44,9 @@ omega : array_like, shape (3,)
     Angular velocity at t = 0, in body axes [rad/s].
 attitude : array_like of shape (4,), or a Rotation
     Body to space at t = 0, (x, y, z, w).
+rotor : float, optional
+    Momentum of rotors about the symmetry axis, constant in the body [kg m^2/s], as of a toy gyroscope's wheel. The
+    inertia is then as for Gyrostat.
 
 Raises
 ------
@@ -54,7 +58,7 @@ Notes
 F. Klein and A. Sommerfeld, "Ueber die Theorie des Kreisels" (1897-1910); see docs/heavy_top.md.)");
   cls.attr("__module__") = "polhode";
   cls.def(py::init(&make_heavy_top), py::arg("inertia"), py::arg("weight_arm"), py::arg("omega"),
-          py::arg("attitude") = py::make_tuple(0, 0, 0, 1))
+          py::arg("attitude") = py::make_tuple(0, 0, 0, 1), py::arg("rotor") = 0.0)
       .def("at", &at<HeavyTop>, py::arg("t"), R"(Angular velocity and attitude at the given times.
 
 Parameters
@@ -84,13 +88,14 @@ InvalidInput
       .def_property_readonly("precession_rate", &HeavyTop::precession_rate,
                              "Mean rate of the axis about space z over a nutation [rad/s]. NaN for an axis that\n"
                              "stays vertical, and for 'homoclinic'.")
-      .def_property_readonly("energy", &HeavyTop::energy, "Kinetic energy and weight_arm cos(tilt) [J].")
-      .def_property_readonly("p_phi", &HeavyTop::p_phi, "Angular momentum about space z [kg m^2/s].")
-      .def_property_readonly("p_psi", &HeavyTop::p_psi, "Angular momentum about the symmetry axis [kg m^2/s].")
+      .def_property_readonly("energy", &HeavyTop::energy, "Kinetic energy without that inside rotors, and weight_arm cos(tilt) [J].")
+      .def_property_readonly("p_phi", &HeavyTop::p_phi, "Angular momentum about space z, with rotors [kg m^2/s].")
+      .def_property_readonly("p_psi", &HeavyTop::p_psi, "Angular momentum about the symmetry axis, with rotors [kg m^2/s].")
       .def_property_readonly("axis", [](const HeavyTop& top) { return from_vector3(top.axis()); },
                              "(3,) the symmetry axis in body axes, unit.")
       .def_property_readonly("inertia", &HeavyTop::inertia, "The InertiaTensor about the pivot.")
       .def_property_readonly("weight_arm", &HeavyTop::weight_arm, "Signed along the symmetry axis [N m].")
+      .def_property_readonly("rotor", &HeavyTop::rotor, "Momentum of rotors about the symmetry axis [kg m^2/s].")
       .def_property_readonly("omega", [](const HeavyTop& top) { return from_vector3(top.omega()); },
                              "(3,) omega at t = 0, in body axes [rad/s].")
       .def_property_readonly("attitude", [](const HeavyTop& top) { return from_quat(top.attitude()); },
@@ -104,18 +109,20 @@ InvalidInput
         const auto text = [](const Array& a) { return py::cast<std::string>(py::str(a.attr("tolist")())); };
         return "HeavyTop(" + py::cast<std::string>(py::repr(py::cast(top.inertia()))) +
                ", weight_arm=" + to_text(top.weight_arm()) + ", omega=" + text(from_vector3(top.omega())) +
-               ", attitude=" + text(from_quat(top.attitude())) + ")";
+               ", attitude=" + text(from_quat(top.attitude())) +
+               (top.rotor() == 0.0 ? "" : ", rotor=" + to_text(top.rotor())) + ")";
       });
   cls.def(py::pickle(
       [](const HeavyTop& top) {
-        return py::make_tuple(top.inertia(), top.weight_arm(), from_vector3(top.omega()), from_quat(top.attitude()));
+        return py::make_tuple(top.inertia(), top.weight_arm(), from_vector3(top.omega()), from_quat(top.attitude()),
+                              top.rotor());
       },
       [](const py::tuple& state) {
-        return from_state("HeavyTop", state, 4, [](const py::tuple& s) {
+        return from_state("HeavyTop", state, 5, [](const py::tuple& s) {
           const auto& inertia = s[0].cast<const InertiaTensor&>();
           const Array q = to_array_with_tail(s[3], "attitude", {4});  // as it was: normalising again could move an ulp
           return HeavyTop(inertia, to_real(s[1], "weight_arm"), to_vector3(s[2], "omega"),
-                          {q.data()[0], q.data()[1], q.data()[2], q.data()[3]});
+                          {q.data()[0], q.data()[1], q.data()[2], q.data()[3]}, to_real(s[4], "rotor"));
         });
       }));
 }

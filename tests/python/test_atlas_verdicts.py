@@ -89,6 +89,15 @@ def test_every_case_has_its_truth():
         for case in cases:
             assert stored(key(family, case)).shape == (case.scene.times.size, 7)
     assert stored("sleeping").shape == (len(scenes.SLEEPING),)
+    assert stored("wheel").shape == (len(scenes.WHEEL),)
+
+
+def test_the_wheel_keeps_the_turn_above_its_critical_momentum_and_leaves_it_below():
+    angles = dict(zip(scenes.WHEEL, stored("wheel"), strict=True))
+    assert all(angle < 1e-4 for excess, angle in angles.items() if excess >= 1e-3)
+    assert all(angle > 1e-2 for excess, angle in angles.items() if excess <= -1e-3)
+    # Two steady turns branch off at the angle where the energies' curvature vanishes: its size grows as the root of s.
+    assert angles[-0.1] / angles[-0.01] == pytest.approx(10**0.5, rel=0.2)
 
 
 def test_the_first_flips_follow_the_logarithm_of_the_closeness():

@@ -47,8 +47,8 @@ def blocks(page, language):
     return re.findall(rf"```{language}\n(.*?)```", (ROOT / page).read_text(), flags=re.S)
 
 
-@pytest.mark.parametrize("page", ["plan", "batch", "solve", "ode", "exact", "gyrostat", "damped_free", "heavy_top", "math",
-                                  "pendulum", "torque"])
+@pytest.mark.parametrize("page", ["plan", "batch", "solve", "ode", "exact", "gyrostat", "damped_free", "heavy_top",
+                                  "math", "pendulum", "torque"])
 def test_the_python_examples_of_a_page_run_in_their_order(page):
     found, names = blocks(f"docs/{page}.md", "python"), {}
     assert found

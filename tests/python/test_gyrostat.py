@@ -7,7 +7,6 @@ import json
 import math
 import pathlib
 import pickle
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -207,15 +206,22 @@ def test_euler_angles_and_the_polhode():
 
 
 def test_rotors_are_summed():
-    wheels = [SimpleNamespace(axis=(1, 0, 0), momentum=0.3), SimpleNamespace(momentum_vector=(0, 0.1, 0.2))]
+    wheels = [ph.Rotor((1, 0, 0), momentum=0.3), ph.Rotor((0, 1, 0), inertia=0.05, speed=2.0),
+              ph.Rotor((0, 0, 1), momentum=0.2)]
     motion = ph.Gyrostat(BODY["inertia"], rotors=wheels, omega=BODY["omega"], attitude=TILTED)
     assert motion == ph.Gyrostat(**BODY)
+    free = ph.Gyrostat((1.0, 1.6, 2.2), rotors=[ph.Rotor((0, 0, 1), inertia=0.1, speed=4.0, free=True)],
+                       omega=(1.0, 0.5, 0.2))
+    assert np.allclose(free.inertia.moments, (1.0, 1.6, 2.1), rtol=1e-15)
+    assert np.allclose(free.momentum, (0, 0, 0.1 * 4.2), rtol=1e-15)
     with pytest.raises(ph.InvalidInput, match="momentum"):
         ph.Gyrostat(BODY["inertia"], rotors=wheels, momentum=(1, 0, 0), omega=BODY["omega"])
-    with pytest.raises(ph.InvalidInput, match="rotors"):
+    with pytest.raises(ph.InvalidInput, match=r"rotors\[0\]: must be a polhode.Rotor, got 'wheel'"):
         ph.Gyrostat(BODY["inertia"], rotors=["wheel"], omega=BODY["omega"])
-    with pytest.raises(ph.InvalidInput, match="free on its bearing"):
-        ph.Gyrostat(BODY["inertia"], rotors=[SimpleNamespace(axis=(1, 0, 0), momentum=1, free=True)], omega=(1, 0, 0))
+    with pytest.raises(ph.InvalidInput, match=r"rotors\[0\]: must be one that always turns"):
+        ph.Gyrostat(BODY["inertia"], rotors=[ph.Rotor((1, 0, 0), momentum=1, during=(0, 1))], omega=(1, 0, 0))
+    with pytest.raises(ph.InvalidInput, match="below the body's moment about the rotor's axis"):
+        ph.Gyrostat(BODY["inertia"], rotors=[ph.Rotor((1, 0, 0), inertia=1, speed=1, free=True)], omega=(1, 0, 0))
 
 
 @pytest.mark.parametrize("change, message", [

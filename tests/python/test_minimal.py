@@ -40,6 +40,19 @@ def smoke_free_motion_object():
     assert pickle.loads(pickle.dumps(motion)) == motion
 
 
+def smoke_gyrostat_object():
+    motion = ph.Gyrostat(BLOCK, momentum=(0.3, -0.2, 0.5), omega=OMEGA)
+    omega, attitude = motion.at(TIMES)
+    assert omega.shape == (5, 3) and attitude.shape == (5, 4)
+    assert np.allclose((omega**2 * BLOCK).sum(axis=1) / 2, motion.energy)
+    assert pickle.loads(pickle.dumps(motion)) == motion
+
+
+def smoke_gyrostat():
+    omega, attitude = ph.gyrostat(BLOCK, (0.3, -0.2, 0.5), OMEGA, (0, 0, 0, 1), TIMES)
+    assert np.allclose(omega, ph.Gyrostat(BLOCK, momentum=(0.3, -0.2, 0.5), omega=OMEGA).at(TIMES)[0], rtol=1e-13)
+
+
 def smoke_heavy_tops():
     omega, attitude = ph.heavy_top((1, 1, 0.5), np.array([1.0, 2.0]), (0.1, 0.2, 6), (0, 0, 0, 1), 3.5)
     assert omega.shape == (2, 3) and np.allclose(np.linalg.norm(attitude, axis=1), 1)
@@ -143,6 +156,7 @@ SMOKE = {
     "Event": smoke_event,
     "DampedFree": smoke_damped_free,
     "FreeMotion": smoke_free_motion_object,
+    "Gyrostat": smoke_gyrostat_object,
     "HeavyTop": smoke_heavy_top,
     "Pendulum": smoke_pendulum,
     "InertiaTensor": smoke_inertia_tensor,
@@ -163,6 +177,7 @@ SMOKE = {
     "euler_rates": smoke_body_rates,
     "free_motion": smoke_free_motion,
     "generalised_forces": smoke_generalised_forces,
+    "gyrostat": smoke_gyrostat,
     "heavy_top": smoke_heavy_tops,
     "methods": smoke_methods,
     "plan": smoke_plan,

@@ -33,6 +33,8 @@ def numbers(scene):
             found["constant"] = torque.torque.tolist()
         elif isinstance(torque, Damping):
             found["damping"] = np.ravel(torque.matrix).tolist()
+    if scene.rotors:
+        found["rotors"] = scene.rotor_momentum.tolist()
     return found
 
 
@@ -67,9 +69,10 @@ def first_flip(closeness):
         return [float(root), float((I[2] - I[0]) * w[2] * w[0] / I[1])]
 
 
-def greatest_tilt(programs, scene):
+def greatest_tilt(programs, scene, across=(3, 4)):
+    """Of body z from the vertical, or of another axis from where it was: by the other two parts of the quaternion."""
     answers = run(programs / "taylor", numbers(scene), [40, -33.0], scene.times.tolist())
-    return float(max(2 * asin(sqrt((q[3] ** 2 + q[4] ** 2) / sum(c * c for c in q[3:]))) for q in answers))
+    return float(max(2 * asin(sqrt(sum(q[i] ** 2 for i in across) / sum(c * c for c in q[3:]))) for q in answers))
 
 
 def compile_long_double(folder):
@@ -114,6 +117,8 @@ def parts(programs):
         "chaos": lambda: {"chaos": driven(programs, scenes.chaos())},
         "sleeping": lambda: {"sleeping": np.array([greatest_tilt(programs, scenes.sleeping(s).scene)
                                                    for s in scenes.SLEEPING])},
+        "wheel": lambda: {"wheel": np.array([greatest_tilt(programs, scenes.wheel(s).scene, (3, 5))
+                                             for s in scenes.WHEEL])},
         "damping": lambda: many("damping", map(scenes.damped, scenes.STIFF), stiff),
         "spin-up": lambda: many("spin-up", map(scenes.spin_up, scenes.SPIN_UP), spin),
     }

@@ -13,6 +13,7 @@
 #include "polhode/core/float_state.hpp"
 #include "polhode/exact/detail/heavy_top_kernels.hpp"
 #include "polhode/math/detail/functions.hpp"
+#include "polhode/math/detail/phase.hpp"
 
 namespace polhode {
 namespace {
@@ -117,11 +118,13 @@ const char* to_text(TopKind kind) {
   return names[static_cast<int>(kind)];
 }
 
-HeavyTop::HeavyTop(const Vector3d& moments, double weight_arm, const Vector3d& omega, const Quat& attitude)
-    : HeavyTop(InertiaTensor::from_moments(moments), weight_arm, omega, attitude) {}
+HeavyTop::HeavyTop(const Vector3d& moments, double weight_arm, const Vector3d& omega, const Quat& attitude,
+                   double rotor)
+    : HeavyTop(InertiaTensor::from_moments(moments), weight_arm, omega, attitude, rotor) {}
 
-HeavyTop::HeavyTop(const InertiaTensor& inertia, double weight_arm, const Vector3d& omega, const Quat& attitude)
-    : inertia_(inertia), weight_arm_(weight_arm), omega_(omega), attitude_(attitude) {
+HeavyTop::HeavyTop(const InertiaTensor& inertia, double weight_arm, const Vector3d& omega, const Quat& attitude,
+                   double rotor)
+    : inertia_(inertia), weight_arm_(weight_arm), omega_(omega), attitude_(attitude), rotor_(rotor) {
   set_up();
 }
 
@@ -129,7 +132,9 @@ void HeavyTop::set_up() {
   make_attitude(attitude_);  // refuses; the start itself is normalised in double-double
   require(std::isfinite(weight_arm_), "weight_arm", "finite", [&] { return to_text(weight_arm_); });
   require(omega_.allFinite(), "omega", "finite", [&] { return text(omega_); });
+  require(std::isfinite(rotor_), "rotor", "finite", [&] { return to_text(rotor_); });
   require_kept(weight_arm_, "weight_arm");
+  require_kept(rotor_, "rotor");
   for (const double rate : omega_) require_kept(rate, "omega");
   const TopSymmetry body = symmetry_of(inertia_.matrix());
   axis_ = body.axis;
@@ -137,13 +142,17 @@ void HeavyTop::set_up() {
   // Scales: powers of two, so that A, and the larger of |omega| and sqrt(M / A), are near 1.
   require(body.A > 0.0, "inertia", "above 0 across the symmetry axis", [&] { return to_text(body.A); });
   const double spin = omega_.dot(axis_);
-  require(body.C > 0.0 || (body.C == 0.0 && spin == 0.0), "inertia", "above 0 about the symmetry axis",
+  require(body.C > 0.0 || (body.C == 0.0 && spin == 0.0 && rotor_ == 0.0), "inertia", "above 0 about the symmetry axis",
           [&] { return to_text(body.C); },
           "a rod or a point may swing, but not spin about its own axis");
   const int e_A = std::ilogb(body.A);
   require(std::abs(e_A) <= 1021 && (body.C == 0.0 || std::abs(std::ilogb(body.C) - e_A) <= 500), "inertia",
           "moments within the range of float64", [&] { return text({body.A, body.A, body.C}); }, "choose other units");
-  const double fastest = omega_.cwiseAbs().maxCoeff();
+  const DD added = rotor_ == 0.0 ? DD(0.0) : DD(rotor_) / DD(body.C);   // to the rate about the axis
+  const DD half_turns = math::scaled(added * DD(0.15915494309189535, -9.839338337591243e-18), 0.5);
+  half_turns_ = half_turns.hi, half_turns_low_ = half_turns.lo;
+  const double fastest = std::max(omega_.cwiseAbs().maxCoeff(), std::abs(added.hi));
+  require(std::isfinite(fastest), "rotor", "such that rotor / moment is a finite rate", [&] { return to_text(rotor_); });
   const int none = -100000;
   const int e_w = fastest > 0.0 ? std::ilogb(fastest) : none;
   const int e_M = weight_arm_ != 0.0 ? (std::ilogb(weight_arm_) - e_A) / 2 : none;
@@ -172,6 +181,8 @@ void HeavyTop::set_up() {
     s.x = start.x, s.y = start.y, s.z = start.z, s.w = start.w;
     constants_.q_SB = {q.x.hi, q.y.hi, q.z.hi, q.w.hi};
   }
+  const DD w3 = s.w3;
+  if (rotor_ != 0.0) s.w3 = s.w3 + math::scaled(added, std::ldexp(1.0, -e));
   if (below) {
     s.w2 = -s.w2, s.w3 = -s.w3;
     const DD x = s.x, y = s.y;
@@ -201,7 +212,8 @@ void HeavyTop::set_up() {
     tilt_min_ = 2.0 * math::atan2(motion.cos_low, motion.sin_low);
     tilt_max_ = 2.0 * math::atan2(motion.cos_high, motion.sin_high);
   }
-  scaled_[0] = motion.energy.hi, scaled_[1] = motion.p_phi.hi;
+  const DD w3_all = below ? -s.w3 : s.w3, inside = s.C * (w3_all - w3) * (w3_all + w3);
+  scaled_[0] = (motion.energy - math::scaled(inside, 0.5)).hi, scaled_[1] = motion.p_phi.hi;
   scaled_[2] = below ? -motion.p_psi.hi : motion.p_psi.hi;
   scale_of_A_ = e_A, scale_of_rate_ = e;
 }
@@ -227,6 +239,28 @@ void HeavyTop::at(const exact::TimeGrid& times, double* omega, double* attitude)
     }
   }
   kernels.at(constants_, times, omega, attitude);
+  if (rotor_ != 0.0) turn_back(times, omega, attitude);
+}
+
+/// The plain top has omega3 + h / C about its axis. The body is turned back about it by h t / C.
+void HeavyTop::turn_back(const exact::TimeGrid& times, double* omega, double* attitude) const {
+  const Vector3d& n = axis_;
+  const Vector3d axial = omega_.dot(n) * n;   // constant
+  for (std::size_t i = 0; i < times.n; ++i) {
+    double s = 0.0, c = 1.0;   // of half the angle
+    math::sincos_cycles(math::cycle_fraction(times.t[i], half_turns_, half_turns_low_, 0.0), s, c);
+    if (omega != nullptr) {
+      Eigen::Map<Vector3d> w(omega + 3 * i);
+      const Vector3d across = w - n.dot(w) * n;
+      const Vector3d turned{n[1] * across[2] - n[2] * across[1], n[2] * across[0] - n[0] * across[2],
+                            n[0] * across[1] - n[1] * across[0]};   // n x across
+      w = axial + (across + 2 * s * (c * turned - s * across));
+    }
+    if (attitude == nullptr) continue;
+    double* q = attitude + 4 * i;
+    const Quat turned = Quat{q[0], q[1], q[2], q[3]} * Quat{-s * n[0], -s * n[1], -s * n[2], c};
+    q[0] = turned.x, q[1] = turned.y, q[2] = turned.z, q[3] = turned.w;
+  }
 }
 
 State HeavyTop::at(double t) const {

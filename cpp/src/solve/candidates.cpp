@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "method/method.hpp"
@@ -13,9 +14,14 @@ namespace polhode {
 namespace {
 
 // Costs of a closed form [s], by benchmarks/planner/fit.py.
-constexpr double free_start = 1.5e-6, free_sample = 8e-9, top_start = 3.6e-6, top_sample = 9e-9;
-constexpr double damped_start = 2e-6, damped_sample = 3.5e-8;
-constexpr double pendulum_start = 1e-5, pendulum_sample = 1e-8;
+struct FormCost {
+  std::string_view model;
+  double start, sample;
+};
+constexpr FormCost free_cost{"", 1.5e-6, 8e-9};
+constexpr FormCost form_costs[] = {{"heavy_top", 3.6e-6, 9e-9},  {"heavy_gyrostat", 3.6e-6, 3.5e-8},
+                                   {"gyrostat", 2e-5, 1.2e-8},   {"damped_free", 2e-6, 3.5e-8},
+                                   {"pendulum", 1e-5, 1e-8}};
 // Decay x span from which an implicit method may be chosen: below, stability limits no explicit step.
 constexpr double least_implicit_stiffness = 50.0;
 
@@ -123,11 +129,10 @@ double find_atol(const ode::MethodRecord& record, const Scene& scene, double rto
 }
 
 double predict_closed_form(std::string_view model, double samples, const CostFactors* factors) {
-  const double seconds = model == "heavy_top"     ? top_start + top_sample * samples
-                         : model == "damped_free" ? damped_start + damped_sample * samples
-                         : model == "pendulum"    ? pendulum_start + pendulum_sample * samples
-                                                  : free_start + free_sample * samples;
-  return seconds * find_factor(factors, model);
+  const auto* found = std::find_if(std::begin(form_costs), std::end(form_costs),
+                                   [model](const FormCost& cost) { return cost.model == model; });
+  const FormCost& cost = found == std::end(form_costs) ? free_cost : *found;
+  return (cost.start + cost.sample * samples) * find_factor(factors, model);
 }
 
 double find_factor(const CostFactors* factors, std::string_view name) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "polhode/math/detail/functions.hpp"
@@ -13,7 +14,6 @@ namespace {
 struct Rows {
   std::vector<double> omega, attitude;
 
-  explicit Rows(const Scene& piece) : Rows(piece, *find_closed_form(piece, compute_facts(piece))) {}
   Rows(const Scene& piece, const ClosedForm& form) {
     const std::vector<double>& times = piece.times();
     std::vector<double> since(times.size());
@@ -24,7 +24,25 @@ struct Rows {
   }
 };
 
-Scene perturb_start(const Scene& piece, const double* error) {
+/// The rows from a perturbed start, if it has a closed form.
+std::optional<Rows> find_rows(const Scene& piece) {
+  const std::optional<ClosedForm> form = find_closed_form(piece, compute_facts(piece));
+  return form ? std::optional(Rows(piece, *form)) : std::nullopt;
+}
+
+/// A start of a pendulum, perturbed in its plane.
+Scene perturb_swing(const Scene& piece, const Vector3d& axis, const double* error) {
+  SceneParts parts = piece.parts();
+  const Quat& q = piece.attitude();
+  const Quat turn = conjugate(q) * Quat{error[4], error[5], error[6], error[7]};
+  const double half = axis[0] * turn.x + axis[1] * turn.y + axis[2] * turn.z;
+  parts.omega += axis.dot(Vector3d(error[0], error[1], error[2])) * axis;
+  parts.attitude = normalized(q * Quat{half * axis[0], half * axis[1], half * axis[2], 1.0});
+  return Scene(std::move(parts));
+}
+
+Scene perturb_start(const Scene& piece, const ClosedForm& form, const double* error) {
+  if (const std::optional<Vector3d> axis = form.swing_axis()) return perturb_swing(piece, *axis, error);
   SceneParts parts = piece.parts();
   for (int i = 0; i < 3; ++i) parts.omega[i] += error[i];
   const Quat& q = piece.attitude();
@@ -49,13 +67,16 @@ double measure_angle(const double* e) { return 2 * math::hypot(math::hypot(e[4],
 
 }  // namespace
 
-void carry_through(const Scene& piece, const ClosedForm& form, double form_error, ode::ErrorTrace& trace) {
+bool carry_through(const Scene& piece, const ClosedForm& form, double form_error, ode::ErrorTrace& trace) {
   const std::size_t n = piece.times().size();
-  const Rows rows(piece, form), lost(perturb_start(piece, trace.loss)), spread(perturb_start(piece, trace.spread));
+  const Rows rows(piece, form);
+  const std::optional<Rows> lost = find_rows(perturb_start(piece, form, trace.loss));
+  const std::optional<Rows> spread = find_rows(perturb_start(piece, form, trace.spread));
+  if (!lost || !spread) return false;
   double rate_error = 0.0, attitude_error = 0.0, size = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
-    subtract(lost, rows, i, trace.loss);
-    subtract(spread, rows, i, trace.spread);
+    subtract(*lost, rows, i, trace.loss);
+    subtract(*spread, rows, i, trace.spread);
     size = math::hypot(rows.omega[3 * i], rows.omega[3 * i + 1], rows.omega[3 * i + 2]);
     trace.largest = std::max(trace.largest, size);
     const double rates = measure_rates(trace.loss) + measure_rates(trace.spread);
@@ -68,8 +89,9 @@ void carry_through(const Scene& piece, const ClosedForm& form, double form_error
   // The closed form's own error, in the direction of the spread.
   const double rates = size > 0.0 ? measure_rates(trace.spread) / size : 0.0;
   const double relative = std::max(rates, measure_angle(trace.spread));
-  if (!(relative > 0.0)) return;
+  if (!(relative > 0.0)) return true;
   for (double& error : trace.spread) error *= 1 + trace.scale * form_error / relative;
+  return true;
 }
 
 }  // namespace polhode

@@ -80,6 +80,10 @@ void explain_exact(const Scene& scene, const Facts& facts, const ClosedForm& for
         "The start is exactly on the separatrix: the body flips once, described by hyperbolic functions.");
   } else if (model == "triaxial") {
     reasons.push_back("No torque acts: theta functions give each sample directly, without steps.");
+  } else if (model == "gyrostat") {
+    reasons.push_back(
+        "No torque acts, and the rotors' momentum is constant in the body: a free gyrostat. One theta series gives each "
+        "sample directly, without steps.");
   } else if (model == "damped_free") {
     const double rate = find_proportional_damping(scene)->rate;
     reasons.push_back(format(
@@ -90,6 +94,10 @@ void explain_exact(const Scene& scene, const Facts& facts, const ClosedForm& for
     reasons.push_back(
         "Gravity acts alone, and omega is along a horizontal principal axis across the arm: the body is a plane "
         "pendulum. Elliptic functions give each sample.");
+  } else if (model == "heavy_gyrostat") {
+    reasons.push_back(
+        "A symmetric body on a pivot on its axis, with gravity and a rotor on the same axis: Lagrange's top with "
+        "omega3 + h / J3, turned back about the axis by h t / J3.");
   } else {
     reasons.push_back(
         "A symmetric body on a pivot on its axis, with gravity alone, is Lagrange's top. It has a closed form.");
@@ -113,15 +121,15 @@ void explain_exact(const Scene& scene, const Facts& facts, const ClosedForm& for
   }
 }
 
-void explain_steps(const Scene& scene, const Facts& facts, const SolveOptions& options, PlanReport& report) {
+/// @param has_form  a closed form holds, but another method was requested
+void explain_steps(const Scene& scene, const Facts& facts, const SolveOptions& options, bool has_form,
+                   PlanReport& report) {
   auto& reasons = report.reasons;
   const Plan& plan = report.plan;
-  if (facts.is_free() || options.formulation == Formulation::lagrangian) {
+  if (has_form || options.formulation == Formulation::lagrangian) {
     if (options.formulation == Formulation::lagrangian)
       reasons.push_back("Lagrange's equations were requested, so they are integrated.");
-  } else if (facts.torques.rotors && facts.torques.acting == 1) {
-    reasons.push_back("Rotors act on the body by h x omega, so the equations are integrated.");
-  } else if (has(scene, "Gravity") && facts.torques.acting == 1) {
+  } else if (has(scene, "Gravity") && facts.torques.acting == 1 + facts.torques.rotors) {
     reasons.push_back("Gravity acts, but no closed form is known: " + explain_no_closed_form(scene, facts) + ".");
   } else if (has(scene, "Damping") && facts.torques.acting == 1) {
     reasons.push_back("Damping acts, but no closed form is known: " + explain_no_closed_form(scene, facts) + ".");
@@ -230,7 +238,7 @@ PlanReport explain(const Decision& decision, const SolveOptions& options) {
   if (decision.form) {
     explain_exact(scene, facts, *decision.form, report);
   } else {
-    explain_steps(scene, facts, options, report);
+    explain_steps(scene, facts, options, form.has_value(), report);
   }
   explain_rotors(scene, report);
   if (facts.only_at_end) report.reasons.push_back("Only one sample time is given, so nothing is interpolated.");

@@ -49,16 +49,6 @@ Vector3d compute_drive_rates(const Scene& scene) {
   return S.allFinite() ? compute_principal_axes(S).moments : Vector3d::Zero();
 }
 
-/// The rate at which rotors turn the axis of a body at rest: of nutation, h3 / sqrt(I1 I2) for one on axis 3.
-double compute_nutation_rate(const Scene& scene) {
-  if (scene.rotor_momentum().isZero(0.0)) return 0.0;
-  const Vector3d& I = scene.inertia_B().moments();
-  const Vector3d h = scene.inertia_B().axes().transpose() * scene.rotor_momentum();
-  Vector3d rate;
-  for (int i = 0; i < 3; ++i) rate[i] = h[i] / std::sqrt(I[(i + 1) % 3]) / std::sqrt(I[(i + 2) % 3]);
-  return math::hypot(rate[0], rate[1], rate[2]);
-}
-
 /// The angle of rotation under a torque that is constant in the body. Such a torque finally spins the body up about its
 /// first or third principal axis. The angular acceleration is then the torque's component over that moment. Before, the
 /// start's rate counts. For nine in ten random blocks the result is within a factor 2 of the integrated angle.
@@ -75,6 +65,15 @@ double turn_under_thrust(const Scene& scene, double span) {
 }
 
 }  // namespace
+
+double compute_nutation_rate(const InertiaTensor& inertia_B, const Vector3d& h_B) {
+  if (h_B.isZero(0.0)) return 0.0;
+  const Vector3d& I = inertia_B.moments();
+  const Vector3d h = inertia_B.axes().transpose() * h_B;
+  Vector3d rate;
+  for (int i = 0; i < 3; ++i) rate[i] = h[i] / std::sqrt(I[(i + 1) % 3]) / std::sqrt(I[(i + 2) % 3]);
+  return math::hypot(rate[0], rate[1], rate[2]);
+}
 
 TorqueSum find_acting_torques(const Scene& scene) {
   const Vector3d& I = scene.inertia_B().moments();
@@ -139,7 +138,7 @@ bool may_spin_up(const Scene& scene, const TorqueSum& torques) {
 }
 
 double estimate_turns(const Scene& scene, const TorqueSum& torques, double span) {
-  const double start = math::hypot(scene.omega().norm(), compute_nutation_rate(scene));
+  const double start = math::hypot(scene.omega().norm(), compute_nutation_rate(scene.inertia_B(), scene.rotor_momentum()));
   double turned = start * span;
   if (torques.acting == 0) return turned / (2 * std::numbers::pi);
   if (may_spin_up(scene, torques)) {

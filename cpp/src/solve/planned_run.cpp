@@ -54,10 +54,11 @@ Motion run_planned(const Decision& decision, const Scene& scene, const SolveOpti
       const Facts facts = compute_facts(part);
       if (const std::optional<ClosedForm> form = find_closed_form(part, facts)) {
         const Plan plan = make_exact_plan(part, *form, facts, piece_options);
-        if (trace != nullptr) carry_through(part, *form, plan.predicted_error, *trace);
-        return run_closed_form(part, facts, piece_options, *form, plan);
+        if (trace == nullptr || carry_through(part, *form, plan.predicted_error, *trace))
+          return run_closed_form(part, facts, piece_options, *form, plan);
       }
-      name = choose_method(part, facts, piece_options).name;   // perturbed inputs may have no closed form
+      // Perturbed inputs may have no closed form, and a chain may reach a piece with a start that has none.
+      name = trace != nullptr ? "taylor" : choose_method(part, facts, piece_options).name;
     }
     const BodyMethod& method = find_body_method(name);
     const double scaled = std::max(rtol * piece.plan.rtol_scale, method.record.least_rtol);

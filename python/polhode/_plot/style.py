@@ -20,6 +20,7 @@ FLOOR = "#9aa4ae"
 _COLOURS = {
     "rk45": "#0072b2", "dop853": "#009e73", "taylor": "#cc79a7", "radau": "#e69f00", "symplectic": "#56b4e9",
     "midpoint": "#8c6bb1", "rk4": "#a6761d", "plan": "#f0c000", "FreeMotion": "#d55e00", "HeavyTop": "#d55e00",
+    "Gyrostat": "#d55e00",
 }
 _PEERS = {   # by the first word: quieter than polhode's own, each program with a mark of its own
     "SciPy": ("#3f4a55", "s"), "heyoka": ("#6a3d9a", "^"), "Odeint": ("#5b7a3a", "v"), "numbalsoda": ("#2c7f86", "P"),

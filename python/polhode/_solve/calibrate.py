@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 from .. import _core, torques
+from .._core import Rotor
 from .._scene.scene import Scene
 from .costs import keep
 from .solve import solve
@@ -45,6 +46,9 @@ def _scenes() -> list[Any]:
         Scene(inertia=(1, 2, 2.5), omega=(0.3, 0.2, 3), attitude=tilted, torques=[torques.Gravity(2, (0.3, 0.2, 0.5))],
               times=times),
         Scene(inertia=block, omega=(1, 2, 3), torques=[torques.AngularDamping(0.01)], times=times),
+        Scene(inertia=block, omega=(1, 2, 3), rotors=[Rotor((1, 2, 2), momentum=0.5)], times=times),
+        Scene(inertia=(1, 1, 0.5), omega=(0, 0, 6), attitude=tilted, torques=[torques.Gravity(2, (0, 0, 1))],
+              rotors=[Rotor((0, 0, 1), momentum=1.0)], times=times),
         Scene(inertia=block, omega=(1, 2, 3), torques=[torques.Damping((1e-3, 2e-3, 3e-3))], times=times),
         Scene(inertia=block, omega=(0.1, 0.2, 0.3), torques=[torques.Constant((0.01, -0.02, 0.03))], times=times),
     ]

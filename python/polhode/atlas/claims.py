@@ -12,11 +12,13 @@ from .results import FamilyResult
 CLAIMS: dict[str, dict[str, str]] = {
     # The choice of `solve`.
     "solve": {"racket": "holds", "gimbal": "holds", "long": "holds", "near": "holds", "scales": "holds",
-              "norm": "holds", "sleeping": "holds", "spin-up": "holds", "damping": "holds", "chaos": "holds"},
+              "norm": "holds", "sleeping": "holds", "spin-up": "holds", "damping": "holds", "chaos": "holds",
+              "wheel": "holds"},
     "exact": {"racket": "holds", "gimbal": "holds", "long": "holds", "near": "holds", "scales": "holds",
-              "norm": "holds", "sleeping": "holds"},
+              "norm": "holds", "sleeping": "holds", "wheel": "holds"},
     "taylor": {"racket": "holds", "gimbal": "holds", "long": "holds", "near": "holds", "scales": "holds",
-               "norm": "holds", "sleeping": "holds", "spin-up": "holds", "chaos": "holds", "damping": "degrades"},
+               "norm": "holds", "sleeping": "holds", "spin-up": "holds", "chaos": "holds", "damping": "degrades",
+               "wheel": "holds"},
     "dop853": {"racket": "degrades", "gimbal": "holds", "scales": "holds", "norm": "holds", "near": "degrades",
                "sleeping": "holds"},
     "rk45": {"racket": "degrades", "gimbal": "holds", "scales": "holds", "norm": "holds", "near": "degrades",

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from .._core import Rotor
 from .._scene.scene import Scene
 from ..torques import Constant, Damping, Gravity
 from .case import S1_MOMENTS, Case
@@ -20,6 +21,9 @@ SPIN_UP = (1e2, 1e3, 1e4)
 NEAR = (1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14, 1e-15, 0.0)
 CHAOS_SPAN, CHAOS_SAMPLES = 400.0, 401
 SLEEPING = (0.1, 0.01, 0.001, 1e-4, 1e-5, 1e-6, 0.0, -1e-6, -1e-5, -1e-4, -0.001, -0.01, -0.1)
+WHEEL = SLEEPING
+WHEEL_RATE = 5.0   # rad/s about the intermediate axis
+CRITICAL_WHEEL = (S1_MOMENTS[2] - S1_MOMENTS[1]) * WHEEL_RATE
 CRITICAL_SPIN = 2 * math.sqrt(2.0) / 0.5   # 2 sqrt(I1 M) / I3 of (1, 1, 0.5) under M = 2
 
 
@@ -87,6 +91,24 @@ def sleeping(excess: float) -> Case:
     scene = Scene(inertia=(1.0, 1.0, 0.5), omega=(0.0, 0.0, CRITICAL_SPIN * (1 + excess)), attitude=_tilted(1e-6),
                   torques=[Gravity(2.0, (0.0, 0.0, 1.0))], times=np.linspace(0, 200, 2001))
     return Case(excess, scene)
+
+
+def wheel(excess: float) -> Case:
+    """S1's block about its intermediate axis, with a wheel on it at (1 + excess) of the critical momentum.
+
+    The momentum is 1e-6 rad off the axis.
+    """
+    momentum = CRITICAL_WHEEL * (1 + excess)
+    kick = 1e-6 * (S1_MOMENTS[1] * WHEEL_RATE + momentum) / S1_MOMENTS[0]
+    scene = Scene(inertia=S1_MOMENTS, omega=(kick, WHEEL_RATE, 0.0), rotors=[Rotor((0.0, 1.0, 0.0), momentum=momentum)],
+                  times=np.linspace(0, 200, 2001))
+    return Case(excess, scene)
+
+
+def lean(attitude: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """The angle between the body's y axis and space y, where it was at the start; right where it is small [rad]."""
+    x, y, z, w = np.moveaxis(attitude, -1, 0)
+    return np.asarray(2 * np.arctan2(np.hypot(x, z), np.hypot(y, w)))
 
 
 def tilt(attitude: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:

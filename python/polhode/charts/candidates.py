@@ -81,6 +81,13 @@ def _free(scene: Scene) -> str:
     return "the body is not free" if scene.torques or scene.rotors else ""
 
 
+def _rotors(scene: Scene) -> str:
+    if scene.torques:
+        return "the body is not free"
+    windows = any(rotor.during is not None for rotor in scene.rotors)
+    return "" if scene.rotor_momentum.any() and not windows else "no rotors that always turn"
+
+
 def _top(scene: Scene) -> str:
     """Why the scene is not Lagrange's top about body z."""
     if scene.rotors or len(scene.torques) != 1 or not isinstance(scene.torques[0], torques.Gravity):
@@ -100,6 +107,9 @@ def _exact() -> list[Candidate]:
     return [
         _closed_form("FreeMotion", "Jacobi 1850, in Cayley-Klein form",
                      lambda s: _core.FreeMotion(s.inertia, s.omega, s.attitude), _free),
+        _closed_form("Gyrostat", "Volterra 1899, as one theta series",
+                     lambda s: _core.Gyrostat(s.carrier_inertia, momentum=s.rotor_momentum, omega=s.omega,
+                                              attitude=s.attitude), _rotors),
         _closed_form("HeavyTop", "Klein and Sommerfeld 1897", _make_top, _top),
     ]
 

@@ -28,6 +28,7 @@ const char* to_text(TopKind kind);  ///< the names above
 /// Lagrange's top: a rigid body with two equal moments, held at a point of its symmetry axis, under gravity along -z
 /// of space. In closed form: every time costs the same and is equally accurate.
 /// Klein & Sommerfeld, Ueber die Theorie des Kreisels (1897-1910); docs/heavy_top.md.
+/// A rotor on the symmetry axis is a second rotation about it: see docs/heavy_top.md.
 /// The symmetry axis is body z for moments (A, A, C); else the axis of the third moment, with its largest component
 /// positive. Immutable.
 class HeavyTop {
@@ -36,10 +37,13 @@ class HeavyTop {
   /// @param weight_arm mass x gravity x distance of the centre of mass from the pivot, signed along the axis [N m]
   /// @param omega w_B at t = 0 [rad/s]
   /// @param attitude q_WB at t = 0
+  /// @param rotor momentum h of rotors about the symmetry axis, constant in the body [kg m^2/s]
   /// @throws InvalidInput when a value is not finite, the body not a symmetric top, or the motion beyond float64
-  HeavyTop(const InertiaTensor& inertia, double weight_arm, const Vector3d& omega, const Quat& attitude = {});
+  HeavyTop(const InertiaTensor& inertia, double weight_arm, const Vector3d& omega, const Quat& attitude = {},
+           double rotor = 0.0);
   /// The same from moments along the body axes.
-  HeavyTop(const Vector3d& moments, double weight_arm, const Vector3d& omega, const Quat& attitude = {});
+  HeavyTop(const Vector3d& moments, double weight_arm, const Vector3d& omega, const Quat& attitude = {},
+           double rotor = 0.0);
 
   State at(double t) const;
   /// omega: n x 3, attitude: n x 4, row-major; either may be null.
@@ -55,29 +59,33 @@ class HeavyTop {
   /// Mean rate of the axis about space z, over a nutation [rad/s]; NaN if the axis stays vertical or reaches the
   /// vertical in infinite time.
   double precession_rate() const noexcept { return precession_; }
-  double energy() const;  ///< kinetic, and weight_arm cos(tilt) [J]
-  double p_phi() const;   ///< angular momentum about space z [kg m^2/s]
-  double p_psi() const;   ///< angular momentum about the symmetry axis [kg m^2/s]
+  double energy() const;  ///< kinetic without that inside rotors, and weight_arm cos(tilt) [J]
+  double p_phi() const;   ///< angular momentum about space z, with rotors [kg m^2/s]
+  double p_psi() const;   ///< angular momentum about the symmetry axis, with rotors [kg m^2/s]
 
   const InertiaTensor& inertia() const noexcept { return inertia_; }  ///< about the pivot
   const Vector3d& axis() const noexcept { return axis_; }        ///< the symmetry axis in body axes, unit
   double weight_arm() const noexcept { return weight_arm_; }
+  double rotor() const noexcept { return rotor_; }
   const Vector3d& omega() const noexcept { return omega_; }
   const Quat& attitude() const noexcept { return attitude_; }
   const exact::HeavyTopConstants& constants() const noexcept { return constants_; }
 
   friend bool operator==(const HeavyTop& a, const HeavyTop& b) {
     return a.inertia_ == b.inertia_ && a.weight_arm_ == b.weight_arm_ && a.omega_ == b.omega_ &&
-           a.attitude_ == b.attitude_;
+           a.attitude_ == b.attitude_ && a.rotor_ == b.rotor_;
   }
 
  private:
   void set_up();
+  void turn_back(const exact::TimeGrid& times, double* omega, double* attitude) const;
 
   InertiaTensor inertia_;
   double weight_arm_;
   Vector3d omega_;
   Quat attitude_;
+  double rotor_;
+  double half_turns_ = 0, half_turns_low_ = 0;  ///< h / C / 2 [cycles/s], of half the angle that rotors turn back
   Vector3d axis_ = Vector3d::UnitZ();
   TopKind kind_ = TopKind::steady_precession;
   double period_ = 0, tilt_min_ = 0, tilt_max_ = 0, precession_ = 0, largest_time_ = 0;

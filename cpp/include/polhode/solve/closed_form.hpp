@@ -9,6 +9,7 @@
 
 #include "polhode/exact/damped_free.hpp"
 #include "polhode/exact/free_motion.hpp"
+#include "polhode/exact/gyrostat.hpp"
 #include "polhode/exact/heavy_top.hpp"
 #include "polhode/exact/pendulum.hpp"
 #include "polhode/solve/facts.hpp"
@@ -19,6 +20,7 @@ namespace polhode {
 class ClosedForm {
  public:
   explicit ClosedForm(FreeMotion motion) : motion_(std::move(motion)) {}
+  explicit ClosedForm(Gyrostat motion) : motion_(std::move(motion)) {}
   explicit ClosedForm(DampedFree motion) : motion_(std::move(motion)) {}
   explicit ClosedForm(Pendulum motion) : motion_(std::move(motion)) {}
   explicit ClosedForm(HeavyTop motion) : motion_(std::move(motion)) {}
@@ -28,9 +30,12 @@ class ClosedForm {
   }
   std::string_view model() const;   ///< the name of its record
   double rate(const double* omega) const;   ///< a rate of change [rad/s], for the steps of an event search
+  const Gyrostat* gyrostat() const { return std::get_if<Gyrostat>(&motion_); }   ///< null for other models
+  /// Of a pendulum, whose motion stays in the plane across this body axis.
+  std::optional<Vector3d> swing_axis() const;
 
  private:
-  std::variant<FreeMotion, DampedFree, Pendulum, HeavyTop> motion_;
+  std::variant<FreeMotion, Gyrostat, DampedFree, Pendulum, HeavyTop> motion_;
 };
 
 /// The record of an exact model, for the planner, the command line and the docs.
@@ -53,7 +58,8 @@ std::optional<ClosedForm> find_closed_form(const Scene& scene, const Facts& fact
 
 /// A bound on the error of the closed form at the scene's times, against the exact motion of the same float64 input. It
 /// is 20 units of rounding (docs/exact.md; the largest measured error is 7). To this it adds the effect of rounding in
-/// times from the start, in weight times arm, in a damping matrix, and in the principal axes of a full tensor.
+/// times from the start, in weight times arm, in a damping matrix, in the rotors' momentum, in the inertia that free rotors
+/// leave, and in the principal axes of a full tensor.
 double compute_closed_form_error(const Scene& scene, const Facts& facts, const ClosedForm& form);
 
 }  // namespace polhode

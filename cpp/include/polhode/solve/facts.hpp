@@ -47,6 +47,9 @@ double compute_separatrix_distance(const Scene& scene);
 /// A scale of the torques [N m]: their size at the start, or the largest size of gravity over all attitudes.
 double compute_torque_scale(const Scene& scene);
 
+/// The rate at which rotors turn the axis of a body at rest [rad/s]: of nutation, h3 / sqrt(I1 I2) for one on axis 3.
+double compute_nutation_rate(const InertiaTensor& inertia_B, const Vector3d& h_B);
+
 /// Revolutions over a time [s], from |omega| at the start, the nutation that rotors cause, and what the torques can
 /// add.
 double estimate_turns(const Scene& scene, const TorqueSum& torques, double span);

@@ -20,6 +20,44 @@ Matrix make_matrix(const Matrix3d& m, double scale) {
   return result;
 }
 
+/// The axis of a rotor. Its direction may have been rounded to length 1, which moves it by less than 2^-51.
+Vector enclose_axis(const Rotor& rotor) {
+  Vector a;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double component = rotor.axis()[static_cast<int>(i)];
+    const bool exact = component == 0.0 || std::abs(component) == 1.0;
+    a[i] = exact ? Interval(component) : Interval(math::DD(component), 0x1p-51 * std::abs(component));
+  }
+  return a;
+}
+
+/// h_B of a rotor: relative to the body, or absolute if it is free.
+Vector enclose_momentum(const Rotor& rotor, const Vector3d& w_B) {
+  const Vector a = enclose_axis(rotor);
+  Interval size;
+  if (rotor.momentum()) {
+    size = Interval(*rotor.momentum());
+  } else {
+    Interval speed(*rotor.speed());
+    for (std::size_t i = 0; i < 3 && rotor.free(); ++i) speed = speed + a[i] * Interval(w_B[static_cast<int>(i)]);
+    size = Interval(*rotor.inertia()) * speed;
+  }
+  return {size * a[0], size * a[1], size * a[2]};
+}
+
+/// The inertia that moves with omega: without the axial moments of free rotors. All is divided by a power of two.
+Matrix enclose_inertia(const Scene& scene, double part) {
+  Matrix J = make_matrix(scene.given_inertia_B().matrix(), part);
+  for (const Rotor& rotor : scene.rotors()) {
+    if (!rotor.free() || !rotor.inertia()) continue;
+    const Vector a = enclose_axis(rotor);
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j)
+        J[i][j] = J[i][j] - Interval(*rotor.inertia()) * Interval(part) * a[i] * a[j];
+  }
+  return J;
+}
+
 Matrix invert(const Matrix& m) {
   Matrix inverse;
   if (m[0][1].is_zero() && m[0][2].is_zero() && m[1][2].is_zero()) {
@@ -122,6 +160,8 @@ void BodyEquations::choose_units() {
     if (const auto* angular = std::get_if<torques::AngularDamping>(&torque))
       damping = std::max(damping, std::abs(angular->rate()));
   }
+  for (const Rotor& rotor : scene_.rotors())
+    fastest = std::max(fastest, std::abs(rotor.compute_momentum(scene_.omega())) / least);
   if (fastest > 0.0 && std::isfinite(fastest)) rate_ = nearest_power(fastest);
   pace_ = damping > rate_ && std::isfinite(damping) ? nearest_power(damping) : rate_;
 }
@@ -150,22 +190,33 @@ std::vector<Interval> BodyEquations::start() const {
 }
 
 /// Adds the terms of a body in units of 1 / rate, torque by torque. A new torque needs its overload of add(): the
-/// compiler asks for it. A rotor would add its momentum to add_gyroscopic(), as terms of one variable.
+/// compiler asks for it.
 class BodyEquations::Maker {
  public:
   explicit Maker(const BodyEquations& body)
       : body_(body), system_(body.size()), per_rate_(Interval(1.0) / Interval(body.rate_)),
         part_(1.0 / nearest_power(body.scene_.inertia_B().matrix().cwiseAbs().maxCoeff())),
-        I_(make_matrix(body.scene_.inertia_B().matrix(), part_)), inverse_(invert(I_)),
+        I_(enclose_inertia(body.scene_, part_)), inverse_(invert(I_)),
         torque_unit_(Interval(part_) * per_rate_ * per_rate_) {}
 
-  QuadraticSystem make(const std::vector<AnyTorque>& torques) {
+  QuadraticSystem make(const std::vector<AnyTorque>& torques, const std::vector<bool>& rotating) {
     add_gyroscopic(0, Interval(-1.0));
+    for (std::size_t i = 0; i < rotating.size(); ++i)
+      if (rotating[i]) add_rotor(body_.scene_.rotors()[i]);
     for (const AnyTorque& torque : torques) std::visit([this](const auto& acting) { add(acting); }, torque);
     for (std::size_t i = 0; i < body_.fixed_.size(); ++i) add_turning(body_.fixed_index(i));
     for (std::size_t i = 0; i < body_.orbits_.size(); ++i) add_orbit(i);
     if (body_.has_attitude_) add_attitude();
     return std::move(system_);
+  }
+
+  /// J^-1 times a momentum, in the unit of the rates
+  Vector find_rates(const Vector& momentum) const {
+    Vector rates;
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j)
+        rates[i] = rates[i] + inverse_[i][j] * momentum[j] * Interval(part_) * per_rate_;
+    return rates;
   }
 
  private:
@@ -197,6 +248,13 @@ class BodyEquations::Maker {
             system_.add_product(row, first + j, first + l, factor);
           });
         }
+  }
+
+  void add_rotor(const Rotor& rotor) {   // h x w
+    const Vector h = enclose_momentum(rotor, body_.scene_.omega());
+    for_permutations([&](int i, int j, int k, double s) {
+      accelerate_by(i, Interval(s) * h[to_index(j)] * Interval(part_) * per_rate_, k);
+    });
   }
 
   void add(const torques::Constant& constant) {
@@ -284,10 +342,29 @@ class BodyEquations::Maker {
   const Interval torque_unit_;
 };
 
-QuadraticSystem BodyEquations::make_system(const std::vector<AnyTorque>& torques, double sign) const {
-  QuadraticSystem system = Maker(*this).make(torques);
+std::vector<bool> BodyEquations::find_rotating(double begin, double end) const {
+  std::vector<bool> rotating;
+  for (const Rotor& rotor : scene_.rotors())
+    rotating.push_back(begin < end ? rotor.rotates_throughout(begin, end) : rotor.rotates_at(begin));
+  return rotating;
+}
+
+QuadraticSystem BodyEquations::make_system(const std::vector<AnyTorque>& torques, const std::vector<bool>& rotating,
+                                           double sign) const {
+  QuadraticSystem system = Maker(*this).make(torques, rotating);
   system.scale(sign * (rate_ / pace_));
   return system;
+}
+
+std::array<Interval, 3> BodyEquations::compute_jump(const std::vector<bool>& before,
+                                                    const std::vector<bool>& after) const {
+  Vector lost;   // momentum of rotors
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (before[i] == after[i]) continue;
+    const Vector h = enclose_momentum(scene_.rotors()[i], scene_.omega());
+    for (std::size_t k = 0; k < 3; ++k) lost[k] = before[i] ? lost[k] + h[k] : lost[k] - h[k];
+  }
+  return before == after ? lost : Maker(*this).find_rates(lost);
 }
 
 }  // namespace polhode::proof

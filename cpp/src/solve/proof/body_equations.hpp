@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "polhode/scene/scene.hpp"
@@ -26,8 +27,15 @@ class BodyEquations {
   /// The exact start. The attitude is normalised as real numbers are.
   std::vector<Interval> start() const;
 
-  /// The equations under these torques, none of them with windows; `sign` is -1 backwards in time.
-  QuadraticSystem make_system(const std::vector<AnyTorque>& torques, double sign) const;
+  /// Which rotors rotate from one time to a later one without a break, or at a time.
+  std::vector<bool> find_rotating(double begin, double end) const;
+
+  /// The equations under these torques, none of them with windows, and rotors; `sign` is -1 backwards in time.
+  QuadraticSystem make_system(const std::vector<AnyTorque>& torques, const std::vector<bool>& rotating,
+                              double sign) const;
+
+  /// The change of w_B / rate where some rotors stop and others start: J w + h is continuous.
+  std::array<Interval, 3> compute_jump(const std::vector<bool>& before, const std::vector<bool>& after) const;
 
  private:
   struct Orbit {

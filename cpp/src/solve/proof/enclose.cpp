@@ -1,6 +1,7 @@
 #include "solve/proof/enclose.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "method/samples.hpp"
@@ -20,8 +21,15 @@ class Run {
   }
 
   void follow(const std::vector<Piece>& pieces) {
+    std::vector<bool> rotating = body_.find_rotating(scene_.t0(), scene_.t0());
     for (const Piece& piece : pieces) {
-      if (!follow(piece)) return;
+      std::vector<bool> next = body_.find_rotating(std::min(piece.begin, piece.end), std::max(piece.begin, piece.end));
+      jump(body_.compute_jump(rotating, next));
+      rotating = std::move(next);
+      // A window includes its begin, so a sample at the end has the rotors that rotate then.
+      end_jump_ = body_.compute_jump(rotating, body_.find_rotating(piece.end, piece.end));
+      end_ = piece.end;
+      if (!follow(piece, rotating)) return;
     }
   }
 
@@ -38,8 +46,20 @@ class Run {
     return seconds * Interval(body_.pace());
   }
 
-  bool follow(const Piece& piece) {
-    const QuadraticSystem system = body_.make_system(piece.torques, sign_);
+  void jump(const std::array<Interval, 3>& change) {
+    if (std::all_of(change.begin(), change.end(), [](const Interval& x) { return x.is_zero(); })) return;
+    const std::size_t n = state_.size();
+    std::vector<double> identity(n * n), rest(n);
+    for (std::size_t i = 0; i < n; ++i) identity[n * i + i] = 1.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Interval sum = Interval(state_[i], 0.0) + change[i];
+      state_[i] = sum.middle, rest[i] = sum.radius;
+    }
+    errors_.advance(identity, static_cast<int>(n), rest);
+  }
+
+  bool follow(const Piece& piece, const std::vector<bool>& rotating) {
+    const QuadraticSystem system = body_.make_system(piece.torques, rotating, sign_);
     TaylorStep step(system, options_.step);
     step.expect_rate(largest_rate_);
     const Interval end = distance(piece.end);
@@ -125,9 +145,9 @@ class Run {
         box = errors_.image_box(derivative_, step.width(), slack);
       }
       const auto value = [&](std::size_t i) { return Interval(state[i], raised(box[i] + lost[i])); };
-      if (scene_.want().omega) {
-        for (std::size_t i = 0; i < 3; ++i) result_.omega[3 * sample + i] = value(i) * Interval(body_.rate());
-      }
+      const bool at_end = scene_.times()[sample] == end_;
+      for (std::size_t i = 0; i < 3 && scene_.want().omega; ++i)
+        result_.omega[3 * sample + i] = (at_end ? value(i) + end_jump_[i] : value(i)) * Interval(body_.rate());
       if (scene_.want().attitude) {
         const auto first = to_index(body_.attitude());
         for (std::size_t i = 0; i < 4; ++i) result_.attitude[4 * sample + i] = value(first + i);
@@ -143,6 +163,8 @@ class Run {
   std::vector<DD> state_;
   ErrorSet errors_;
   Interval now_ = {};                    ///< since the start, in units of 1 / pace
+  std::array<Interval, 3> end_jump_ = {};   ///< of the variables of the rates, for samples at the piece's end
+  double end_ = 0.0;                     ///< of the piece
   double largest_rate_ = 0.0;
   std::vector<std::size_t> samples_;     ///< in the order of the run
   std::size_t next_ = 0;

@@ -26,9 +26,6 @@ void require_provable(const Scene& scene, const SolveOptions& options) {
   if (options.dense) refuse("dense", "True", "bounds are given at the scene's times: add the times that are needed");
   if (!options.events.empty())
     refuse("events", std::to_string(options.events.size()), "a function of the user's own has no known bounds");
-  if (scene.torque_sum().rotors)
-    throw InvalidInput("certify='proof'", "left out with rotors", "a body with rotors",
-                       "the enclosure of their term h x omega is not written yet");
   if (has_custom(scene)) {
     throw InvalidInput("certify='proof'", "left out with torques of the user's own", "a Custom torque",
                        "its function gives numbers, and a proof needs bounds on them at every state nearby");

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..family import Family
-from . import chaos, damping, gimbal, long, near, norm, racket, scales, sleeping, spin_up, step
+from . import chaos, damping, gimbal, long, near, norm, racket, scales, sleeping, spin_up, step, wheel
 
 FAMILIES: tuple[Family, ...] = tuple(
     module.FAMILY
@@ -19,5 +19,6 @@ FAMILIES: tuple[Family, ...] = tuple(
         scales,
         norm,
         sleeping,
+        wheel,
     )
 )

@@ -1,0 +1,166 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "polhode/math/detail/double_double.hpp"
+#include "polhode/solve/closed_form.hpp"
+#include "solve/closed_form_parts.hpp"
+#include "solve/distance.hpp"
+#include "solve/proportional_damping.hpp"
+
+namespace polhode {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double unit = epsilon / 2;
+constexpr double nudge = 0x1p-46;   // relative change of an input, to measure its effect
+const Vector3d signs{1, -1, 1};
+
+/// Measures how far a closed form moves when its inputs do.
+class InputError {
+ public:
+  InputError(const Scene& scene, const Facts& facts, const ClosedForm& form)
+      : scene_(scene), facts_(facts), h_(facts.rotor_momentum) {
+    if (facts.is_free()) return;
+    if (!facts.torques.rotors) damping_ = find_proportional_damping(scene);
+    if (damping_ || form.model() == "gyrostat") return;
+    gravity_ = find_only_gravity(scene);
+    if (form.model() == "pendulum") return;
+    axis_ = *find_top_axis(scene, gravity_->arm());
+    weight_arm_ = gravity_->weight() * gravity_->arm()[axis_];
+  }
+
+  /// Of times from the start, which are differences.
+  double measure_times() const {
+    bool rounded = false;
+    for (const double t : scene_.times()) rounded |= math::two_diff(t, scene_.t0()).lo != 0.0;
+    if (!rounded) return 0.0;
+    return unit * (damping_ ? measure_damped_span() : 2 * std::numbers::pi * facts_.turns);
+  }
+
+  /// Of weight times arm.
+  double measure_weight(const ClosedForm& form) const {
+    if (axis_ < 0 || std::fma(gravity_->weight(), gravity_->arm()[axis_], -weight_arm_) == 0.0) return 0.0;
+    const HeavyTop other(scene_.inertia_B(), weight_arm_ * (1 + nudge), scene_.omega(), scene_.attitude(), h_[axis_]);
+    return 4 * (unit / nudge) * compare(form, ClosedForm(other));
+  }
+
+  /// Of a damping matrix. Together all torques differ from -c I omega by half a unit of the momentum that they take.
+  double measure_damping() const {
+    if (!damping_ || !damping_->rounded) return 0.0;
+    const auto kicked = [&](double sign) {
+      return make(scene_.inertia_B(), scene_.omega().cwiseProduct(Vector3d::Ones() + sign * nudge * signs), h_);
+    };
+    return 2 * (unit / nudge) * compare(kicked(1), kicked(-1));
+  }
+
+  /// Of the sum of the rotors' momenta.
+  double measure_rotors() const {
+    if (!facts_.torques.rotors) return 0.0;
+    math::DD sum[3] = {};
+    Vector3d lost = Vector3d::Zero();
+    for (const Rotor& rotor : scene_.rotors()) {
+      const double momentum = rotor.compute_momentum(scene_.omega());
+      const bool skew = rotor.axis().cwiseAbs().maxCoeff() < 1.0;   // its axis was rounded to length 1
+      const double roundings = (rotor.momentum() ? 0.0 : rotor.free() ? 4.0 : 1.0) + (skew ? 2.0 : 0.0);
+      for (int i = 0; i < 3; ++i) {
+        sum[i] = sum[i] + math::DD(math::two_prod(momentum, rotor.axis()[i]));
+        lost[i] += roundings * unit * std::abs(momentum * rotor.axis()[i]);
+      }
+    }
+    for (int i = 0; i < 3; ++i) lost[i] += std::abs((sum[i] - math::DD(h_[i])).hi);
+    const double part = lost.cwiseAbs().maxCoeff() / h_.cwiseAbs().maxCoeff();
+    if (part == 0.0) return 0.0;
+    const auto shifted = [&](double sign) {
+      return make(scene_.inertia_B(), scene_.omega(), h_ + sign * (nudge / part) * signs.cwiseProduct(lost));
+    };
+    return (part / nudge) * compare(shifted(1), shifted(-1));
+  }
+
+  /// Of all inputs, where a gyrostat starts next to a steady turn that is born together with its saddle. There the
+  /// closed form is only as good as its inputs (docs/gyrostat.md). The period tells: it is many revolutions long.
+  double measure_birth(const ClosedForm& form) const {
+    constexpr double many = 100.0;
+    const Gyrostat* gyrostat = form.gyrostat();
+    if (gyrostat == nullptr) return 0.0;
+    const double turns = gyrostat->period() * scene_.omega().norm() / (2 * std::numbers::pi);
+    if (!(turns > many) || std::isinf(turns)) return 0.0;
+    const auto moved = [&](double sign) {
+      const Vector3d up = Vector3d::Ones() + sign * nudge * signs, down = Vector3d::Ones() - sign * nudge * signs;
+      return make(scene_.inertia_B(), scene_.omega().cwiseProduct(up), h_.cwiseProduct(down));
+    };
+    return 4 * (unit / nudge) * compare(moved(1), moved(-1));
+  }
+
+  /// Of the inertia: the principal moments and axes of a full tensor have errors of a few units of rounding of the
+  /// largest moment, and so has the inertia that free rotors leave.
+  double measure_inertia() const {
+    const InertiaTensor& J = scene_.inertia_B();
+    if ((J.is_diagonal() && !has_carrier(scene_)) || scene_.omega().isZero(0.0)) return 0.0;
+    const double largest = scene_.given_inertia_B().moments()[2];
+    const PrincipalAxes& principal = J.principal();
+    const auto perturbed = [&](double sign) {
+      if (axis_ >= 0) {   // two moments stay equal
+        Vector3d I = J.matrix().diagonal() + sign * nudge * largest * Vector3d::Ones();
+        I[axis_] -= 2 * sign * nudge * largest;
+        return make(InertiaTensor::from_moments(I, false), scene_.omega(), h_);
+      }
+      const Vector3d I = principal.moments + sign * nudge * largest * signs;
+      return make(InertiaTensor::from_moments(I, false), principal.axes.transpose() * scene_.omega(),
+                  principal.axes.transpose() * h_);
+    };
+    return 8 * (epsilon / nudge) * compare(perturbed(1), perturbed(-1));
+  }
+
+ private:
+  /// The closed form of the scene from other inputs.
+  ClosedForm make(const InertiaTensor& inertia, const Vector3d& omega, const Vector3d& h) const {
+    if (damping_) return ClosedForm(DampedFree(inertia, damping_->rate, omega));
+    if (axis_ >= 0) return ClosedForm(HeavyTop(inertia, weight_arm_, omega, scene_.attitude(), h[axis_]));
+    if (facts_.torques.rotors) return ClosedForm(Gyrostat(inertia, h, omega));
+    return ClosedForm(FreeMotion(inertia, omega));
+  }
+
+  /// The largest distance of two closed forms at sixteen of the scene's times.
+  double compare(const ClosedForm& a, const ClosedForm& b) const {
+    constexpr std::size_t most = 16;
+    const std::vector<double>& times = scene_.times();
+    const std::size_t n = std::min(most, times.size());
+    double t[most], wa[3 * most], wb[3 * most], qa[4 * most], qb[4 * most];
+    // The last time, and evenly spread times before it.
+    for (std::size_t i = 0; i < n; ++i) t[i] = times[times.size() - 1 - i * ((times.size() - 1) / n)] - scene_.t0();
+    a.at(t, n, wa, qa);
+    b.at(t, n, wb, qb);
+    return compute_distance(n, scene_.omega().norm(), wa, qa, wb, qb);
+  }
+
+  /// The change of a damped motion when the times change by a part of themselves, in units of this part.
+  double measure_damped_span() const {
+    const DampedFree motion(scene_.inertia_B(), damping_->rate, scene_.omega());
+    const double slowed = std::max(motion.slowed_time(facts_.after), -motion.slowed_time(-facts_.before));
+    const double grown = std::abs(damping_->rate) * facts_.span();
+    return scene_.omega().norm() * slowed * (1 + grown) + grown;
+  }
+
+  const Scene& scene_;
+  const Facts& facts_;
+  const Vector3d& h_;
+  std::optional<ProportionalDamping> damping_;
+  const torques::Gravity* gravity_ = nullptr;
+  int axis_ = -1;   // of symmetry of a top
+  double weight_arm_ = 0.0;
+};
+
+}  // namespace
+
+double compute_closed_form_error(const Scene& scene, const Facts& facts, const ClosedForm& form) {
+  const InputError inputs(scene, facts, form);
+  double error = 20 * epsilon;
+  if (scene.t0() != 0.0) error += inputs.measure_times();
+  if (form.model() == "pendulum") return error;   // the product of weight and arm is a double-double there
+  return error + inputs.measure_weight(form) + inputs.measure_damping() + inputs.measure_rotors() +
+         inputs.measure_inertia() + inputs.measure_birth(form);
+}
+
+}  // namespace polhode

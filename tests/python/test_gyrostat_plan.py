@@ -1,0 +1,152 @@
+"""Scenes with rotors and no torque: the planner evaluates the gyrostat's closed form, in windows too."""
+
+import numpy as np
+import pytest
+from measures import attitude_error, rates_error
+
+import polhode as ph
+from polhode import _core
+
+BLOCK = (0.20, 0.40, 0.52)
+OMEGA = (1.0, 2.0, 3.0)
+TIMES = np.linspace(-4, 12, 65)
+TILTED = ph.InertiaTensor.from_moments(BLOCK).rotated(ph.Rotation.from_rotvec((0.3, -0.5, 0.2)))
+WHEEL = ph.Rotor((0, 0, 1), momentum=0.5)
+
+
+def scene(**parts):
+    return ph.Scene(**{"inertia": BLOCK, "omega": OMEGA, "times": TIMES, "rotors": [WHEEL], **parts})
+
+
+@pytest.mark.parametrize("parts", [
+    {}, {"inertia": TILTED}, {"inertia": (0.4, 0.4, 0.2)}, {"inertia": (0.2, 0.4, 0.4)}, {"inertia": (0.3, 0.3, 0.3)},
+    {"omega": (0, 0, 2)}, {"omega": (1e-4, 5, 1e-4), "rotors": [ph.Rotor((0, 1, 0), momentum=0.1)]},
+    {"rotors": [ph.Rotor((1, -2, 2), momentum=0.7), ph.Rotor((0, 1, 0), inertia=0.1, speed=-2.0)]},
+    {"rotors": [ph.Rotor((1, -2, 2), inertia=0.05, speed=9.0, free=True)]},
+    {"inertia": TILTED, "rotors": [ph.Rotor((0, 1, 0), inertia=0.05, speed=9.0, free=True), WHEEL]},
+    {"rotors": [ph.Rotor((0, 0, 1), momentum=h) for h in (800.0, -800.0, 650.0, -649.5)]},
+    {"t0": 0.1}], ids=str)
+def test_every_body_with_rotors_is_evaluated(parts):
+    some = scene(**parts)
+    motion = ph.solve(some, 1e-11)
+    assert (motion.plan.method, motion.plan.model) == ("exact", "gyrostat") and motion.success
+    assert any("free gyrostat" in reason for reason in motion.plan.reasons)
+    truth = _core.reference(some, 30, 1e-20, 10**6)
+    assert rates_error(motion.omega, truth[0]) <= motion.error < 3e-12
+    assert attitude_error(motion.attitude, truth[1]) <= motion.error
+    assert set(motion.drift) == {"energy", "angular_momentum"} and max(motion.drift.values()) < 1e-13
+
+
+def test_the_bound_has_the_rounding_of_the_rotors():
+    """One axis of the body: the product is exact. A skew axis, a sum that cancels, a free rotor: it is not."""
+    plain = ph.plan(scene()).predicted_error
+    assert plain == pytest.approx(20 * 2.0**-52)
+    for rotors in ([ph.Rotor((1, 2, 2), momentum=0.5)], [ph.Rotor((0, 0, 1), inertia=0.1, speed=5.0)],
+                   [ph.Rotor((0, 0, 1), inertia=0.1, speed=5.0, free=True)],
+                   [ph.Rotor((0, 0, 1), momentum=h) for h in (800.1, -800.0, 0.4)]):
+        error = ph.plan(scene(rotors=rotors)).predicted_error
+        assert 1.2 * plain < error < (2e-11 if len(rotors) > 1 else 2e-13)
+    several = [ph.Rotor(axis, momentum=0.5) for axis in np.eye(3)]
+    cancelling = [ph.Rotor((0, 0, 1), momentum=h) for h in (800.0, -800.0, 650.0, -649.5)]   # exactly
+    for rotors in (several, cancelling):
+        assert ph.plan(scene(rotors=rotors)).predicted_error == pytest.approx(plain)
+
+
+def test_a_body_at_rest_stays_at_rest():
+    motion = ph.solve(scene(omega=(0, 0, 0)), 1e-12)
+    assert motion.plan.model == "gyrostat" and motion.success
+    assert not motion.omega.any() and np.ptp(motion.attitude, axis=0).max() < 1e-15
+
+
+def test_next_to_the_birth_of_a_steady_turn_the_bound_is_that_of_the_inputs():
+    """The steady turn on the smallest sphere that has it, found by ternary search; the period grows beyond bounds."""
+    J, h, low, high = np.array([1.0, 1.6, 2.2]), np.array([0.1, 0.5, 0.3]), 1 / 2.2 + 1e-3, 1 / 1.6 - 1e-3
+    for _ in range(200):
+        a, b = low + (high - low) / 3, high - (high - low) / 3
+        size = [np.sum((h / (1 - rate * J)) ** 2) for rate in (a, b)]
+        low, high = (low, b) if size[0] < size[1] else (a, high)
+    wheels = [ph.Rotor(axis, momentum=x) for axis, x in zip(np.eye(3), h, strict=True)]
+    for off, loose in ((0.0, True), (1e-11, True), (1e-2, False)):
+        omega = (h / (1 - low * J) * (1 + off * np.array([1, -1, 1])) - h) / J
+        some = ph.Scene(inertia=J, omega=omega, rotors=wheels, times=np.linspace(0, 60, 31))
+        motion = ph.solve(some, 1e-10)
+        assert motion.plan.model == "gyrostat" and (motion.error > 5e-15) == loose
+        truth = _core.reference(some, 30, 1e-20, 10**6)
+        assert rates_error(motion.omega, truth[0]) <= motion.error
+        assert attitude_error(motion.attitude, truth[1]) <= motion.error
+
+
+def test_no_rotor_is_freemotion_bit_for_bit():
+    free = ph.FreeMotion(BLOCK, OMEGA).at(TIMES)
+    for rotors in ([], [ph.Rotor((0, 0, 1), momentum=0.0)], [WHEEL, ph.Rotor((0, 0, 1), momentum=-0.5)]):
+        motion = ph.solve(scene(rotors=rotors), 1e-12)
+        assert motion.plan.model == "triaxial"
+        np.testing.assert_array_equal(motion.omega, free[0])
+        np.testing.assert_array_equal(motion.attitude, free[1])
+    one = ph.solve(scene(), 1e-12)
+    other = ph.Gyrostat(BLOCK, rotors=[WHEEL], omega=OMEGA).at(TIMES)
+    np.testing.assert_array_equal(one.omega, other[0])
+    np.testing.assert_array_equal(one.attitude, other[1])
+
+
+@pytest.mark.parametrize("inertia", [BLOCK, TILTED], ids=["principal axes", "tilted"])
+def test_a_wheel_spun_up_in_many_windows(inertia):
+    """Ten commands one after another, each a piece with a closed form, against Taylor series at their finest."""
+    axis, edges = (0, 1, 0), np.linspace(0, 10, 11)
+    steps = [ph.Rotor(axis, momentum=0.1 * (k + 1), during=(edges[k], edges[k + 1])) for k in range(10)]
+    some = scene(inertia=inertia, rotors=steps, times=np.linspace(0, 12, 97))
+    motion = ph.solve(some, 1e-12)
+    assert [piece.model for piece in motion.plan.pieces] == ["gyrostat"] * 10 + ["triaxial"]
+    assert motion.success and motion.stats["steps"] == 0
+    stepped = ph.solve(some, method="taylor", rtol=1e-16)
+    assert rates_error(motion.omega, stepped.omega) < 1e-13
+    assert attitude_error(motion.attitude, stepped.attitude) < 1e-13
+    truth = _core.reference(some, 30, 1e-20, 10**6)
+    assert rates_error(motion.omega, truth[0]) < motion.error
+    assert attitude_error(motion.attitude, truth[1]) < motion.error
+    assert motion.drift["angular_momentum"] < 1e-13
+
+
+def test_gyrostats_beside_stepped_pieces_carry_the_error():
+    kick = ph.torques.During(ph.torques.Constant((0.05, -0.02, 0.03)), [(3, 4)])
+    some = scene(torques=[kick], times=np.linspace(0, 20, 81))
+    for accuracy in (1e-6, 1e-9, 1e-11):
+        motion = ph.solve(some, accuracy)
+        assert [piece.model for piece in motion.plan.pieces] == ["gyrostat", "euler", "gyrostat"] and motion.success
+        truth = _core.reference(some, 30, 1e-20, 10**6)
+        assert rates_error(motion.omega, truth[0]) <= motion.error <= accuracy
+        assert attitude_error(motion.attitude, truth[1]) <= motion.error
+
+
+def test_events_and_dense_output():
+    some = scene(times=np.linspace(0, 12, 49))
+    motion = ph.solve(some, 1e-11, dense=True, events=[ph.Event(lambda t, w, q: w[0])])
+    stepped = ph.solve(some, 1e-11, method="taylor", events=[ph.Event(lambda t, w, q: w[0])])
+    assert len(motion.events) == len(stepped.events) > 3
+    np.testing.assert_allclose([e.t for e in motion.events], [e.t for e in stepped.events], atol=1e-9)
+    between = ph.Gyrostat(BLOCK, rotors=[WHEEL], omega=OMEGA).at([3.3])
+    np.testing.assert_allclose(motion([3.3])[0], between[0], rtol=1e-14)
+
+
+def test_a_method_may_still_be_asked_for():
+    plan = ph.plan(scene(), method="taylor")
+    assert plan.method == "taylor" and not any("No closed form" in reason for reason in plan.reasons)
+    assert "gyrostat" in str(ph.plan(scene()))
+
+
+def test_a_wheel_along_the_pivots_axis_leaves_the_pendulum():
+    """The reaction wheel pendulum: h x omega vanishes. A wheel across the axis turns the body out of its plane."""
+    parts = {"inertia": (0.3, 0.5, 0.6), "omega": (1.5, 0, 0), "torques": [ph.torques.Gravity(2.0, (0, 0, -0.7))],
+             "times": np.linspace(0, 9, 46)}
+    plain = ph.solve(ph.Scene(**parts), 1e-12)
+    motion = ph.solve(ph.Scene(**parts, rotors=[ph.Rotor((1, 0, 0), momentum=3.0)]), 1e-12)
+    assert motion.plan.model == "pendulum"
+    np.testing.assert_array_equal(motion.omega, plain.omega)
+    across = ph.plan(ph.Scene(**parts, rotors=[ph.Rotor((0, 1, 0), momentum=3.0)]))
+    assert across.method != "exact" and any("not along the axis of rotation" in reason for reason in across.reasons)
+    steps = [ph.Rotor((1, 0, 0), momentum=0.3, during=(1, 3)), ph.Rotor((1, 0, 0), momentum=-0.2, during=(3, 5))]
+    chain = ph.Scene(**parts, rotors=steps)
+    motion = ph.solve(chain, 1e-10)
+    assert [piece.model for piece in motion.plan.pieces] == ["pendulum"] * 4 and motion.success
+    truth = _core.reference(chain, 30, 1e-20, 10**6)
+    assert rates_error(motion.omega, truth[0]) < motion.error
