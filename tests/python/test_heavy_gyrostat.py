@@ -62,6 +62,22 @@ def test_without_a_rotor_it_is_the_plain_top_and_without_weight_the_gyrostat():
     assert rates_error(free[0], gyrostat[0]) < 1e-14 and attitude_error(free[1], gyrostat[1]) < 2e-14
 
 
+def test_the_bound_of_a_fast_rotor_has_its_rounding():
+    """The rows of the table as scenes: every true error is below the bound that the plan states."""
+    for row in TABLE:
+        if row["name"] == "scales":
+            continue
+        near = [i for i, t in enumerate(row["t"]) if abs(t) <= 1e3]
+        row = row | {key: [row[key][i] for i in near] for key in ("t", "answer", "cond")}
+        gravity, wheel = ph.torques.Gravity(row["weight_arm"], (0, 0, 1)), ph.Rotor((0, 0, 1), momentum=row["rotor"])
+        inertia = ph.InertiaTensor.from_moments(row["moments"], physical=False)
+        scene = ph.Scene(inertia=inertia, omega=row["omega"], attitude=row["attitude"], torques=[gravity],
+                         rotors=[wheel], times=row["t"])
+        motion = ph.solve(scene, 1e-9)
+        assert motion.plan.model == "heavy_gyrostat"
+        assert errors(row, make(row)).max() <= motion.error, row
+
+
 def test_what_is_conserved():
     top = ph.HeavyTop((1.0, 1.0, 0.6), 1.3, (0.3, -0.7, 2.0), TILTED, rotor=0.9)
     omega, attitude = top.at(TIMES)
@@ -84,7 +100,7 @@ def test_the_planner_takes_it_about_every_axis(axis):
     scene = ph.Scene(inertia=moments, omega=(0.3, 0.2, 0.4), attitude=TILTED, rotors=wheel, times=TIMES,
                      torques=[ph.torques.Gravity(3.0, arm)])
     motion = ph.solve(scene, 1e-12)
-    assert (motion.plan.method, motion.plan.model) == ("exact", "heavy_gyrostat") and motion.error < 1e-14
+    assert (motion.plan.method, motion.plan.model) == ("exact", "heavy_gyrostat") and motion.error < 5e-14
     assert any("turned back about the axis" in reason for reason in motion.plan.reasons)
     stepped = ph.solve(scene, 1e-11, method="taylor")
     assert rates_error(motion.omega, stepped.omega) < stepped.error + 1e-14

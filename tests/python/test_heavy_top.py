@@ -110,7 +110,7 @@ def test_equations_of_motion_hold(C, arm, omega, attitude):
     """Central differences of the closed form satisfy Euler's and the kinematic equations."""
     norm = math.sqrt(math.fsum(c * c for c in attitude))
     assume(norm > 0.1)
-    top = ph.HeavyTop((1, 1, C), arm, omega, np.array(attitude) / norm)
+    top = ph.HeavyTop((1, 1, C), arm, omega, ph.Rotation(np.array(attitude) / norm))
     h = 1e-3
     w, q = top.at(1.0 + h * np.arange(-3, 4))
     weights = np.array([-1, 9, -45, 0, 45, -9, 1]) / (60 * h)  # sixth order

@@ -16,7 +16,7 @@ def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
 
 
 FAMILY = Family(
-    name="wheel", title="The wheel near its critical speed: the racket is tamed, or just not",
+    name="wheel", title="The wheel near its critical speed: kept, or just left",
     summary="critical\nwheel",
     sweeps="the wheel's excess s over the critical momentum, 0.1 to -0.1, off by 1e-6 rad at the start, 200 s",
     truth="113-bit Taylor series",
