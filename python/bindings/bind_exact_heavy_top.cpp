@@ -88,9 +88,11 @@ InvalidInput
       .def_property_readonly("precession_rate", &HeavyTop::precession_rate,
                              "Mean rate of the axis about space z over a nutation [rad/s]. NaN for an axis that\n"
                              "stays vertical, and for 'homoclinic'.")
-      .def_property_readonly("energy", &HeavyTop::energy, "Kinetic energy without that inside rotors, and weight_arm cos(tilt) [J].")
+      .def_property_readonly("energy", &HeavyTop::energy,
+                             "Kinetic energy without that inside rotors, and weight_arm cos(tilt) [J].")
       .def_property_readonly("p_phi", &HeavyTop::p_phi, "Angular momentum about space z, with rotors [kg m^2/s].")
-      .def_property_readonly("p_psi", &HeavyTop::p_psi, "Angular momentum about the symmetry axis, with rotors [kg m^2/s].")
+      .def_property_readonly("p_psi", &HeavyTop::p_psi,
+                             "Angular momentum about the symmetry axis, with rotors [kg m^2/s].")
       .def_property_readonly("axis", [](const HeavyTop& top) { return from_vector3(top.axis()); },
                              "(3,) the symmetry axis in body axes, unit.")
       .def_property_readonly("inertia", &HeavyTop::inertia, "The InertiaTensor about the pivot.")

@@ -108,6 +108,8 @@ def test_start_is_given_back_and_backwards_is_the_past():
 @given(st.floats(0.01, 2), st.floats(-3, 3), st.tuples(*[st.floats(-5, 5)] * 3), st.tuples(*[st.floats(-1, 1)] * 4))
 def test_equations_of_motion_hold(C, arm, omega, attitude):
     """Central differences of the closed form satisfy Euler's and the kinematic equations."""
+    # Smaller numbers are refused where they matter: next to the unstable upright position, or beyond float64.
+    omega, attitude, (arm,) = ([c if abs(c) > 1e-30 else 0.0 for c in v] for v in (omega, attitude, (arm,)))
     norm = math.sqrt(math.fsum(c * c for c in attitude))
     assume(norm > 0.1)
     top = ph.HeavyTop((1, 1, C), arm, omega, ph.Rotation(np.array(attitude) / norm))

@@ -152,7 +152,8 @@ void HeavyTop::set_up() {
   const DD half_turns = math::scaled(added * DD(0.15915494309189535, -9.839338337591243e-18), 0.5);
   half_turns_ = half_turns.hi, half_turns_low_ = half_turns.lo;
   const double fastest = std::max(omega_.cwiseAbs().maxCoeff(), std::abs(added.hi));
-  require(std::isfinite(fastest), "rotor", "such that rotor / moment is a finite rate", [&] { return to_text(rotor_); });
+  require(std::isfinite(fastest), "rotor", "such that rotor / moment is a finite rate",
+          [&] { return to_text(rotor_); });
   const int none = -100000;
   const int e_w = fastest > 0.0 ? std::ilogb(fastest) : none;
   const int e_M = weight_arm_ != 0.0 ? (std::ilogb(weight_arm_) - e_A) / 2 : none;

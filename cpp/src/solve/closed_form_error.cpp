@@ -15,7 +15,7 @@ namespace {
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double unit = epsilon / 2;
 constexpr double nudge = 0x1p-46;   // relative change of an input, to measure its effect
-constexpr std::size_t most = 16;    // times at which two motions are compared
+constexpr std::size_t most_compared = 16;   // times at which two motions are compared
 const Vector3d signs{1, -1, 1};
 
 /// Measures how far a closed form moves when its inputs do.
@@ -85,7 +85,7 @@ class InputError {
     if (axis_ < 0 || h_[axis_] == 0.0) return 0.0;
     const std::vector<double>& times = scene_.times();
     double largest = scene_.omega().norm();
-    for (std::size_t i = 0; i < times.size(); i += 1 + times.size() / most) {
+    for (std::size_t i = 0; i < times.size(); i += 1 + times.size() / most_compared) {
       const double t = times[i] - scene_.t0();
       Vector3d w;
       form.at(&t, 1, w.data(), nullptr);
@@ -108,6 +108,24 @@ class InputError {
       return make(scene_.inertia_B(), scene_.omega().cwiseProduct(up), h_.cwiseProduct(down));
     };
     return 4 * (unit / nudge) * compare(moved(1), moved(-1));
+  }
+
+  /// Of the rates of a gyrostat, whose two series cancel next to such a birth: the energy of a period shows it.
+  double measure_energy(const ClosedForm& form) const {
+    constexpr std::size_t count = 129;
+    const Gyrostat* gyrostat = form.gyrostat();
+    if (gyrostat == nullptr || gyrostat->energy() == 0.0) return 0.0;
+    const double whole = facts_.span(), period = gyrostat->period();
+    const double span = period > 0.0 && period < whole ? period : whole;
+    double t[count], omega[3 * count], largest = 0.0;
+    for (std::size_t i = 0; i < count; ++i) t[i] = span * static_cast<double>(i) / (count - 1) - facts_.before;
+    form.at(t, count, omega, nullptr);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vector3d w{omega[3 * i], omega[3 * i + 1], omega[3 * i + 2]};
+      const double energy = 0.5 * w.dot(scene_.inertia_B().matrix() * w);
+      largest = std::max(largest, std::abs(energy / gyrostat->energy() - 1.0));
+    }
+    return 4 * std::max(0.0, largest - 16 * epsilon);
   }
 
   /// Of the inertia: the principal moments and axes of a full tensor have errors of a few units of rounding of the
@@ -142,8 +160,8 @@ class InputError {
   /// The largest distance of two closed forms at sixteen of the scene's times.
   double compare(const ClosedForm& a, const ClosedForm& b) const {
     const std::vector<double>& times = scene_.times();
-    const std::size_t n = std::min(most, times.size());
-    double t[most], wa[3 * most], wb[3 * most], qa[4 * most], qb[4 * most];
+    const std::size_t n = std::min(most_compared, times.size());
+    double t[most_compared], wa[3 * most_compared], wb[3 * most_compared], qa[4 * most_compared], qb[4 * most_compared];
     // The last time, and evenly spread times before it.
     for (std::size_t i = 0; i < n; ++i) t[i] = times[times.size() - 1 - i * ((times.size() - 1) / n)] - scene_.t0();
     a.at(t, n, wa, qa);
@@ -176,7 +194,8 @@ double compute_closed_form_error(const Scene& scene, const Facts& facts, const C
   if (scene.t0() != 0.0) error += inputs.measure_times();
   if (form.model() == "pendulum") return error;   // the product of weight and arm is a double-double there
   return error + inputs.measure_weight(form) + inputs.measure_damping() + inputs.measure_rotors() +
-         inputs.measure_inertia() + inputs.measure_birth(form) + inputs.measure_turning(form);
+         inputs.measure_inertia() + inputs.measure_birth(form) +
+         inputs.measure_energy(form) + inputs.measure_turning(form);
 }
 
 }  // namespace polhode

@@ -82,8 +82,8 @@ void explain_exact(const Scene& scene, const Facts& facts, const ClosedForm& for
     reasons.push_back("No torque acts: theta functions give each sample directly, without steps.");
   } else if (model == "gyrostat") {
     reasons.push_back(
-        "No torque acts, and the rotors' momentum is constant in the body: a free gyrostat. One theta series gives each "
-        "sample directly, without steps.");
+        "No torque acts, and the rotors' momentum is constant in the body: a free gyrostat. One theta series gives "
+        "each sample directly, without steps.");
   } else if (model == "damped_free") {
     const double rate = find_proportional_damping(scene)->rate;
     reasons.push_back(format(

@@ -138,7 +138,8 @@ bool may_spin_up(const Scene& scene, const TorqueSum& torques) {
 }
 
 double estimate_turns(const Scene& scene, const TorqueSum& torques, double span) {
-  const double start = math::hypot(scene.omega().norm(), compute_nutation_rate(scene.inertia_B(), scene.rotor_momentum()));
+  const double nutation = compute_nutation_rate(scene.inertia_B(), scene.rotor_momentum());
+  const double start = math::hypot(scene.omega().norm(), nutation);
   double turned = start * span;
   if (torques.acting == 0) return turned / (2 * std::numbers::pi);
   if (may_spin_up(scene, torques)) {

@@ -483,9 +483,9 @@ class Gyrostat:
     ----------
     inertia : InertiaTensor, or array_like of shape (3,)
         About the centre of mass, in body axes, with the rotors locked [kg m^2]; three numbers are principal moments in the
-        given axes, in any order. For rotors that are free on their bearings: less their axial parts.
-    rotors : iterable of Rotor, optional
-        Rotors at constant speed relative to the body.
+        given axes, in any order. Beside `momentum` of rotors that are free on their bearings: less their axial parts.
+    rotors : sequence of Rotor, optional
+        Held at a constant speed relative to the body, or free on their bearings, without windows of time.
     momentum : array_like, shape (3,), optional
         In their place: the rotors' momentum h in body axes [kg m^2/s]. 0 if neither is given.
     omega : array_like, shape (3,)
@@ -603,6 +603,111 @@ class Gyrostat:
         """
         Period of omega [s]: infinite on a separatrix, 0 where omega is constant.
         """
+class DampedFree:
+    """
+    A free body with damping proportional to its angular momentum, -c I omega.
+
+    In closed form at any time, for any body: it is the free motion in the slowed time s = (1 - exp(-c t)) / c, with omega
+    multiplied by exp(-c t). The error is that of FreeMotion.
+
+    Parameters
+    ----------
+    inertia : InertiaTensor, or array_like of shape (3,)
+        About the centre of mass (or a fixed point), in body axes [kg m^2]; three numbers are principal moments in the given
+        axes, in any order.
+    damping : float
+        The rate c [1/s]. A negative rate drives the body.
+    omega : array_like, shape (3,)
+        Angular velocity at t = 0, in body axes [rad/s].
+    attitude : array_like of shape (4,), or a Rotation
+        Body to space at t = 0, (x, y, z, w).
+
+    Raises
+    ------
+    InvalidInput
+        Not finite, a body no mass makes, one without a moment about some axis, or an attitude that is not unit.
+
+    Notes
+    -----
+    A change of time in Euler's equations; see docs/damped_free.md.
+    """
+    def __eq__(self: DampedFree, arg0: object) -> bool:
+        ...
+    def __getstate__(self: DampedFree) -> tuple[InertiaTensor, float, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        ...
+    def __hash__(self: DampedFree) -> int:
+        ...
+    def __init__(self: DampedFree, inertia: typing.Any, damping: typing.Any, omega: typing.Any, attitude: typing.Any = (0, 0, 0, 1)) -> None:
+        ...
+    def __repr__(self: DampedFree) -> str:
+        ...
+    def __setstate__(self: DampedFree, arg0: tuple[typing.Any, ...]) -> None:
+        ...
+    def at(self: DampedFree, t: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        """
+        Angular velocity and attitude at the given times.
+
+        Parameters
+        ----------
+        t : array_like, any shape
+            Times [s], negative ones too.
+
+        Returns
+        -------
+        omega : ndarray, shape (..., 3)
+            In body axes [rad/s].
+        attitude : ndarray, shape (..., 4)
+            Body to space, unit, (x, y, z, w).
+
+        Raises
+        ------
+        InvalidInput
+            A time that is not finite, or at which a driven body is beyond float64.
+        """
+    def slowed_time(self: DampedFree, t: typing.SupportsFloat | typing.SupportsIndex) -> float:
+        """
+        The time at which the free body has this attitude.
+
+        Parameters
+        ----------
+        t : float
+            Time [s].
+
+        Returns
+        -------
+        float
+            (1 - exp(-c t)) / c [s].
+        """
+    @property
+    def attitude(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (4,) attitude at t = 0.
+        """
+    @property
+    def damping(self) -> float:
+        """
+        The rate c [1/s].
+        """
+    @property
+    def free(self) -> FreeMotion:
+        """
+        The FreeMotion in slowed time.
+        """
+    @property
+    def inertia(self) -> InertiaTensor:
+        """
+        The InertiaTensor.
+        """
+    @property
+    def omega(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3,) omega at t = 0, in body axes [rad/s].
+        """
+    @property
+    def total_angle(self) -> float:
+        """
+        Bound on the angle of rotation from t = 0 on, abs(omega) / c [rad]; infinite for c <= 0.
+        """
 class HeavyTop:
     """
     Lagrange's top: a symmetric body held at a point of its axis, under gravity.
@@ -623,6 +728,9 @@ class HeavyTop:
         Angular velocity at t = 0, in body axes [rad/s].
     attitude : array_like of shape (4,), or a Rotation
         Body to space at t = 0, (x, y, z, w).
+    rotor : float, optional
+        Momentum of rotors about the symmetry axis, constant in the body [kg m^2/s], as of a toy gyroscope's wheel. The
+        inertia is then as for Gyrostat.
 
     Raises
     ------
@@ -635,11 +743,11 @@ class HeavyTop:
     """
     def __eq__(self: HeavyTop, arg0: object) -> bool:
         ...
-    def __getstate__(self: HeavyTop) -> tuple[InertiaTensor, float, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+    def __getstate__(self: HeavyTop) -> tuple[InertiaTensor, float, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], float]:
         ...
     def __hash__(self: HeavyTop) -> int:
         ...
-    def __init__(self: HeavyTop, inertia: typing.Any, weight_arm: typing.Any, omega: typing.Any, attitude: typing.Any = (0, 0, 0, 1)) -> None:
+    def __init__(self: HeavyTop, inertia: typing.Any, weight_arm: typing.Any, omega: typing.Any, attitude: typing.Any = (0, 0, 0, 1), rotor: typing.Any = 0.0) -> None:
         ...
     def __repr__(self: HeavyTop) -> str:
         ...
@@ -679,7 +787,7 @@ class HeavyTop:
     @property
     def energy(self) -> float:
         """
-        Kinetic energy and weight_arm cos(tilt) [J].
+        Kinetic energy without that inside rotors, and weight_arm cos(tilt) [J].
         """
     @property
     def inertia(self) -> InertiaTensor:
@@ -705,18 +813,23 @@ class HeavyTop:
     @property
     def p_phi(self) -> float:
         """
-        Angular momentum about space z [kg m^2/s].
+        Angular momentum about space z, with rotors [kg m^2/s].
         """
     @property
     def p_psi(self) -> float:
         """
-        Angular momentum about the symmetry axis [kg m^2/s].
+        Angular momentum about the symmetry axis, with rotors [kg m^2/s].
         """
     @property
     def precession_rate(self) -> float:
         """
         Mean rate of the axis about space z over a nutation [rad/s]. NaN for an axis that
         stays vertical, and for 'homoclinic'.
+        """
+    @property
+    def rotor(self) -> float:
+        """
+        Momentum of rotors about the symmetry axis [kg m^2/s].
         """
     @property
     def tilt_bounds(self) -> tuple[float, float]:
@@ -727,6 +840,115 @@ class HeavyTop:
     def weight_arm(self) -> float:
         """
         Signed along the symmetry axis [N m].
+        """
+class Pendulum:
+    """
+    The plane pendulum: any body on a pivot under gravity that swings about one body axis.
+
+    In closed form at any time and at every energy: swings of any size, rotation over the top, the separatrix between them,
+    rest. The axis may be any of the three body axes. It must be principal, horizontal and at right angles to the arm, and
+    omega must lie along it. These conditions are tested exactly. The error against the exact motion of the same float64
+    input is a few units of rounding at every time.
+
+    Parameters
+    ----------
+    inertia : InertiaTensor, or array_like of shape (3,)
+        About the pivot, in body axes [kg m^2]; three numbers are principal moments in the given axes, in any order.
+    weight : float
+        m g [N]. Gravity points along -z of space.
+    arm : array_like, shape (3,)
+        From the pivot to the centre of mass, in body axes [m].
+    omega : array_like, shape (3,)
+        Angular velocity at t = 0, in body axes [rad/s].
+    attitude : array_like of shape (4,), or a Rotation
+        Body to space at t = 0, (x, y, z, w).
+
+    Raises
+    ------
+    InvalidInput
+        Not finite, a body no mass makes, an attitude that is not unit, or no plane pendulum, with the reason.
+
+    Notes
+    -----
+    E. T. Whittaker, "Analytical Dynamics" (1937), section 44; see docs/pendulum.md.
+    """
+    def __eq__(self: Pendulum, arg0: object) -> bool:
+        ...
+    def __getstate__(self: Pendulum) -> tuple[InertiaTensor, float, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        ...
+    def __hash__(self: Pendulum) -> int:
+        ...
+    def __init__(self: Pendulum, inertia: typing.Any, weight: typing.Any, arm: typing.Any, omega: typing.Any, attitude: typing.Any = (0, 0, 0, 1)) -> None:
+        ...
+    def __repr__(self: Pendulum) -> str:
+        ...
+    def __setstate__(self: Pendulum, arg0: tuple[typing.Any, ...]) -> None:
+        ...
+    def at(self: Pendulum, t: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        """
+        Angular velocity and attitude at the given times.
+
+        Parameters
+        ----------
+        t : array_like, any shape
+            Times [s], negative ones too, up to 1e25 rad.
+
+        Returns
+        -------
+        omega : ndarray, shape (..., 3)
+            In body axes [rad/s].
+        attitude : ndarray, shape (..., 4)
+            Body to space, unit, (x, y, z, w).
+
+        Raises
+        ------
+        InvalidInput
+            A time that is not finite, or too long for its phase to have digits.
+        """
+    @property
+    def arm(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3,) from the pivot to the centre of mass, in body axes [m].
+        """
+    @property
+    def attitude(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (4,) attitude at t = 0.
+        """
+    @property
+    def axis(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3,) the axis of rotation in body axes, with omega along it.
+        """
+    @property
+    def frequency(self) -> float:
+        """
+        Angular frequency of small swings, sqrt(m g r / I) [rad/s].
+        """
+    @property
+    def inertia(self) -> InertiaTensor:
+        """
+        The InertiaTensor about the pivot.
+        """
+    @property
+    def kind(self) -> str:
+        """
+        'rest', 'swinging', 'rotating' or 'separatrix'.
+        """
+    @property
+    def omega(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3,) omega at t = 0, in body axes [rad/s].
+        """
+    @property
+    def period(self) -> float:
+        """
+        Period of the rate [s]: infinite on the separatrix, 0 at rest.
+        """
+    @property
+    def weight(self) -> float:
+        """
+        m g [N].
         """
 class Rotor:
     """

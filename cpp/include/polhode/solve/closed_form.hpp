@@ -58,8 +58,8 @@ std::optional<ClosedForm> find_closed_form(const Scene& scene, const Facts& fact
 
 /// A bound on the error of the closed form at the scene's times, against the exact motion of the same float64 input. It
 /// is 20 units of rounding (docs/exact.md; the largest measured error is 7). To this it adds the effect of rounding in
-/// times from the start, in weight times arm, in a damping matrix, in the rotors' momentum, in the inertia that free rotors
-/// leave, and in the principal axes of a full tensor.
+/// times from the start, in weight times arm, in a damping matrix, in the rotors' momentum, in the inertia that free
+/// rotors leave, and in the principal axes of a full tensor.
 double compute_closed_form_error(const Scene& scene, const Facts& facts, const ClosedForm& form);
 
 }  // namespace polhode
