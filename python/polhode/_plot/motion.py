@@ -101,6 +101,8 @@ def plot(motion: Motion, *parts: str) -> Figure:
 def _words(motion: Motion, curve: Curve) -> tuple[str, str]:
     scene = motion.scene
     acting = ", ".join(type(torque).__name__ for torque in scene.torques) or "no torque"
+    if scene.rotors:
+        acting += f"; {len(scene.rotors)} rotor" + ("s" if len(scene.rotors) > 1 else "")
     moments = ", ".join(f"{m:.4g}" for m in scene.inertia.moments)
     under = f"moments {moments} kg m²; {acting}; {len(motion)} samples by {motion.plan.method}"
     if not curve.whole:
