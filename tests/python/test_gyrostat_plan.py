@@ -128,6 +128,15 @@ def test_events_and_dense_output():
     np.testing.assert_allclose(motion([3.3])[0], between[0], rtol=1e-14)
 
 
+def test_rotors_beside_damping_are_stepped():
+    """Damping takes J omega, and h stays: no change of time turns this into a free motion."""
+    some = scene(torques=[ph.torques.AngularDamping(0.3)], times=np.linspace(0, 5, 21))
+    motion = ph.solve(some, 1e-10)
+    assert motion.plan.method != "exact" and any("keep their momentum" in reason for reason in motion.plan.reasons)
+    truth = _core.reference(some, 30, 1e-20, 10**6)
+    assert rates_error(motion.omega, truth[0]) <= motion.error
+
+
 def test_a_method_may_still_be_asked_for():
     plan = ph.plan(scene(), method="taylor")
     assert plan.method == "taylor" and not any("No closed form" in reason for reason in plan.reasons)

@@ -131,7 +131,8 @@ void explain_steps(const Scene& scene, const Facts& facts, const SolveOptions& o
       reasons.push_back("Lagrange's equations were requested, so they are integrated.");
   } else if (has(scene, "Gravity") && facts.torques.acting == 1 + facts.torques.rotors) {
     reasons.push_back("Gravity acts, but no closed form is known: " + explain_no_closed_form(scene, facts) + ".");
-  } else if (has(scene, "Damping") && facts.torques.acting == 1) {
+  } else if ((has(scene, "Damping") || has(scene, "AngularDamping")) &&
+             facts.torques.acting == 1 + facts.torques.rotors) {
     reasons.push_back("Damping acts, but no closed form is known: " + explain_no_closed_form(scene, facts) + ".");
   } else {
     reasons.push_back("No closed form is known with these torques, so the equations are integrated.");
