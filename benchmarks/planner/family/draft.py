@@ -18,6 +18,7 @@ class Draft:
     turns: float                                    # span x pace / 2 pi
     grid: np.ndarray
     torques: list = field(default_factory=list)     # (torque, its windows or None)
+    rotors: list = field(default_factory=list)      # (axis, its numbers by name, its windows or None)
     axes: ph.Rotation | None = None                 # of the principal axes in the body
     late: float = 0.0                               # time of the start, in spans
     want: tuple = ("omega", "attitude")
@@ -36,6 +37,9 @@ class Draft:
     def add(self, torque, windows=None):
         self.torques.append((torque, windows))
 
+    def add_rotor(self, axis, windows=None, **numbers):
+        self.rotors.append((axis, numbers, windows))
+
     def finish(self, name):
         moments, span = self.inertia_unit * self.moments, self.time_unit * self.span
         inertia, omega = moments, self.omega
@@ -48,8 +52,11 @@ class Draft:
         for torque, windows in self.torques:
             torque = scale(torque, self.inertia_unit, self.time_unit)
             torques.append(torque if windows is None else ph.torques.During(torque, t0 + span * np.asarray(windows)))
+        rotors = [ph.Rotor(axis, **scale_rotor(numbers, self.inertia_unit, self.time_unit),
+                           during=None if windows is None else t0 + span * np.asarray(windows))
+                  for axis, numbers, windows in self.rotors]
         return ph.Scene(inertia=inertia, omega=omega / self.time_unit, attitude=self.attitude, torques=torques, t0=t0,
-                        times=t0 + span * self.grid, want=self.want, name=name)
+                        rotors=rotors, times=t0 + span * self.grid, want=self.want, name=name)
 
 
 def scale(torque, inertia, time):
@@ -63,5 +70,13 @@ def scale(torque, inertia, time):
             return ph.torques.GravityGradient(torque.mean_motion / time, torque.phase)
         case ph.torques.Damping():
             return ph.torques.Damping(np.asarray(torque.matrix) * (inertia / time))
+        case ph.torques.AngularDamping():
+            return ph.torques.AngularDamping(torque.rate / time)
         case ph.torques.Custom():
             return ph.torques.Custom(torque.function.scaled(inertia, time))
+
+
+def scale_rotor(numbers, inertia, time):
+    """The same rotor in other units."""
+    units = {"momentum": inertia / time, "inertia": inertia, "speed": 1 / time}
+    return {name: value * units[name] if name in units else value for name, value in numbers.items()}

@@ -1,7 +1,7 @@
 """The kinds, and scenes drawn from them.
 
 A kind changes a draft: STARTS the body and its start, TIMES what is asked for, TORQUES what acts. A scene of a kind of
-starts or times gets one kind of torques at random. "mixed" takes of all. Kinds with rotors belong in TORQUES.
+starts or times gets one kind of torques at random. "mixed" takes of all.
 """
 
 from dataclasses import dataclass
@@ -74,6 +74,8 @@ def write_python(scene):
                 return f"ph.torques.GravityGradient({torque.mean_motion!r}, {torque.phase!r})"
             case ph.torques.Damping():
                 return f"ph.torques.Damping({numbers(torque.matrix)})"
+            case ph.torques.AngularDamping():
+                return f"ph.torques.AngularDamping({torque.rate!r})"
             case ph.torques.During():
                 return f"ph.torques.During({write(torque.torque)}, {numbers(torque.windows)})"
             case _:
@@ -81,6 +83,7 @@ def write_python(scene):
 
     matrix = scene.inertia.matrix
     diagonal = np.array_equal(matrix, np.diag(np.diag(matrix)))
+    rotors = f"rotors={list(scene.rotors)!r}, ".replace("Rotor(", "ph.Rotor(") if scene.rotors else ""
     return (f"ph.Scene(inertia={numbers(np.diag(matrix) if diagonal else matrix)}, omega={numbers(scene.omega)}, "
             f"attitude={numbers(scene.attitude)}, torques=[{', '.join(map(write, scene.torques))}], "
-            f"times={numbers(scene.times)}, want={list(scene.want)!r}, t0={scene.t0!r}, name={scene.name!r})")
+            f"{rotors}times={numbers(scene.times)}, want={list(scene.want)!r}, t0={scene.t0!r}, name={scene.name!r})")

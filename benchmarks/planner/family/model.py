@@ -6,7 +6,7 @@ In principal axes, with time in units of `unit`, w' = k w w + a + D w + (matrice
     turning  u = cos(a) r_x + sin(a) r_y, a = n t + phase: gravity gradients are 3 n^2 u x I u, turning fields m x b u
 
 Every torque is linear in coefficients. Those that act at a time are added, so that windows change numbers alone.
-A rotor's momentum h is a part of D: -w x h.
+A rotor's momentum h is a part of D: -w x h. The inertia is that without the axial moments of free rotors.
 """
 
 from dataclasses import dataclass
@@ -94,13 +94,17 @@ class Body:
     """A scene's body in its principal axes, exactly, but for the 50 digits."""
 
     def __init__(self, scene):
-        tensor = np.asarray(scene.inertia.matrix)
+        tensor = mp.matrix(np.asarray(scene.inertia.matrix).tolist())
+        for rotor in scene.rotors:
+            if rotor.free and rotor.inertia is not None:
+                axis = unit_axis(rotor)
+                tensor -= mp.mpf(rotor.inertia) * axis * axis.T
         self.R = mp.eye(3)                # principal axes to body axes
         self.turn = [mp.mpf(0)] * 3 + [mp.mpf(1)]
-        if np.array_equal(tensor, np.diag(np.diag(tensor))):
-            self.moments = vector(np.diag(tensor))
+        if all(tensor[i, j] == 0 for i in range(3) for j in range(3) if i != j):
+            self.moments = mp.matrix([tensor[i, i] for i in range(3)])
         else:
-            self.moments, self.R = mp.eigsy(mp.matrix(tensor.tolist()))
+            self.moments, self.R = mp.eigsy(tensor)
             if mp.det(self.R) < 0:
                 self.R = -self.R
             self.turn = write_quaternion(self.R)
@@ -110,6 +114,16 @@ class Body:
         given = [mp.mpf(float(v)) for v in scene.attitude]
         length = mp.sqrt(sum(v * v for v in given))
         self.attitude = multiply([v / length for v in given], self.turn)
+        self.start = vector(scene.omega)
+
+    def momentum(self, rotor):
+        """A rotor's part of h in principal axes."""
+        axis, size = unit_axis(rotor), rotor.momentum
+        if size is None:
+            relative = mp.mpf(rotor.speed)
+            own = (axis.T * self.start)[0] if rotor.free else 0
+            size = mp.mpf(rotor.inertia) * (relative + own)
+        return self.R.T * (mp.mpf(size) * axis)
 
     def accelerate(self, matrix):
         """Divide the rows by the moments."""
@@ -117,6 +131,11 @@ class Body:
 
     def principal(self, values):
         return self.R.T * vector(values)
+
+
+def unit_axis(rotor):
+    axis = vector(rotor.axis)
+    return axis / mp.sqrt((axis.T * axis)[0])
 
 
 def write_quaternion(R):
@@ -136,7 +155,7 @@ def write_quaternion(R):
 
 
 class Coefficients:
-    """The numbers of one torque, by the names of the parameters; what is not there is 0."""
+    """The numbers of one torque or rotor, by the names of the parameters; what is not there is 0."""
 
     def __init__(self, body, torque, t0):
         self.a, self.D, self.drag = mp.zeros(3, 1), mp.zeros(3), mp.zeros(3, 1)
@@ -161,6 +180,10 @@ class Coefficients:
                 self.D = body.accelerate(-(body.R.T * C * body.R))
             case ph.torques.AngularDamping():
                 self.D = one * mp.mpf(-float(torque.rate))
+            case ph.torques.AngularDamping():
+                self.D = one * mp.mpf(-torque.rate)
+            case ph.Rotor():
+                self.D = body.accelerate(cross(body.momentum(torque)))
             case ph.torques.Custom(function=Brake() as own):
                 self.D = body.accelerate(one * mp.mpf(-own.c))
             case ph.torques.Custom(function=Wheel() as own):

@@ -1,4 +1,4 @@
-"""Kinds by the torques that act. Each adds to a draft what makes it that kind, and may turn its start."""
+"""Kinds by the torques and rotors that act. Each adds to a draft what makes it that kind, and may turn its start."""
 
 import numpy as np
 
@@ -220,3 +220,66 @@ def custom(dice, draft):
     if dice.chance(0.4):
         dice.pick((constant_body, gradient, damping_soft))(dice, draft)
     draft.turns = min(draft.turns, 6.0)
+
+
+@kind
+def angular_damping(dice, draft):
+    """Damping proportional to the angular momentum; some of it drives the body."""
+    draft.add(ph.torques.AngularDamping(dice.decade(-3, 1) / draft.span * dice.pick((1.0, 1.0, -0.3))))
+
+
+@kind
+def pendulum(dice, draft):
+    """A heavy body that swings about a horizontal principal axis, with less or more energy than the upright rest."""
+    axis, up, arm = np.eye(3)[dice.order()]
+    turn = ph.Rotation.from_matrix(np.array([axis, np.cross(up, axis), up]))   # body `up` is vertical
+    draft.attitude = (turn * ph.Rotation.from_rotvec(dice.uniform(-np.pi, np.pi) * axis)).as_quat()
+    ratio = dice.decade(-2, 1)
+    draft.omega = draft.pace * axis * dice.pick((0.0, 1.0, dice.decade(-6, 0)))
+    angle = dice.uniform(-np.pi, np.pi)
+    add_weight(dice, draft, ratio, np.cos(angle) * up + np.sin(angle) * arm)
+
+
+@kind
+def rotors(dice, draft):
+    """One to three rotors at constant relative speeds."""
+    for _ in range(dice.whole(1, 3)):
+        draft.add_rotor(dice.direction(), momentum=draft.moments.max() * draft.pace * dice.decade(-2, 1))
+
+
+@kind
+def rotors_free(dice, draft):
+    """One or two rotors that are free on their bearings."""
+    for _ in range(dice.whole(1, 2)):
+        draft.add_rotor(dice.pick((dice.direction(), np.eye(3)[dice.whole(0, 2)])), free=True,
+                        inertia=draft.moments.min() * dice.decade(-3, -0.7),
+                        speed=draft.pace * dice.decade(-1, 2) * dice.sign())
+
+
+@kind
+def rotors_driven(dice, draft):
+    """Rotors, and a torque of the library."""
+    rotors(dice, draft)
+    dice.pick(LASTING)(dice, draft)
+
+
+@kind
+def rotors_windows(dice, draft):
+    """Rotors that start and stop; sometimes one that always rotates, or a torque."""
+    for _ in range(dice.whole(1, 2)):
+        draft.add_rotor(dice.direction(), dice.breaks(2 * dice.whole(1, 4), -0.1, 1.1).reshape(-1, 2),
+                        momentum=draft.moments.max() * draft.pace * dice.decade(-2, 0.5))
+    if dice.chance(0.3):
+        rotors(dice, draft)
+    if dice.chance(0.3):
+        dice.pick(LASTING)(dice, draft)
+
+
+@kind
+def rotor_critical(dice, draft):
+    """A spin about a principal axis with a rotor that makes it almost as stable as unstable (Hughes 1986, ch. 6)."""
+    i, j, _ = dice.order()
+    axis = np.eye(3)[i]
+    draft.omega = draft.pace * (axis + dice.pick((0.0, dice.decade(-12, -2))) * dice.direction())
+    critical = (draft.moments[j] - draft.moments[i]) * draft.pace
+    draft.add_rotor(axis, momentum=critical * (1 + dice.sign() * dice.decade(-12, -1)))

@@ -1,7 +1,8 @@
 """The exact motion of a scene's float64 inputs, by heyoka's Taylor series: another author's code, and 64-bit mantissas.
 
 The second opinion is the same with 113 bits, another order and another tolerance. The attitude's start is the unit
-quaternion of what the scene holds. The span is divided at the ends of windows.
+quaternion of what the scene holds. The span is divided at the ends of windows. Where a rotor starts or stops there, the
+momentum is continuous and the rates jump.
 """
 
 import functools
@@ -39,7 +40,7 @@ def compute_truth(scene, digits="long", most_steps=40_000):
     body = Body(scene)
     t0 = mp.mpf(scene.t0)
     lasting = [torque.torque if isinstance(torque, ph.torques.During) else torque for torque in scene.torques]
-    torques = [Coefficients(body, torque, t0) for torque in lasting]
+    torques = [Coefficients(body, one, t0) for one in (*lasting, *scene.rotors)]
     turning = [one for one in torques if one.turning is not None]
     structure = Structure(any(one.on_rows for one in torques), len(turning), any(one.on_drag for one in torques))
     unit = choose_unit(scene, body, torques)
@@ -52,7 +53,10 @@ def compute_truth(scene, digits="long", most_steps=40_000):
     start = convert(real, [*(v * unit for v in body.omega), *body.attitude])
     windows = [torque.windows if isinstance(torque, ph.torques.During) else ((-np.inf, np.inf),)
                for torque in scene.torques]
-    run = Run(integrator, base, acting, windows, lambda t: (t.astype(real) - np.array(scene.t0).astype(real)) /
+    windows += [((-np.inf, np.inf),) if rotor.during is None else rotor.during for rotor in scene.rotors]
+    jumps = [np.zeros(3).astype(real)] * len(lasting)
+    jumps += [convert(real, [v * unit for v in body.accelerate(body.momentum(rotor))]) for rotor in scene.rotors]
+    run = Run(integrator, base, acting, windows, jumps, lambda t: (t.astype(real) - np.array(scene.t0).astype(real)) /
               np.array(unit).astype(real))
     states = run(start, scene.t0, np.asarray(scene.times), most_steps)
     return None if states is None else finish(scene, body, states, unit, run.steps)
@@ -83,8 +87,8 @@ def make_integrator(structure, digits):
 class Run:
     """A motion in both directions from its start, piece by piece between the ends of windows. Times are the scene's."""
 
-    def __init__(self, integrator, base, acting, windows, convert_times):
-        self.integrator, self.base, self.acting, self.windows = integrator, base, acting, windows
+    def __init__(self, integrator, base, acting, windows, jumps, convert_times):
+        self.integrator, self.base, self.acting, self.windows, self.jumps = integrator, base, acting, windows, jumps
         self.convert_times, self.steps = convert_times, 0
 
     def __call__(self, start, t0, times, most_steps):
@@ -95,21 +99,27 @@ class Run:
                 continue
             ends = {end for windows in self.windows for window in windows for end in window
                     if sign * t0 < sign * end < sign * wanted[-1]}
-            now = t0
+            now, still = t0, 0 * start[:3]
+            spun = self.add(self.jumps, still, t0, np.nextafter(t0, np.inf))
             for end in [*sorted(ends, reverse=sign < 0), wanted[-1]]:
                 grid = [now, *(t for t in wanted if sign * now < sign * t < sign * end), end]
-                found = self.go(states[now], grid, most_steps - self.steps)
+                begin, before, spun = states[now].copy(), spun, self.add(self.jumps, still, *sorted((now, end)))
+                begin[:3] -= spun - before
+                found = self.go(begin, grid, most_steps - self.steps)
                 if found is None:
                     return None
                 states.update(zip(grid[1:], found[1:], strict=True))
                 now = end
         return np.array([states[t] for t in times], dtype=start.dtype)
 
+    def add(self, rows, start, low, high):
+        """The start and the rows of what acts throughout a stretch of time."""
+        return sum((row for row, windows in zip(rows, self.windows, strict=True)
+                    if any(begin <= low and high <= end for begin, end in windows)), start)
+
     def go(self, state, grid, most_steps):
         """States at a grid of times, throughout which the same torques act."""
-        low, high = sorted((grid[0], grid[-1]))
-        self.integrator.pars[:] = sum((numbers for numbers, windows in zip(self.acting, self.windows, strict=True)
-                                       if any(begin <= low and high <= end for begin, end in windows)), self.base)
+        self.integrator.pars[:] = self.add(self.acting, self.base, *sorted((grid[0], grid[-1])))
         grid = self.convert_times(np.array(grid))
         self.integrator.time, self.integrator.state[:] = grid[0], state
         outcome, _, _, steps, _, found = self.integrator.propagate_grid(grid, max_steps=max(most_steps, 1))
