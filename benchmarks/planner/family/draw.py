@@ -83,7 +83,7 @@ def write_python(scene):
 
     matrix = scene.inertia.matrix
     diagonal = np.array_equal(matrix, np.diag(np.diag(matrix)))
-    rotors = f"rotors={list(scene.rotors)!r}, ".replace("Rotor(", "ph.Rotor(") if scene.rotors else ""
+    rotors = f"rotors={list(scene.rotors)!r}, ".replace("polhode.", "ph.") if scene.rotors else ""
     return (f"ph.Scene(inertia={numbers(np.diag(matrix) if diagonal else matrix)}, omega={numbers(scene.omega)}, "
             f"attitude={numbers(scene.attitude)}, torques=[{', '.join(map(write, scene.torques))}], "
             f"{rotors}times={numbers(scene.times)}, want={list(scene.want)!r}, t0={scene.t0!r}, name={scene.name!r})")
