@@ -13,6 +13,7 @@ import numpy as np
 import polhode as ph
 
 from .model import Body, Coefficients, Structure, build_equations, list_numbers, list_phases, mp, multiply
+from .plane import compute_swing, find_plane
 
 try:
     import heyoka
@@ -42,8 +43,13 @@ def compute_truth(scene, digits="long", most_steps=40_000):
     lasting = [torque.torque if isinstance(torque, ph.torques.During) else torque for torque in scene.torques]
     torques = [Coefficients(body, one, t0) for one in (*lasting, *scene.rotors)]
     turning = [one for one in torques if one.turning is not None]
-    structure = Structure(any(one.on_rows for one in torques), len(turning), any(one.on_drag for one in torques))
     unit = choose_unit(scene, body, torques)
+    axis = find_plane(scene, body)
+    if axis is not None:
+        real = np.longdouble if digits == "long" else heyoka.real128
+        states, steps = compute_swing(heyoka, scene, body, axis, real, convert, unit, most_steps)
+        return None if states is None else finish(scene, body, states, unit, steps)
+    structure = Structure(any(one.on_rows for one in torques), len(turning), any(one.on_drag for one in torques))
     real, integrator = make_integrator(structure, digits)
     slots = iter(range(len(turning)))
     acting = [convert(real, list_numbers(structure, [0] * 3, one, None if one.turning is None else next(slots), unit))

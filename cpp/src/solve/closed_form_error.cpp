@@ -71,12 +71,17 @@ class InputError {
       }
     }
     for (int i = 0; i < 3; ++i) lost[i] += std::abs((sum[i] - math::DD(h_[i])).hi);
-    const double part = lost.cwiseAbs().maxCoeff() / h_.cwiseAbs().maxCoeff();
+    const double part = lost.maxCoeff() / h_.cwiseAbs().maxCoeff();
     if (part == 0.0) return 0.0;
-    const auto shifted = [&](double sign) {
-      return make(scene_.inertia_B(), scene_.omega(), h_ + sign * (nudge / part) * signs.cwiseProduct(lost));
-    };
-    return (part / nudge) * compare(shifted(1), shifted(-1));
+    const ClosedForm form = make(scene_.inertia_B(), scene_.omega(), h_);
+    double error = 0.0;   // one component may undo what another does: each is changed alone
+    for (int i = 0; i < 3; ++i) {
+      if (lost[i] == 0.0) continue;
+      Vector3d h = h_;
+      h[i] += (nudge / part) * lost[i];
+      error += 2 * (part / nudge) * compare(form, make(scene_.inertia_B(), scene_.omega(), h));
+    }
+    return error;
   }
 
   /// Of the rates across the axis of a top with a rotor: they come from a plain top that rotates faster by h / C, and

@@ -97,6 +97,7 @@ Motion solve_exact_pieces(const Decision& decision, const SolveOptions& options)
   Motion motion = run_planned(decision, scene, options, 0.0, false);
   motion.plan = decision.plan;
   motion.asked = decision.plan.accuracy;
+  constexpr double safety = 1.5;
   constexpr std::size_t most = 256;   // samples to compare: the error grows along the span
   const std::size_t n = motion.t.size(), stride = std::max<std::size_t>(1, n / most);
   SceneParts parts = scene.parts();
@@ -111,9 +112,13 @@ Motion solve_exact_pieces(const Decision& decision, const SolveOptions& options)
   if (!parts.times.empty()) {
     SolveOptions comparison = options;
     comparison.dense = false, comparison.events.clear(), comparison.progress = {};
-    const Motion other = run_planned(decision, perturb(Scene(std::move(parts))), comparison, 0.0, true);
-    motion.error += 1.5 * compute_distance(other.t.size(), scene.omega().norm(), get_data(omega), get_data(attitude),
-                                           get_data(other.omega), get_data(other.attitude));
+    ode::ErrorTrace trace{.asked = decision.plan.accuracy / safety};
+    const Motion other = run_planned(decision, perturb(Scene(std::move(parts))), comparison, 0.0, true, &trace);
+    const double apart = compute_distance(other.t.size(), scene.omega().norm(), get_data(omega), get_data(attitude),
+                                          get_data(other.omega), get_data(other.attitude));
+    // The errors of two runs may by chance be alike; those carried along are other samples of them.
+    const double rates = other.omega.empty() || trace.rate_error == 0.0 ? 0.0 : trace.rate_error / other.omega_scale();
+    motion.error += safety * std::max({apart, rates, other.attitude.empty() ? 0.0 : trace.attitude_error});
   }
   ++motion.runs;
   motion.error_kind = motion.error <= motion.asked ? "bounded" : "limit";
