@@ -205,7 +205,8 @@ class LongDoubleSeries {
   }
 
   void add(const torques::AngularDamping& torque, Real, int n, Real* tau) const {
-    for (int i = 0; i < 3; ++i) tau[i] -= Real(torque.rate()) * L_[index(i)][index(n)];
+    for (int i = 0; i < 3; ++i)   // of the body's own momentum: h stays
+      tau[i] -= Real(torque.rate()) * (L_[index(i)][index(n)] - (n == 0 ? h_[index(i)] : 0));
   }
 
   void add(const torques::Custom&, Real, int, Real*) const {
