@@ -52,6 +52,9 @@ class Draft:
         for torque, windows in self.torques:
             torque = scale(torque, self.inertia_unit, self.time_unit)
             torques.append(torque if windows is None else ph.torques.During(torque, t0 + span * np.asarray(windows)))
+        if any(isinstance(torque, ph.torques.GravityGradient) for torque, _ in self.torques):
+            for _, numbers, _ in self.rotors:   # free ones are refused there
+                numbers.pop("free", None)
         rotors = [ph.Rotor(axis, **scale_rotor(numbers, self.inertia_unit, self.time_unit),
                            during=None if windows is None else t0 + span * np.asarray(windows))
                   for axis, numbers, windows in self.rotors]
