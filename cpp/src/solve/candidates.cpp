@@ -20,7 +20,7 @@ struct FormCost {
 };
 constexpr FormCost free_cost{"", 1.5e-6, 8e-9};
 constexpr FormCost form_costs[] = {{"heavy_top", 3.6e-6, 9e-9},  {"heavy_gyrostat", 3.6e-6, 3.5e-8},
-                                   {"gyrostat", 2e-5, 1.2e-8},   {"damped_free", 2e-6, 3.5e-8},
+                                   {"gyrostat", 2.8e-5, 1.2e-8},   {"damped_free", 2e-6, 3.5e-8},
                                    {"pendulum", 1e-5, 1e-8}};
 // Decay x span from which an implicit method may be chosen: below, stability limits no explicit step.
 constexpr double least_implicit_stiffness = 50.0;

@@ -57,7 +57,7 @@ class InputError {
   }
 
   /// Of the sum of the rotors' momenta.
-  double measure_rotors() const {
+  double measure_rotors(const ClosedForm& form) const {
     if (!facts_.torques.rotors) return 0.0;
     math::DD sum[3] = {};
     Vector3d lost = Vector3d::Zero();
@@ -73,7 +73,6 @@ class InputError {
     for (int i = 0; i < 3; ++i) lost[i] += std::abs((sum[i] - math::DD(h_[i])).hi);
     const double part = lost.maxCoeff() / h_.cwiseAbs().maxCoeff();
     if (part == 0.0) return 0.0;
-    const ClosedForm form = make(scene_.inertia_B(), scene_.omega(), h_);
     double error = 0.0;   // one component may undo what another does: each is changed alone
     for (int i = 0; i < 3; ++i) {
       if (lost[i] == 0.0) continue;
@@ -158,7 +157,7 @@ class InputError {
   ClosedForm make(const InertiaTensor& inertia, const Vector3d& omega, const Vector3d& h) const {
     if (damping_) return ClosedForm(DampedFree(inertia, damping_->rate, omega));
     if (axis_ >= 0) return ClosedForm(HeavyTop(inertia, weight_arm_, omega, scene_.attitude(), h[axis_]));
-    if (facts_.torques.rotors) return ClosedForm(Gyrostat(inertia, h, omega));
+    if (facts_.torques.rotors) return ClosedForm(Gyrostat(inertia, h, omega, scene_.attitude()));
     return ClosedForm(FreeMotion(inertia, omega));
   }
 
@@ -198,7 +197,7 @@ double compute_closed_form_error(const Scene& scene, const Facts& facts, const C
   double error = 20 * epsilon;
   if (scene.t0() != 0.0) error += inputs.measure_times();
   if (form.model() == "pendulum") return error;   // the product of weight and arm is a double-double there
-  return error + inputs.measure_weight(form) + inputs.measure_damping() + inputs.measure_rotors() +
+  return error + inputs.measure_weight(form) + inputs.measure_damping() + inputs.measure_rotors(form) +
          inputs.measure_inertia() + inputs.measure_birth(form) +
          inputs.measure_energy(form) + inputs.measure_turning(form);
 }
