@@ -1,16 +1,20 @@
-"""Triangles from mesh files: STL directly; OBJ, PLY and glTF by trimesh (the `mesh` extra).
+"""Triangles from mesh files: STL directly; OBJ, PLY, OFF, glTF and COLLADA by trimesh (the `mesh` extra).
 
 The counts in a file are compared with its size before anything is read.
 """
 
 from __future__ import annotations
 
+import contextlib
+import io
 import json
+import logging
 import os
 import pathlib
 import re
 import struct
 import urllib.parse
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -24,7 +28,7 @@ __all__ = ["read", "report"]
 Vertices = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int64]
 
-FORMATS = (".stl", ".obj", ".ply", ".gltf", ".glb")
+FORMATS = (".stl", ".obj", ".ply", ".gltf", ".glb", ".off", ".dae")
 
 
 def read(path: str | os.PathLike[str]) -> tuple[Vertices, Faces]:
@@ -33,12 +37,13 @@ def read(path: str | os.PathLike[str]) -> tuple[Vertices, Faces]:
     Parameters
     ----------
     path : str or PathLike
-        STL (binary or ASCII), OBJ, PLY or glTF, by its suffix.
+        STL (binary or ASCII), OBJ, PLY, OFF, glTF or COLLADA (.dae), by its suffix.
 
     Returns
     -------
     vertices : ndarray, shape (n, 3)
-        In the file's unit and order. An STL file has three vertices for each face.
+        In the file's unit and order. Of COLLADA in metres by its `<unit>`; its `<up_axis>` is left out, as by ROS
+        and Gazebo. An STL file has three vertices for each face.
     faces : ndarray, shape (m, 3)
         Indices of the vertices of each triangle.
 
@@ -51,7 +56,7 @@ def read(path: str | os.PathLike[str]) -> tuple[Vertices, Faces]:
     kind = file.suffix.lower()
     if kind not in FORMATS:
         raise InvalidInput(f"{file}: must be a mesh file, one of {', '.join(FORMATS)}; got {kind or 'no suffix'!r}")
-    data = _files.read(file, _files.MESH if kind in (".stl", ".ply", ".glb", ".obj") else _files.TEXT)
+    data = _files.read(file, _files.TEXT if kind == ".gltf" else _files.MESH)
     try:
         vertices, faces = _stl(data) if kind == ".stl" else _by_trimesh(file, data)
     except _Wrong as error:
@@ -137,8 +142,13 @@ def _ascii_stl(data: bytes) -> Vertices:
 
 def _by_trimesh(file: pathlib.Path, data: bytes) -> tuple[Vertices, Faces]:
     kind = file.suffix.lower()
+    unit = 1.0
     if kind == ".ply":
         _require_ply_claims(data)
+    elif kind == ".off":
+        _require_off_claims(data)
+    elif kind == ".dae":
+        unit = _collada_unit(data, file)
     elif kind != ".obj":
         _require_gltf_claims(kind, data, file)
     try:
@@ -147,11 +157,31 @@ def _by_trimesh(file: pathlib.Path, data: bytes) -> tuple[Vertices, Faces]:
         raise _Wrong(f"{kind} files need trimesh: pip install 'polhode[mesh]'") from None
     try:
         # No tidying: what the file holds is what is judged.
+        if kind == ".dae":
+            import collada  # type: ignore[import-untyped, unused-ignore]  # noqa: F401  before trimesh misses it
+
+            with _silent():   # its log is about textures
+                scene = trimesh.load(io.BytesIO(data), file_type="dae", force="scene", process=False)
+            vertices, faces = _join(scene)
+            return vertices * unit, faces
         return _join(trimesh.load(file, force="scene", process=False, maintain_order=True, skip_materials=True))
+    except ImportError:
+        raise _Wrong(f"{kind} files need pycollada: pip install 'polhode[mesh]'") from None
     except (MemoryError, _Wrong):
         raise
     except Exception as error:   # a reader of foreign bytes may raise anything
         raise _Wrong(f"cannot be read as {kind[1:].upper()}: {type(error).__name__}: {error}") from None
+
+
+@contextlib.contextmanager
+def _silent() -> Iterator[None]:
+    logger = logging.getLogger("trimesh")
+    level = logger.level
+    logger.setLevel(logging.CRITICAL + 1)
+    try:
+        yield
+    finally:
+        logger.setLevel(level)
 
 
 def _join(scene: Any) -> tuple[Vertices, Faces]:
@@ -184,6 +214,37 @@ def _require_ply_claims(data: bytes) -> None:
         if not count.isdigit() or int(count) > len(data):
             raise _Wrong(f"claims {count.decode(errors='replace')} of element {name.decode(errors='replace')}, but has "
                          f"{len(data)} bytes (cut short?)")
+
+
+def _require_off_claims(data: bytes) -> None:
+    counts = re.match(rb"\s*[A-Z4n]*OFF(?:\s*#[^\n]*\n)*\s+(\d{1,18})\s+(\d{1,18})", data)
+    if counts is None:
+        raise _Wrong("must begin with OFF and the counts of vertices and faces (cut short?)")
+    if max(int(counts[1]), int(counts[2])) > len(data):
+        raise _Wrong(f"claims {counts[1].decode()} vertices and {counts[2].decode()} faces, but has {len(data)} bytes "
+                     "(cut short?)")
+
+
+def _collada_unit(data: bytes, file: pathlib.Path) -> float:
+    """Refuse entities, and return the length of the file's unit [m]."""
+    from .inertia.robots.xml import parse_bytes
+
+    try:
+        root = parse_bytes(data, str(file))
+    except InvalidInput as error:
+        raise _Wrong(str(error).removeprefix(f"{file}: ")) from None
+    for node in root.walk():
+        if node.tag == "unit" and node.parent is not None and node.parent.tag == "asset":
+            try:
+                length = float(node.get("meter") or "1")
+            except ValueError:
+                length = 0.0
+            if not 1e-12 < length < 1e12:
+                raise _Wrong(f"has a unit of {node.get('meter')!r} m")
+            return length
+        if node.tag.startswith("library_"):
+            break
+    return 1.0
 
 
 def _require_gltf_claims(kind: str, data: bytes, file: pathlib.Path) -> None:

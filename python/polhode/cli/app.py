@@ -174,30 +174,43 @@ def methods(as_json: Json = False) -> int:
 
 @_command
 def inertia(
-    file: Annotated[str, typer.Argument(
-        help="A robot (URDF, MJCF, SDF), a mesh (STL, OBJ, PLY, glTF), a TOML file with a [body] table, or the name "
-             "of a scene.")],
+    files: Annotated[list[str], typer.Argument(
+        help="Robots (URDF, MJCF, SDF, xacro), folders of them, or - for stdin. Or one mesh (STL, OBJ, PLY, OFF, glTF, "
+             "COLLADA). Or one TOML file with a [body] table, or the name of a scene.")],
     density: Annotated[float | None, typer.Option(help="Density of a mesh [kg/m^3].")] = None,
     mass: Annotated[float | None, typer.Option(help="Mass of a mesh [kg].")] = None,
     unit: Annotated[str, typer.Option(help="Unit of a mesh: m, cm, mm, um, in, ft, or a length [m].")] = "m",
     flip: Annotated[bool, typer.Option("--flip", help="Reverse the faces of a mesh that is wound inward.")] = False,
+    form: Annotated[str, typer.Option(
+        "--format", help="Of robots: text, json, sarif, junit or github.")] = "text",
+    fail_on: Annotated[str, typer.Option(
+        help="Of robots: the level from which the exit status is 1: error, warning or remark.")] = "warning",
+    ignore: Annotated[list[str] | None, typer.Option(
+        help="Of robots: excuse findings, by LINK=reason or a TOML file of rules. May be repeated.")] = None,
+    path: Annotated[list[str] | None, typer.Option(
+        help="Of robots: a folder where packages, models and meshes are. May be repeated.")] = None,
+    package: Annotated[list[str] | None, typer.Option(
+        help="Of robots: NAME=FOLDER of a package. May be repeated.")] = None,
+    fix: Annotated[bool, typer.Option(
+        "--fix", help="Of robots: write NAME.fixed.SUFFIX with the numbers of named causes repaired.")] = False,
+    xacro: Annotated[bool, typer.Option(help="Of robots: expand .xacro files, where xacro is installed.")] = True,
     as_json: Json = False,
 ) -> int:
-    """Check the inertia of a body, or of every link of a robot.
+    """Check the inertia of a body, or of every link of robots.
 
     Prints moments, principal axes, symmetry, and whether such a body can exist. For robots it prints what is wrong and
     the likely cause.
     """
     from . import part, robot
 
-    if robot.is_robot(file):
+    options = robot.Options("json" if as_json else form, fail_on, tuple(ignore or ()), tuple(path or ()),
+                            tuple(package or ()), fix, xacro)
+    file = files[0]
+    if len(files) > 1 or robot.is_robot(file):
         _only_for_meshes(density=density, mass=mass, unit=unit != "m", flip=flip)
-        content = robot.examine(file)
-        if as_json:
-            _print_json(content)
-        else:
-            show.robot(content)
-        return 0 if content["valid"] else 1
+        return robot.run(files, options)
+    if name := options.given() or ("--format" if form not in ("text", "json") else ""):
+        raise InvalidInput(f"{name}: must be used with robots, got another file")
     if part.is_mesh(file):
         finding = part.examine(file, density, mass, unit, flip)
     else:
@@ -205,7 +218,7 @@ def inertia(
         from .body import examine
 
         finding = examine(file)
-    if as_json:
+    if options.form == "json":
         _print_json(finding)
     else:
         show.body(finding)

@@ -1,75 +1,123 @@
-"""Findings about a robot description: one line for each link, and advice for each finding."""
+"""Findings about robot descriptions: what a call asks for, and what it prints."""
 
 from __future__ import annotations
 
-import math
+import dataclasses
 import pathlib
-from typing import Any
+import sys
 
-import numpy as np
-
+from .. import _files
+from .._core import InvalidInput
 from ..inertia import robots
-from ..inertia.findings import Finding
-from ..inertia.robots import Link
+from ..inertia.codes import LEVELS
+from ..inertia.robots.files import STDIN
+from ..inertia.robots.ignore import rules
+from ..inertia.robots.paths import Search
+from ..inertia.robots.report import Report, check, check_file, to_dict
+from . import formats, show_robots
+
+FORMATS = ("text", "json", "sarif", "junit", "github")
+
+
+@dataclasses.dataclass(frozen=True)
+class Options:
+    """The options of `polhode inertia` that are for robots."""
+
+    form: str = "text"
+    fail_on: str = "warning"
+    ignore: tuple[str, ...] = ()
+    path: tuple[str, ...] = ()
+    package: tuple[str, ...] = ()
+    fix: bool = False
+    xacro: bool = True
+
+    def given(self) -> str:
+        """The first option that only robots have, or ""."""
+        return next((f"--{name.replace('_', '-')}" for name in ("fail_on", "ignore", "path", "package", "fix", "xacro")
+                     if getattr(self, name) != getattr(Options(), name)), "")
 
 
 def is_robot(file: str) -> bool:
-    """Return True if the suffix is that of a robot description."""
-    return pathlib.Path(file).suffix.lower() in robots.suffixes
+    """Return True for a folder, for stdin, and for the suffix of a robot description."""
+    path = pathlib.Path(file)
+    return file == STDIN or path.suffix.lower() in robots.suffixes or path.is_dir()
 
 
-def examine(file: str) -> dict[str, Any]:
-    """Check every link of a file."""
-    robot = robots.read(file)
-    links = [_plain(_link(link)) for link in robot.links]
-    return {"file": str(file), "format": robot.kind, "name": robot.name,
-            "valid": not any(link["findings"] for link in links), "notes": robot.notes, "links": links}
+def run(files: list[str], options: Options) -> int:
+    """Check files and folders, print what was found, and return the exit status."""
+    if options.form not in FORMATS:
+        raise InvalidInput(f"--format: must be one of {', '.join(FORMATS)}; got {options.form!r}")
+    if options.fail_on not in LEVELS:
+        raise InvalidInput(f"--fail-on: must be error, warning or remark; got {options.fail_on!r}")
+    excuses = rules(options.ignore)
+    packages = dict(_package(text) for text in options.package)
+    if STDIN in files:
+        if files != [STDIN]:
+            raise InvalidInput("-: stdin must be the only file")
+        reports = [_from_stdin(Search.of(options.path, packages), excuses)]
+    else:
+        reports = check(list(files), path=options.path, package=packages, ignore=excuses, xacro=options.xacro)
+    if not reports:
+        raise InvalidInput(f"{files[0]}: must hold a robot description: URDF, SDF, MJCF or xacro")
+    alone = len(files) == 1 and not pathlib.Path(files[0]).is_dir()
+    if all(report.error for report in reports):
+        if alone:
+            raise InvalidInput(reports[0].error)
+        for report in reports[:10]:
+            print(f"polhode: {report.error}", file=sys.stderr)
+        return 2
+    stale = [f"ignore {rule}: no longer applies ({rule.reason})" for rule in excuses if not rule.used]
+    if options.fix:
+        for report in reports:
+            _write_repaired(report)
+    _print(reports, options, alone)
+    for line in stale:
+        print(line, file=sys.stderr)
+    return 1 if any(report.fails(options.fail_on) for report in reports) else 0
 
 
-def _link(link: Link) -> dict[str, Any]:
-    content: dict[str, Any] = {"name": link.name, "mass": link.mass, "com": None, "moments": None, "matrix": None,
-                               "verdict": f"not judged: {link.unjudged}", "findings": [], "notes": link.notes}
-    diagnosis = link.diagnose()
-    if diagnosis is None or link.matrix is None:
-        return content
-    content["com"] = link.pose.place.tolist()
-    content["verdict"] = diagnosis.verdict
-    if np.isfinite(link.matrix).all():
-        content["matrix"] = link.matrix.tolist()
-        content["moments"] = np.linalg.eigvalsh(link.matrix).tolist()
-        content["margin"] = diagnosis.margin
-    content["misfit"] = diagnosis.misfit
-    content["compared"] = bool(link.visual.parts or link.collision.parts or "from its geoms" in link.notes)
-    content["findings"] = [_finding(finding, link) for finding in diagnosis.findings]
-    return content
+def _package(text: str) -> tuple[str, str]:
+    name, equals, folder = text.partition("=")
+    if not (name and equals and folder):
+        raise InvalidInput(f"--package: must be NAME=FOLDER, got {text[:60]!r}")
+    return name, folder
 
 
-def _plain(content: Any) -> Any:
-    """Replace numbers that are not finite by None, because JSON has none."""
-    if isinstance(content, dict):
-        return {key: _plain(value) for key, value in content.items()}
-    if isinstance(content, list):
-        return [_plain(value) for value in content]
-    return None if isinstance(content, float) and not math.isfinite(content) else content
+def _from_stdin(search: Search, excuses: list[robots.Rule]) -> Report:
+    data = sys.stdin.buffer.read(_files.TEXT + 1)
+    if len(data) > _files.TEXT:
+        raise InvalidInput(f"stdin: must be at most {_files.TEXT // 1_000_000} MB")
+    return check_file(pathlib.Path("stdin"), search, excuses, data=data)
 
 
-def _finding(finding: Finding, link: Link) -> dict[str, Any]:
-    content = finding.to_dict()
-    if finding.com is not None:
-        com = link.pose.turn @ finding.com   # in the link's axes, as in the file
-        content["com"] = np.where(np.abs(com) < 1e-9 * np.abs(com).max(), 0.0, com).tolist()
-    return content
+def _write_repaired(report: Report) -> None:
+    if report.error:
+        return
+    file = pathlib.Path(report.file)
+    if report.file == "stdin":
+        raise InvalidInput("--fix: must be used with files, got stdin")
+    data, said = robots.repair(_files.read(file, _files.TEXT), report)
+    for line in said:
+        print(f"{report.file}: {line}", file=sys.stderr)
+    if any(line.endswith(": repaired") for line in said):
+        copy = file.with_name(f"{file.stem}.fixed{file.suffix}")
+        with _files.whole(copy) as draft:
+            draft.write_bytes(data)
+        print(f"wrote {copy}", file=sys.stderr)
 
 
-def advice(link: dict[str, Any], finding: dict[str, Any]) -> list[str]:
-    """Return the lines of a finding: what is wrong, the likely cause, and what to write instead."""
-    lines = [f"{link['name']}: {finding['text']}", f"likely   {finding['advice']}"]
-    fixed = []
-    if finding["mass"] is not None and finding["mass"] != link["mass"]:
-        fixed.append(f"mass {finding['mass']:.6g}")
-    if finding["com"] is not None and not np.allclose(finding["com"], link["com"], rtol=1e-9, atol=0):
-        fixed.append("centre of mass " + " ".join(f"{x:.6g}" for x in finding["com"]))
-    if finding["matrix"] is not None and (link["matrix"] is None or finding["matrix"] != link["matrix"]):
-        (xx, xy, xz), (_, yy, yz), (_, _, zz) = finding["matrix"]
-        fixed.append(f"ixx {xx:.6g}  iyy {yy:.6g}  izz {zz:.6g}  ixy {xy:.6g}  ixz {xz:.6g}  iyz {yz:.6g}")
-    return lines + ([f"write    {'; '.join(fixed)}"] if fixed else [])
+def _print(reports: list[Report], options: Options, alone: bool) -> None:
+    if options.form == "json":
+        contents = [to_dict(report, options.fail_on) for report in reports]
+        formats.write_json(contents[0] if alone else contents)
+    elif options.form == "sarif":
+        formats.write_json(formats.sarif(reports))
+    elif options.form == "junit":
+        print(formats.junit(reports, options.fail_on))
+    elif options.form == "github":
+        for line in formats.github(reports):
+            print(line)
+    elif alone:
+        show_robots.robot(to_dict(reports[0], options.fail_on))
+    else:
+        show_robots.robots([to_dict(report, options.fail_on) for report in reports])

@@ -193,38 +193,6 @@ def body(finding: dict[str, Any]) -> None:
         out.print(Text(f"note  {note}"))
 
 
-def robot(content: dict[str, Any]) -> None:
-    """Print the findings of a robot description: a table of its links, then advice for each finding."""
-    from .robot import advice
-
-    out = console()
-    links = content["links"]
-    wrong = sum(bool(link["findings"]) for link in links)
-    judged = sum(link["matrix"] is not None or bool(link["findings"]) for link in links)
-    out.print(Text(f"{content['format']} {content['name']}: {judged} of {len(links)} links judged, {wrong} wrong"))
-    table = _table("link", "mass [kg]", "principal moments [kg m^2]", "verdict", left=4)
-    for link in links:
-        mass = "-" if link["mass"] is None else f"{link['mass']:.6g}"
-        moments = "-" if link["moments"] is None else "  ".join(f"{x:.4g}" for x in link["moments"])
-        verdict = link["verdict"]
-        if link["findings"]:
-            verdict = "FINDING: " + ", ".join(dict.fromkeys(
-                f"{finding['what']} ({finding['cause']})" for finding in link["findings"]))
-        table.add_row(Text(link["name"]), mass, moments, Text(verdict))
-    out.print(table)
-    for link in links:
-        for finding in link["findings"]:
-            first, *rest = advice(link, finding)
-            out.print(Text("\n" + first))
-            for line in rest:
-                out.print(Text("  " + line))
-    notes = [f"{link['name']}: {note}" for link in links for note in link["notes"]] + content["notes"]
-    if bare := [link["name"] for link in links if not link.get("compared", True)]:
-        notes.append(f"no geometry to compare with: {', '.join(bare)}")
-    for note in ["", *notes] if notes else []:
-        out.print(Text(f"note  {note}" if note else ""))
-
-
 def _drifts(point: Point) -> tuple[str, str]:
     energy = [v for k, v in point.drift.items() if k in ("energy", "jacobi")]
     momentum = [v for k, v in point.drift.items() if k.endswith("momentum")]

@@ -152,6 +152,8 @@ def _explain(given: ev.Bodies, alone: ev.Evidence, broken: set[str], geometry: e
         scaled = ev.weigh(given, geometry.scaled(factor))
         causes.append(Cause("units", text, 2.0, given))
         totals = np.append(totals, scaled.score + 2.0 if scaled.sound()[0] else np.inf)
+    if not causes:
+        return None
     best = int(np.argmin(totals))
     return causes[best] if weighed.score[0] - totals[best] > CONVINCED else None
 

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from .codes import code_of
+
 Array = npt.NDArray[np.float64]
 
 IMPOSSIBLE = ("finite", "symmetric", "positive", "triangle", "mass")
@@ -21,20 +23,24 @@ class Finding:
     ----------
     what : str
         The violated condition. Impossible for any body: "finite", "symmetric", "positive", "triangle", "mass". Unlikely
-        for this body: "extent", "density", "size", "geometry".
+        for this body: "extent", "density", "size", "geometry". Of links also "unreadable", "massless", "marker".
     per_cent : float
         The size of the violation, relative to the quantity in `text`.
     text : str
         The violated condition in words, with its numbers.
     cause : str
         "sign", "order", "point", "units", "axes", "decimal", "rounding", "triangle of zeros", "placeholder" or
-        "unknown".
+        "unknown". Of links also "density", "floor", "massless", "marker", "identified", "text".
     advice : str
         The likely cause in words, and the correction.
     matrix : ndarray, shape (3, 3), or None
         The corrected tensor, about the same point in the same axes [kg m^2].
     mass, com
         The corrected mass [kg] and centre of mass [m], if they were given.
+    level : str
+        "error": no body can have this. "warning": unlikely for this body. "remark": worth knowing, and no fault.
+    code : str
+        "PI001" and so on. It stays the same in all versions; `docs/codes/` has a page for each.
     """
 
     what: str
@@ -45,6 +51,14 @@ class Finding:
     matrix: Array | None = None
     mass: float | None = None
     com: Array | None = None
+    level: str = ""
+    code: str = ""
+
+    def __post_init__(self) -> None:
+        if not self.code:
+            code = code_of(self.what, self.cause)
+            object.__setattr__(self, "code", code.name)
+            object.__setattr__(self, "level", code.level)
 
     @property
     def impossible(self) -> bool:

@@ -1,21 +1,17 @@
-"""Pieces of geometry in the frame of a link: simple shapes, and meshes from files."""
+"""Pieces of geometry in the frame of a link: simple shapes and meshes."""
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
-import os
-import pathlib
-import urllib.parse
-import warnings
 
 import numpy as np
 import numpy.typing as npt
 
-from ... import _files
-from ... import mesh as mesh_files
 from ... import shapes
 from ..._attitude.rotation import Rotation
 from ..._core import InvalidInput, MassProperties
+from . import meshes
 
 Array = npt.NDArray[np.float64]
 
@@ -30,13 +26,20 @@ class Pose:
     def __matmul__(self, other: Pose) -> Pose:
         return Pose(self.turn @ other.turn, self.turn @ other.place + self.place)
 
+    def inverse(self) -> Pose:
+        return Pose(self.turn.T, -self.turn.T @ self.place)
+
 
 @dataclasses.dataclass(frozen=True)
 class Part:
-    """A piece of geometry in the link's frame: the body of unit density, where there is one, and a box's corners."""
+    """A piece of geometry in the link's frame: the body of unit density, where there is one, and a box's corners.
+
+    `bound`: the body is the convex hull of an open mesh, which is larger than what it shows.
+    """
 
     solid: MassProperties | None
     corners: Array
+    bound: bool = False
 
 
 @dataclasses.dataclass
@@ -45,6 +48,11 @@ class Assembly:
 
     parts: list[Part] = dataclasses.field(default_factory=list)
     whole: bool = True
+
+    @property
+    def bound(self) -> bool:
+        """True if some part is known by its hull alone."""
+        return any(part.bound for part in self.parts)
 
     def solid(self) -> MassProperties | None:
         """All parts as one uniform body of unit density; where they overlap, they count twice."""
@@ -75,6 +83,12 @@ def cylinder(radius: float, height: float, pose: Pose) -> Part:
                  np.pi * radius**2 * height, pose)
 
 
+def cone(radius: float, height: float, pose: Pose) -> Part:
+    """With its base at -height/2 along z, as SDFormat has it."""
+    unit = shapes.cone(1.0, radius, height).moved(translation=(0, 0, -height / 2))
+    return _part(unit, np.array([radius, radius, height / 2]), np.pi * radius**2 * height / 3, pose)
+
+
 def capsule(radius: float, height: float, pose: Pose) -> Part:
     return _part(shapes.capsule(1.0, radius, height), np.array([radius, radius, height / 2 + radius]),
                  np.pi * radius**2 * (height + 4 / 3 * radius), pose)
@@ -86,36 +100,15 @@ def _part(unit: MassProperties, half: Array, volume: float, pose: Pose) -> Part:
     return Part(solid.moved(Rotation.from_matrix(pose.turn), pose.place), (signs * half) @ pose.turn.T + pose.place)
 
 
-def mesh(file: pathlib.Path, scale: Array, pose: Pose) -> Part:
-    """A mesh: the body inside where it is closed, and the box round it in any case."""
-    vertices, faces = mesh_files.read(file)
-    vertices = vertices * scale @ pose.turn.T + pose.place
-    used = vertices[np.unique(faces)]
+def mesh(surface: meshes.Surface, scale: Array, pose: Pose) -> Part:
+    """A mesh: the body inside where it is closed, else its convex hull; and the box round it in any case."""
+    vertices = (surface.corners * scale) @ pose.turn.T + pose.place
     signs = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
-    low, high = used.min(0), used.max(0)
-    try:
-        with warnings.catch_warnings():   # of its size, which is compared here, and of a mirrored scale's winding
-            warnings.simplefilter("ignore")
-            solid = MassProperties.from_mesh(vertices, faces, density=1.0, repair="flip")
-    except InvalidInput:
-        solid = None   # open, as many visual meshes are
-    return Part(solid, low + signs * (high - low))
-
-
-def find(uri: str, beside: pathlib.Path) -> pathlib.Path | None:
-    """Find a mesh file: a path, or package://, model:// and file:// as ROS and Gazebo mean them."""
-    scheme, _, rest = uri.rpartition("://")
-    rest = urllib.parse.unquote(rest) if scheme else rest
-    if scheme in ("", "file"):
-        candidates = [beside.parent / rest]
-    elif scheme in ("package", "model"):
-        package, _, inside = rest.partition("/")
-        roots = [pathlib.Path(p) for variable in ("ROS_PACKAGE_PATH", "GZ_SIM_RESOURCE_PATH", "GAZEBO_MODEL_PATH")
-                 for p in os.environ.get(variable, "").split(os.pathsep) if p]
-        folders = list(beside.resolve().parents)
-        candidates = [folder / inside for folder in folders if folder.name == package]
-        candidates += [folder / rest for folder in [*folders, *roots]]
-        candidates += [root / "share" / rest for root in roots] + [folders[0] / inside]
-    else:
-        return None
-    return next((file for file in candidates if _files.is_file(file)), None)
+    low, high = vertices.min(0), vertices.max(0)
+    bound = surface.solid is None
+    moments = surface.hull if surface.solid is None else surface.solid
+    solid = None
+    if moments is not None and scale.all():
+        with contextlib.suppress(InvalidInput):   # a body that is all but flat
+            solid = meshes.placed(moments, scale, pose.turn, pose.place)
+    return Part(solid, low + signs * (high - low), bound)

@@ -9,35 +9,44 @@ import numpy as np
 from ..._attitude.rotation import Rotation
 from . import geometry
 from .geometry import Assembly, Pose
-from .link import Link, Robot
+from .link import Link, Robot, Source, read_link
+from .paths import Search
 from .xml import Node
 
 
-def read(root: Node, file: pathlib.Path) -> Robot:
+def read(root: Node, file: pathlib.Path, search: Search) -> Robot:
     """Read the links."""
-    if any("xacro" in element.tag for element in root.element.iter() if isinstance(element.tag, str)):
-        raise root.wrong("holds xacro's macros: expand them first (xacro robot.xacro > robot.urdf)")
-    links = [_link(node, file) for node in root.children("link")]
-    if not links:
+    macros = sorted({node.tag for node in root.walk() if node.tag.startswith("xacro:")})
+    nodes = list(root.children("link"))
+    if not nodes:
+        if macros:
+            raise root.wrong("holds xacro's macros and no link: expand it first (xacro robot.xacro > robot.urdf), or "
+                             "install xacro")
         raise root.wrong("<link> is missing")
-    return Robot("URDF", root.get("name") or file.stem, links, [])
+    links = [read_link(node.get("name") or f"link {i + 1}", node, lambda link: _fill(link, node, file, search))
+             for i, node in enumerate(nodes)]
+    notes = [f"<{macros[0]}> is left over from xacro: what it stands for is not judged"] if macros else []
+    return Robot("URDF", root.get("name") or file.stem, links, notes, str(file))
 
 
-def _link(node: Node, file: pathlib.Path) -> Link:
-    link = Link(node.word("name"))
+def _fill(link: Link, node: Node, file: pathlib.Path, search: Search) -> None:
+    node.word("name")
     for tag, into in (("visual", link.visual), ("collision", link.collision)):
         for shown in node.children(tag):
-            _geometry(link, into, shown, file)
+            with link.shielded(into):
+                _geometry(link, into, shown, file, search)
     inertial = node.child("inertial")
     if inertial is None:
         link.unjudged = "no <inertial>"
-        return link
+        return
+    link.line = inertial.line
     link.pose = _pose(inertial)
-    link.mass = inertial.need("mass").number("value")
+    mass = inertial.need("mass")
+    link.mass = mass.number("value")
     tensor = inertial.need("inertia")
     xx, xy, xz, yy, yz, zz = (tensor.number(name, finite=False) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
     link.matrix = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-    return link
+    link.source = Source(inertial, mass, tensor, inertial.child("origin"))
 
 
 def _pose(node: Node) -> Pose:
@@ -48,7 +57,7 @@ def _pose(node: Node) -> Pose:
     return Pose(turn.as_matrix(), origin.numbers("xyz", 3, "0 0 0"))
 
 
-def _geometry(link: Link, into: Assembly, node: Node, file: pathlib.Path) -> None:
+def _geometry(link: Link, into: Assembly, node: Node, file: pathlib.Path, search: Search) -> None:
     pose = _pose(node)
     for shape in node.need("geometry").children():
         if shape.tag == "box":
@@ -62,7 +71,9 @@ def _geometry(link: Link, into: Assembly, node: Node, file: pathlib.Path) -> Non
             radius = shape.number("radius")
             link.add(into, "sphere", lambda: geometry.ball(radius, pose))
         elif shape.tag == "mesh":
-            link.add_mesh(into, shape.word("filename"), shape.numbers("scale", 3, "1 1 1"), pose, file)
-        else:
-            into.whole = False
-            link.notes.append(f"<{shape.tag}> is not read: not compared with it")
+            scale = shape.numbers("scale", None, "1 1 1")
+            if len(scale) not in (1, 3):
+                raise shape.wrong(f"scale: must be 3 numbers, got {shape.get('scale')!r}")
+            link.add_mesh(into, shape.word("filename"), np.resize(scale, 3), pose, file, search)
+        elif ":" not in shape.tag:
+            link.leave_out(into, "kind of shape", f"<{shape.tag}> is not read: not compared with it")

@@ -1,10 +1,11 @@
-"""XML by a parser that follows no entities, and the numbers in it."""
+"""XML as the parsers of robots take it, without entities, and the numbers in it with their places in the file."""
 
 from __future__ import annotations
 
 import pathlib
+import re
 from collections.abc import Iterator
-from xml.etree.ElementTree import Element, ParseError
+from xml.parsers import expat
 
 import numpy as np
 import numpy.typing as npt
@@ -19,17 +20,32 @@ DEEPEST = 1000
 
 
 class Node:
-    """An element that knows where it stands, for what is said about it."""
+    """An element that knows where it stands: `line` from 1, and `start`, the byte of its `<`."""
 
-    def __init__(self, element: Element, where: str) -> None:
-        self.element, self.where, self.tag = element, where, element.tag
+    __slots__ = ("_parts", "attrib", "file", "line", "nodes", "parent", "start", "tag")
 
-    def wrong(self, text: str) -> InvalidInput:
-        return InvalidInput(f"{self.where}: {text}")
+    def __init__(self, tag: str, attrib: dict[str, str], parent: Node | None, file: str, line: int, start: int) -> None:
+        self.tag, self.attrib, self.parent, self.file = tag, attrib, parent, file
+        self.line, self.start = line, start
+        self.nodes: list[Node] = []
+        self._parts: list[str] = []
+
+    @property
+    def where(self) -> str:
+        if self.parent is None:
+            return self.file
+        name = self.attrib.get("name")
+        return f"{self.parent.where} <{self.tag}{f' {name!r}' if name else ''}>"
+
+    @property
+    def text(self) -> str:
+        return "".join(self._parts).strip()
+
+    def wrong(self, text: str) -> Wrong:
+        return Wrong(f"{self.where}: {text}", self.line)
 
     def child(self, tag: str) -> Node | None:
-        found = self.element.find(tag)
-        return None if found is None else Node(found, f"{self.where} <{tag}>")
+        return next((node for node in self.nodes if node.tag == tag), None)
 
     def need(self, tag: str) -> Node:
         if (found := self.child(tag)) is None:
@@ -37,34 +53,55 @@ class Node:
         return found
 
     def children(self, tag: str | None = None) -> Iterator[Node]:
-        for element in self.element:
-            if isinstance(element.tag, str) and (tag is None or element.tag == tag):
-                name = element.get("name")
-                yield Node(element, f"{self.where} <{element.tag}{f' {name!r}' if name else ''}>")
+        return (node for node in self.nodes if tag is None or node.tag == tag)
+
+    def walk(self) -> Iterator[Node]:
+        left = [self]
+        while left:
+            node = left.pop()
+            yield node
+            left += node.nodes[::-1]
 
     def get(self, name: str) -> str | None:
-        return self.element.get(name)
-
-    @property
-    def text(self) -> str:
-        return (self.element.text or "").strip()
+        return self.attrib.get(name)
 
     def word(self, name: str) -> str:
-        if (value := self.element.get(name)) is None:
+        if (value := self.attrib.get(name)) is None:
             raise self.wrong(f"{name} is missing")
         return value
 
     def numbers(self, name: str, count: int | None, default: str | None = None, finite: bool = True) -> Array:
         """The numbers of an attribute; `count` None: any number of them."""
-        value = self.word(name) if default is None else self.element.get(name, default)
-        return to_numbers(value, count, f"{self.where}: {name}", finite)
+        value = self.word(name) if default is None else self.attrib.get(name, default)
+        return self.convert(value, count, name, finite)
 
     def content(self, count: int, finite: bool = True) -> Array:
         """The numbers between the tags."""
-        return to_numbers(self.text, count, self.where, finite)
+        return self.convert(self.text, count, "", finite)
 
     def number(self, name: str, finite: bool = True) -> float:
         return float(self.numbers(name, 1, finite=finite)[0])
+
+    def convert(self, text: str, count: int | None, name: str, finite: bool = True) -> Array:
+        try:
+            return to_numbers(text, count, f"{self.where}{': ' + name if name else ''}", finite)
+        except InvalidInput as error:
+            raise Wrong(str(error), self.line) from None
+
+    def copy(self, parent: Node | None = None) -> Node:
+        """The element with all that it holds, to be changed freely."""
+        made = Node(self.tag, dict(self.attrib), parent or self.parent, self.file, self.line, self.start)
+        made._parts = self._parts
+        made.nodes = [node.copy(made) for node in self.nodes]
+        return made
+
+
+class Wrong(InvalidInput):
+    """An error with the line of the file at which it stands."""
+
+    def __init__(self, text: str, line: int | None = None) -> None:
+        super().__init__(text)
+        self.line = line
 
 
 def to_numbers(text: str, count: int | None, where: str, finite: bool = True) -> Array:
@@ -86,27 +123,97 @@ def _short(text: str) -> str:
 
 def parse(file: pathlib.Path) -> Node:
     """Read a file's root element."""
-    try:
-        from defusedxml import DefusedXmlException  # type: ignore[import-untyped, unused-ignore]
-        from defusedxml.ElementTree import fromstring  # type: ignore[import-untyped, unused-ignore]
-    except ImportError:
-        raise InvalidInput("robot files need defusedxml: pip install 'polhode[cli]'") from None
-    data = _files.read(file, _files.TEXT)
-    try:
-        root = fromstring(data, forbid_dtd=True)
-    except DefusedXmlException:
-        raise InvalidInput(f"{file}: declares a document type or entities, which can blow up: refused") from None
-    except ParseError as error:
-        raise InvalidInput(f"{file}: is no XML: {error}") from None
-    except (ValueError, LookupError) as error:   # an encoding that is none
-        raise InvalidInput(f"{file}: is no XML: {error}") from None
-    _check_depth(root, file)
-    return Node(root, str(file))
+    return parse_bytes(_files.read(file, _files.TEXT), str(file))
 
 
-def _check_depth(root: Element, file: pathlib.Path) -> None:
-    level, depth = [root], 0
-    while level:
-        level, depth = [child for element in level for child in element], depth + 1
-        if depth > DEEPEST:
-            raise InvalidInput(f"{file}: elements are nested more than {DEEPEST} deep")
+def parse_bytes(data: bytes, name: str) -> Node:
+    """Read the root element of a text.
+
+    The parsers of ROS and Gazebo take more than XML allows: a prefix that is not declared, text before the declaration,
+    two hyphens in a comment, several roots. So does this one. Document types and entities are refused.
+    """
+    builder = _Builder(name)
+    data, encoding = _without_declaration(data)
+    error = builder.feed(data, encoding)
+    if error is not None and error.code == JUNK and builder.done:
+        error = None   # the first root counts
+    if error is not None and b"<!--" in data:
+        again = _Builder(name)   # a comment may hold what XML forbids there
+        error, builder = again.feed(_COMMENT.sub(_blank, data), encoding), again
+        if error is not None and error.code == JUNK and builder.done:
+            error = None
+    if error is not None or builder.root is None:
+        raise Wrong(f"{name}: is no XML: {error or 'it has no element'}", getattr(error, "lineno", None))
+    return builder.root
+
+
+JUNK = 9   # expat's number for what follows the root
+_COMMENT = re.compile(rb"<!--.*?-->", re.S)
+_DECLARATION = re.compile(rb"(?:\xef\xbb\xbf)?(?:\s|<!--.*?-->)*(<\?xml\b[^>]*?\?>)", re.S)
+
+
+def _blank(found: re.Match[bytes]) -> bytes:
+    return re.sub(rb"[^\n]", b" ", found[0])
+
+
+def _without_declaration(data: bytes) -> tuple[bytes, str | None]:
+    """Blank the XML declaration, wherever it stands before the root, so that bytes and lines keep their numbers."""
+    found = _DECLARATION.match(data)
+    if found is None:
+        return data, None
+    encoding = re.search(rb"encoding\s*=\s*[\"']([A-Za-z0-9._-]+)[\"']", found[1])
+    blanked = data[:found.start(1)] + _blank(re.match(rb".*", found[1], re.S) or found) + data[found.end(1):]
+    return blanked, encoding[1].decode() if encoding else None
+
+
+class _Builder:
+    """Builds the tree, and refuses what can blow up."""
+
+    def __init__(self, name: str) -> None:
+        self.name, self.done = name, False
+        self.root: Node | None = None
+        self._open: list[Node] = []
+
+    def feed(self, data: bytes, encoding: str | None) -> expat.ExpatError | None:
+        try:
+            parser = expat.ParserCreate(encoding)   # without namespaces: a prefix is part of the name
+        except (ValueError, LookupError) as error:
+            raise Wrong(f"{self.name}: is no XML: {error}") from None
+        parser.buffer_text = True
+        parser.StartElementHandler, parser.EndElementHandler = self._begin, self._end
+        parser.CharacterDataHandler = self._text
+        for handler in ("StartDoctypeDecl", "EntityDecl", "ExternalEntityRef", "UnparsedEntityDecl"):
+            setattr(parser, f"{handler}Handler", self._refuse)
+        self._parser = parser
+        try:
+            parser.Parse(data, True)
+        except expat.ExpatError as error:
+            return error
+        except (ValueError, LookupError) as error:   # an encoding that is none
+            if isinstance(error, InvalidInput):
+                raise
+            raise Wrong(f"{self.name}: is no XML: {error}") from None
+        return None
+
+    def _begin(self, tag: str, attrib: dict[str, str]) -> None:
+        if len(self._open) >= DEEPEST:
+            raise Wrong(f"{self.name}: elements are nested more than {DEEPEST} deep", self._parser.CurrentLineNumber)
+        parent = self._open[-1] if self._open else None
+        node = Node(tag, attrib, parent, self.name, self._parser.CurrentLineNumber, self._parser.CurrentByteIndex)
+        if parent is None:
+            self.root = node
+        else:
+            parent.nodes.append(node)
+        self._open.append(node)
+
+    def _end(self, tag: str) -> None:
+        self._open.pop()
+        self.done = not self._open
+
+    def _text(self, text: str) -> None:
+        if self._open and not self._open[-1].nodes:
+            self._open[-1]._parts.append(text)
+
+    def _refuse(self, *declared: object) -> None:
+        raise Wrong(f"{self.name}: declares a document type or entities, which can blow up: refused",
+                    self._parser.CurrentLineNumber)

@@ -1,0 +1,49 @@
+"""One description read, by its root element."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+from collections.abc import Callable
+
+from ... import _files
+from ..._core import InvalidInput
+from . import mjcf, sdf, urdf
+from .link import Robot
+from .paths import Search
+from .xml import Node, parse, parse_bytes
+
+_readers: dict[str, Callable[[Node, pathlib.Path, Search], Robot]] = {
+    "robot": urdf.read, "mujoco": mjcf.read, "mujocoinclude": mjcf.read, "sdf": sdf.read, "gazebo": sdf.read}
+
+
+def read(path: str | os.PathLike[str], *, search: Search | None = None, data: bytes | None = None) -> Robot:
+    """Read a robot description; its root element determines the format.
+
+    Parameters
+    ----------
+    path : path
+    search : Search, optional
+        Where packages, models and meshes are.
+    data : bytes, optional
+        The text, if it is not that of the file.
+
+    Returns
+    -------
+    Robot
+        Its links. A link that cannot be read has its `trouble`.
+
+    Raises
+    ------
+    InvalidInput
+        For a file that cannot be read, is not XML, declares entities, or has no link that can be read.
+    """
+    file = _files.to_path(path, "path")
+    root = parse(file) if data is None else parse_bytes(data, str(file))
+    if (reader := _readers.get(root.tag)) is None:
+        raise InvalidInput(f"{file}: must have the root <robot> (URDF), <mujoco> (MJCF) or <sdf>; got <{root.tag}>")
+    robot = reader(root, file, search or Search.of())
+    troubles = [link.trouble for link in robot.links if link.trouble is not None]
+    if troubles and len(troubles) == len(robot.links):
+        raise troubles[0]
+    return robot
