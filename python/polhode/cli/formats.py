@@ -14,7 +14,6 @@ from ..inertia.codes import CODES, LEVELS
 from ..inertia.findings import Finding
 from ..inertia.robots.report import LinkReport, Report
 
-PAGES = "https://github.com/polhode/polhode/blob/main/docs/codes/"
 _SARIF_LEVELS = {"error": "error", "warning": "warning", "remark": "note"}
 _GITHUB_LEVELS = {"error": "error", "warning": "warning", "remark": "notice"}
 UNREADABLE = "PI002"
@@ -51,7 +50,7 @@ def sarif(reports: Sequence[Report]) -> dict[str, Any]:
                 if reason is not None:
                     result["suppressions"] = [{"kind": "external", "justification": reason}]
                 results.append(result)
-    table = [{"id": code.name, "shortDescription": {"text": code.title}, "helpUri": f"{PAGES}{code.name}.md",
+    table = [{"id": code.name, "shortDescription": {"text": code.title}, "help": {"text": f"docs/codes/{code.name}.md"},
               "defaultConfiguration": {"level": _SARIF_LEVELS[code.level]}} for code in CODES.values()]
     return {"$schema": "https://json.schemastore.org/sarif-2.1.0.json", "version": "2.1.0", "runs": [{
         "tool": {"driver": {"name": "polhode", "version": __version__, "rules": table}}, "results": results}]}

@@ -1,12 +1,14 @@
 """Inertia tensors, their principal axes, and the mass properties of bodies.
 
 `InertiaTensor` and `MassProperties` check their arguments. A tensor that no body can have is refused, with the axis,
-the deficit in per cent and the likely cause. `polhode.shapes` makes simple bodies.
+the deficit in per cent and the likely cause. `polhode.shapes` makes simple bodies. `robots` checks URDF, SDF and MJCF files.
 """
 
 from __future__ import annotations
 
+import importlib
 import warnings
+from types import ModuleType
 
 import numpy as np
 import numpy.typing as npt
@@ -18,7 +20,14 @@ from .diagnosis import diagnose
 from .findings import Diagnosis, Finding
 
 __all__ = ["Diagnosis", "Finding", "Flaw", "InertiaTensor", "MassProperties", "PrincipalAxes", "check", "diagnose",
-           "principal_axes"]
+           "principal_axes", "robots"]
+
+
+def __getattr__(name: str) -> ModuleType:
+    """Load the readers of robot descriptions when they are first used."""
+    if name == "robots":
+        return importlib.import_module(f"{__name__}.robots")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def principal_axes(matrices: npt.ArrayLike) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:

@@ -43,6 +43,7 @@ class Known:
 
     geometry: ev.Geometry
     worth: str
+    small: bool = False        # no matter is dense enough to hold the mass in it
     copies: int = 0
     identified: bool = False
 

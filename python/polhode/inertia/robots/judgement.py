@@ -119,12 +119,11 @@ def _known(link: Link, mass: float, matrix: Array) -> Known:
     geometry = dataclasses.replace(geometry, slack=1.0 if worth in ("collision", "part") else SLACK)
     side = float(np.ptp(link_box, axis=0).max())
     volume = geometry.volume
-    if volume is not None and mass > OSMIUM * volume and not _agrees(link, geometry, mass, matrix):
-        return Known(geometry, "marker")
+    small = volume is not None and mass > OSMIUM * volume and not _agrees(link, geometry, mass, matrix)
     if side <= MARKER and not _agrees(link, geometry, mass, matrix) and (
             volume is None or not 50 < mass / volume < 12_000):
         return Known(geometry, "marker")
-    return Known(geometry, worth)
+    return Known(geometry, worth, small=small)
 
 
 def _agrees(link: Link, geometry: ev.Geometry, mass: float, matrix: Array) -> bool:
@@ -189,7 +188,7 @@ def _finding(breach: Breach, cause: Candidate | None, case: Case) -> Finding | N
         return _plain(breach, case, "placeholder", placeholder, "PI203")
     if mass < 1e-5:
         return _plain(breach, case, "placeholder", "a mass of almost nothing: a placeholder?", "PI203")
-    if worth == "marker":
+    if worth == "marker" or (case.known.small and cause is None):
         return _plain(breach, case, "marker", "the geometry is too small to hold the mass: it marks the link, or shows "
                       "a part of it", "PI205")
     if breach.what == "density":

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..._core import InvalidInput, MassProperties
 from . import geometry, meshes
+from .by_mujoco import complete
 from .geometry import Array, Assembly, Part, Pose
 from .link import Link, Robot, Source, read_link
 from .mjcf_model import Compiler, Model, gather, onto, orientation, pose, unit
@@ -31,7 +32,10 @@ def read(root: Node, file: pathlib.Path, search: Search) -> Robot:
     for world in root.children("worldbody"):
         _bodies(world, "main", model, "", links, notes)
     found = {node.tag for node in root.walk()} & set(UNREAD)
-    notes += [f"<{tag}> is not read: its additions are not judged" for tag in UNREAD[:2] if tag in found]
+    before = len(links)
+    complete(file, root, links, notes, search, bool(found & set(UNREAD[:2])))
+    if len(links) == before:
+        notes += [f"<{tag}> is not read: its additions are not judged" for tag in UNREAD[:2] if tag in found]
     if not links and not notes:
         raise root.wrong("<worldbody> holds no <body>")
     return Robot("MJCF", root.get("model") or file.stem, links, notes, str(file))
@@ -89,10 +93,10 @@ def _fill(link: Link, node: Node, style: str, model: Model) -> None:
     solids: Solids = []
     for geom, inside, frame in _geoms(node, style, Pose(), compiler):
         if from_geoms:
-            solids += _geom(geom, inside, frame, model, link)
+            solids += _geom(geom, inside, frame, model, link, True)
         else:
             with link.shielded(link.visual):
-                _geom(geom, inside, frame, model, link)
+                _geom(geom, inside, frame, model, link, False)
     if from_geoms:
         if inertial is not None:
             link.notes.append("inertiafromgeom: MuJoCo ignores the given <inertial>")
@@ -120,8 +124,7 @@ def _geoms(node: Node, style: str, frame: Pose, compiler: Compiler) -> Iterator[
             place = frame
             for _ in range(count):
                 yield from _geoms(child, inside, place, compiler)
-                # The offset is added in the frame around; the turn accumulates.
-                place = Pose(place.turn @ step.turn, place.place + frame.turn @ step.place)
+                place = place @ step
 
 
 def _inertial(link: Link, node: Node, compiler: Compiler) -> None:
@@ -171,7 +174,7 @@ def _from_geoms(link: Link, solids: Solids) -> None:
     link.visual, link.collision = Assembly(), Assembly()   # compared with what it was made from, it says nothing
 
 
-def _geom(node: Node, style: str, frame: Pose, model: Model, link: Link) -> Solids:
+def _geom(node: Node, style: str, frame: Pose, model: Model, link: Link, from_geoms: bool) -> Solids:
     """Add a geom; returns it with its mass as MuJoCo computes it, or nothing when it has none or was not read."""
     told = {**model.defaults.get(node.get("class") or style, {}).get("geom", {}), **node.attrib}
     kind = told.get("type", "sphere")
@@ -190,7 +193,7 @@ def _geom(node: Node, style: str, frame: Pose, model: Model, link: Link) -> Soli
         place = frame @ pose(node, model.compiler, told)
     before = len(into.parts)
     if "mesh" in told:
-        _mesh(node, told, kind, model, link, into, place)
+        _mesh(node, told, kind, model, link, into, place, from_geoms)
     else:
         _primitive(node, kind, size, place, link, into)
     if len(into.parts) == before:
@@ -202,7 +205,7 @@ def _geom(node: Node, style: str, frame: Pose, model: Model, link: Link) -> Soli
     if (mass := told.get("mass")) is not None:
         return [(part, float(node.convert(mass, 1, "mass")[0]))]
     density = float(node.convert(told.get("density", "1000"), 1, "density")[0])
-    if density and (told.get("shellinertia") == "true" or part.bound):
+    if from_geoms and density and (told.get("shellinertia") == "true" or part.bound):
         link.leave_out(into, "shell", "mass of a shell or an open mesh is not read")
     return [(part, density * (part.solid.mass if part.solid is not None else 0.0))]
 
@@ -224,7 +227,8 @@ def _primitive(node: Node, kind: str, size: Array, place: Pose, link: Link, into
     link.add(into, f"geom {kind}", make)
 
 
-def _mesh(node: Node, told: dict[str, str], kind: str, model: Model, link: Link, into: Assembly, place: Pose) -> None:
+def _mesh(node: Node, told: dict[str, str], kind: str, model: Model, link: Link, into: Assembly, place: Pose,
+          from_geoms: bool) -> None:
     name = told["mesh"]
     asset = model.meshes.get(name)
     if asset is None or asset.get("builtin") or asset.child("plugin") is not None:
@@ -252,9 +256,11 @@ def _mesh(node: Node, told: dict[str, str], kind: str, model: Model, link: Link,
     else:
         link.add_mesh(into, _mesh_file(asset, model), scale, place, model.file, model.search)
     if kind != "mesh" and into.parts:
-        link.notes.append(f"a {kind} fitted to mesh {name!r}: compared with the mesh")
-        if link.from_geoms or told.get("mass") is None:
-            link.unread.append(("fitted", f"a {kind} fitted to mesh {name!r}"))
+        note = f"a {kind} fitted to mesh {name!r}: compared with the mesh"
+        if from_geoms:
+            link.leave_out(into, "fitted", note)
+        else:
+            link.notes.append(note)
 
 
 def _mesh_file(asset: Node, model: Model) -> str:

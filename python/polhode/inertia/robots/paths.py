@@ -6,7 +6,7 @@ import dataclasses
 import os
 import pathlib
 import urllib.parse
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from ... import _files
 from ..._core import InvalidInput
@@ -48,23 +48,26 @@ class Search:
         InvalidInput
             For a file that lies outside all folders that may be read.
         """
-        for candidate, own in self._candidates(uri, beside):
-            if _files.is_file(candidate):
-                return self._checked(candidate, own, beside, uri)
-        return None
+        return self._first(uri, beside, _files.is_file)
 
     def find_model(self, uri: str, beside: pathlib.Path) -> pathlib.Path | None:
         """Find the folder of a model, or a model's file."""
-        for candidate, own in self._candidates(uri, beside):
-            if _is_there(candidate):
-                return self._checked(candidate, own, beside, uri)
-        return None
+        return self._first(uri, beside, _is_there)
 
     def folder(self, package: str, beside: pathlib.Path) -> pathlib.Path | None:
         """Find the folder of a package."""
-        for candidate, own in self._candidates(f"package://{package}", beside):
-            if _is_there(candidate):
-                return self._checked(candidate, own, beside, package)
+        return self._first(f"package://{package}", beside, _is_there)
+
+    def _first(self, uri: str, beside: pathlib.Path, fits: Callable[[pathlib.Path], bool]) -> pathlib.Path | None:
+        refused = None
+        for candidate, own in self._candidates(uri, beside):
+            if fits(candidate):
+                try:
+                    return self._checked(candidate, own, beside, uri)
+                except InvalidInput as error:
+                    refused = refused or error
+        if refused is not None:
+            raise refused
         return None
 
     def check(self, file: pathlib.Path, beside: pathlib.Path) -> pathlib.Path:

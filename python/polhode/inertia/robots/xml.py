@@ -135,20 +135,20 @@ def parse_bytes(data: bytes, name: str) -> Node:
     builder = _Builder(name)
     data, encoding = _without_declaration(data)
     error = builder.feed(data, encoding)
-    if error is not None and error.code == JUNK and builder.done:
-        error = None   # the first root counts
+    if builder.done:
+        error = None   # the first root counts, whatever follows it
     if error is not None and b"<!--" in data:
         again = _Builder(name)   # a comment may hold what XML forbids there
         error, builder = again.feed(_COMMENT.sub(_blank, data), encoding), again
-        if error is not None and error.code == JUNK and builder.done:
+        if builder.done:
             error = None
     if error is not None or builder.root is None:
         raise Wrong(f"{name}: is no XML: {error or 'it has no element'}", getattr(error, "lineno", None))
     return builder.root
 
 
-JUNK = 9   # expat's number for what follows the root
 _COMMENT = re.compile(rb"<!--.*?-->", re.S)
+_LEADING = re.compile(rb"[^<\0\xef]+(?=<)")
 _DECLARATION = re.compile(rb"(?:\xef\xbb\xbf)?(?:\s|<!--.*?-->)*(<\?xml\b[^>]*?\?>)", re.S)
 
 
@@ -158,6 +158,8 @@ def _blank(found: re.Match[bytes]) -> bytes:
 
 def _without_declaration(data: bytes) -> tuple[bytes, str | None]:
     """Blank the XML declaration, wherever it stands before the root, so that bytes and lines keep their numbers."""
+    if data[:2] not in (b"\xff\xfe", b"\xfe\xff") and (found := _LEADING.match(data)) is not None:
+        data = _blank(found) + data[found.end():]   # text before the first element
     found = _DECLARATION.match(data)
     if found is None:
         return data, None
