@@ -52,8 +52,8 @@ def test_mjcf_agrees_with_mujoco(write):
 <body name="a"><geom type="capsule" size="0.1" fromto="0 0 0 1 2 3"/><geom class="dense" size="0.2" pos="1 0 0"/></body>
 <body name="b" childclass="dense"><frame euler="0.1 0.2 0.3" pos="1 1 0"><geom type="ellipsoid" size="0.1 0.2 0.3"
  axisangle="1 2 3 0.5"/></frame><geom type="box" size="1 1 1" group="3"/></body>
-<body name="c"><replicate count="3" offset="0.5 0 0" euler="0 0 0.7"><geom type="cylinder" size="0.1 0.3" pos="0.3 0 0"/>
-</replicate></body><body name="d"><geom type="mesh" mesh="part" pos="0 0 1" xyaxes="0 1 0 -1 0 0"/></body>
+<body name="c"><frame pos="1 2 3" euler="0.4 0.5 0"><replicate count="3" offset="0.5 0 0.1" euler="0 0.3 0.7">
+<geom type="cylinder" size="0.1 0.3" pos="0.3 0 0"/></replicate></frame></body><body name="d"><geom type="mesh" mesh="part" pos="0 0 1" xyaxes="0 1 0 -1 0 0"/></body>
 </worldbody></mujoco>""")
     model = mujoco.MjSpec.from_file(str(file)).compile()
     links = {link.name: link for link in robots.read(file).links}
@@ -83,7 +83,8 @@ def test_what_only_mujoco_makes_is_read_through_it(write):
     status, links = judged(file)
     assert status == 0 and len(links) == 10 and links["f_0"]["mass"] == pytest.approx(1 / 9)
     assert links["s"]["matrix"] is not None and not links["s"]["findings"]
-    outside = write("deep/er/b.xml", '<mujoco><asset><mesh name="m" file="../../../../etc/hosts"/></asset><worldbody>'
+    write("part.stl", _binary(CORNERS, SIDES))
+    outside = write("deep/er/still/b.xml", '<mujoco><asset><mesh name="m" file="../../../part.stl"/></asset><worldbody>'
                     '<body name="s"><geom type="box" size="0.1 0.2 0.3" shellinertia="true"/></body></worldbody></mujoco>')
     assert "not all read" in judged(outside)[1]["s"]["verdict"]
 

@@ -102,8 +102,10 @@ def _part(unit: MassProperties, half: Array, volume: float, pose: Pose) -> Part:
 
 def mesh(surface: meshes.Surface, scale: Array, pose: Pose) -> Part:
     """A mesh: the body inside where it is closed, else its convex hull; and the box round it in any case."""
-    vertices = (surface.corners * scale) @ pose.turn.T + pose.place
     signs = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
+    axes = np.abs(pose.turn).max(1) > 1 - 1e-9
+    vertices = signs * (surface.high - surface.low) + surface.low if axes.all() else surface.corners
+    vertices = (vertices * scale) @ pose.turn.T + pose.place   # along the axes the box of the file turns with it
     low, high = vertices.min(0), vertices.max(0)
     bound = surface.solid is None
     moments = surface.hull if surface.solid is None else surface.solid

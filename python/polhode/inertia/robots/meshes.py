@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import collections
 import dataclasses
+import functools
 import pathlib
 import warnings
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -40,6 +42,16 @@ class Surface:
     solid: Moments | None
     hull: Moments | None
     why: str = ""             # of a surface that is not closed
+
+    @functools.cached_property
+    def low(self) -> Array:
+        """The lower corner of the box round it."""
+        return np.asarray(self.corners.min(0))
+
+    @functools.cached_property
+    def high(self) -> Array:
+        """The upper corner of the box round it."""
+        return np.asarray(self.corners.max(0))
 
 
 _kept: collections.OrderedDict[tuple[str, int, int], Surface | InvalidInput] = collections.OrderedDict()
@@ -120,6 +132,7 @@ def convex_hull(points: Array) -> tuple[Moments, Array] | None:
     if len(points) < 4:
         return None
     try:
+        points = _outer(points, ConvexHull)
         hull = ConvexHull(points)
     except (QhullError, ValueError):
         return None
@@ -135,6 +148,24 @@ def convex_hull(points: Array) -> tuple[Moments, Array] | None:
     second = sum((np.einsum("n,ni,nj->ij", volumes, x, x) for x in (a, b, c, total)), np.zeros((3, 3))) / 20
     second = second - volume * np.outer(centre, centre)
     return Moments(volume, centre + middle, second), points[hull.vertices]
+
+
+_DIRECTIONS = np.array([(x, y, z) for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1) if (x, y, z) != (0, 0, 0)])
+
+
+def _outer(points: Array, make: Any) -> Array:
+    """Leave out points within the hull of some extreme ones: they are no corners of the whole hull."""
+    if len(points) < 1000:
+        return points
+    extreme = points[np.unique((points @ _DIRECTIONS.T).argmax(0))]
+    if len(extreme) < 5:
+        return points
+    planes = make(extreme).equations
+    reach = float(np.abs(points).max())
+    beyond = np.zeros(len(points), dtype=bool)
+    for plane in planes:
+        beyond |= points @ plane[:3] + plane[3] > -1e-9 * reach
+    return points[beyond]
 
 
 def placed(moments: Moments, scale: Array, turn: Array, place: Array) -> MassProperties:

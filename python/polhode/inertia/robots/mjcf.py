@@ -120,11 +120,12 @@ def _geoms(node: Node, style: str, frame: Pose, compiler: Compiler) -> Iterator[
             count = int(child.number("count"))
             if not 0 <= count <= MOST_COPIES:
                 raise child.wrong(f"count: must be from 0 to {MOST_COPIES} to be read, got {count}")
-            step = Pose(orientation(child, compiler), child.numbers("offset", 3, "0 0 0"))
-            place = frame
-            for _ in range(count):
-                yield from _geoms(child, inside, place, compiler)
-                place = place @ step
+            offset, angles = child.numbers("offset", 3, "0 0 0"), child.numbers("euler", 3, "0 0 0")
+            place = np.zeros(3)
+            for i in range(count):   # the angles are multiplied, each offset is in the axes of the copy before
+                turn = orientation(child, compiler, {"euler": " ".join(map(repr, (i * angles).tolist()))})
+                yield from _geoms(child, inside, frame @ Pose(turn, place), compiler)
+                place = place + turn @ offset
 
 
 def _inertial(link: Link, node: Node, compiler: Compiler) -> None:
