@@ -75,6 +75,10 @@ def test_bad_geometry_is_a_note(write):
     (0.1, 1e-4 * np.ones((3, 3)), '<box size="0.1 0.1 0.2"/>', "PI005", "placeholder"),
     (1, np.diag([0.1, 0.1, 0.2]), '<box size="0.1 0.1 0.2"/>', "PI203", "placeholder"),
     (2.5, np.diag([0.145833, 0.145833, 0.125]), '<cylinder radius="0.1" length="0.1"/>', "PI203", "placeholder"),
+    (0.1, np.diag([1.0, 1.0, 0.0]), '<box size="0.1 0.1 0.2"/>', "PI203", "placeholder"),
+    (0.1, np.diag([0.001, 0.001, 0.01]), "", "PI005", "placeholder"),      # round, and no decimal point
+    (1, 12 * ph.shapes.box(1, (0.05, 0.07, 0.11)).inertia.matrix, '<box size="0.1 0.14 0.22"/>', "PI102", "formula"),
+    (1, 4 * ph.shapes.box(1, (0.05, 0.07, 0.11)).inertia.matrix, '<box size="0.1 0.14 0.22"/>', "PI102", "formula"),
     (2.2, np.diag([0.00311, 0.00412, 0.00517]), '<box size="0.01 0.01 0.01"/>', "PI205", "marker"),
 ])
 def test_what_nobody_computed_is_told_before_units_and_decimals(write, mass, matrix, geometry, code, cause):

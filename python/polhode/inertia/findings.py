@@ -30,7 +30,7 @@ class Finding:
         The violated condition in words, with its numbers.
     cause : str
         "sign", "order", "point", "units", "axes", "decimal", "rounding", "triangle of zeros", "placeholder" or
-        "unknown". Of links also "density", "floor", "massless", "marker", "identified", "text".
+        "unknown". Of links also "density", "floor", "formula", "massless", "marker", "identified", "text".
     advice : str
         The likely cause in words, and the correction.
     matrix : ndarray, shape (3, 3), or None

@@ -21,6 +21,10 @@ SUPPORT = 2.0       # nats for each factor e of links that the same cause explai
 LEFT = {"body": 0.4, "hull": 0.5, "collision": 0.15, "part": 0.15}
 SIZE = 0.3          # of a cause that is one factor: the logarithm of the size that may be left
 EQUAL = 1e-3        # of an entry that becomes that of another moment
+FORMULA = 0.05      # of a slip in a formula, which leaves no difference
+FORMULAS = ((12.0, "the factor 1/12 of a box or a rod was left out"),
+            (4.0, "full lengths or diameters were taken for half lengths or radii"),
+            (0.25, "half lengths or radii were taken for full lengths or diameters"))
 BONUS = 5.0         # nats for that
 LEFT_SLIP = 0.15    # where nothing else is broken
 ALIKE = 0.25        # of an entry that a decimal point is moved in: from another moment
@@ -53,7 +57,8 @@ def candidates(given: ev.Bodies, alone: ev.Evidence, known: Known, link: Link, b
     geometry = known.geometry if known.worth in LEFT else ev.Geometry()
     if geometry is not known.geometry:
         alone = ev.weigh(given, geometry)
-    causes = [*link.rotation_causes(), *undo(given, geometry), *_floors(given, geometry), *_turned_centre(given)]
+    causes = [*link.rotation_causes(), *undo(given, geometry), *_floors(given, geometry), *_turned_centre(given),
+              *_formulas(given)]
     found = []
     if causes:
         weighed = ev.weigh(ev.stack([given, *(cause.body for cause in causes)]), geometry)
@@ -87,6 +92,11 @@ def _floors(given: ev.Bodies, geometry: ev.Geometry) -> list[Cause]:
             text = f"the mass was raised to {mass:g} kg: the tensor is that of {lighter:.3g} kg"
             found.append(Cause("floor", text, 1.0, ev.single(lighter, given.com[0], given.matrix[0])))
     return found
+
+
+def _formulas(given: ev.Bodies) -> list[Cause]:
+    """Slips in the formula of a box or cylinder: they leave one factor, exactly."""
+    return [Cause("formula", text, 1.0, given._replace(matrix=given.matrix / factor)) for factor, text in FORMULAS]
 
 
 def _turned_centre(given: ev.Bodies) -> list[Cause]:
@@ -137,7 +147,7 @@ def _explains(cause: Cause, given: ev.Bodies, known: Known, geometry: ev.Geometr
         return True
     left, was = _left(body, geometry), _left(given, geometry)
     limit = LEFT[known.worth] if broken else LEFT_SLIP
-    if left > min(limit, 0.5 * was):
+    if left > min(limit, 0.5 * was) or (cause.kind == "formula" and left > FORMULA):
         return False
     if geometry.volume is not None and not 20 < float(body.mass[0]) / geometry.volume < 25_000:
         return False

@@ -175,9 +175,10 @@ def _finding(breach: Breach, cause: Candidate | None, case: Case) -> Finding | N
         if breach.what == "triangle" and case.margin > -ev.ROUNDED:
             return _plain(breach, case, "rounding", "a flat body whose numbers were rounded? the nearest tensor that a "
                           "body can have is given", matrix=nearest(matrix))
-        if cause is not None:
+        reason = is_placeholder(matrix, mass, case.known.copies)
+        if cause is not None and not (reason and cause.kind == "decimal"):
             return _with_cause(breach, cause, case)
-        if reason := is_placeholder(matrix, mass, case.known.copies):
+        if reason:
             return _plain(breach, case, "placeholder", reason + " No body has them")
         return _plain(breach, case, "unknown", "no single slip explains it; the nearest tensor that a body can have is "
                       "given", matrix=nearest(matrix))

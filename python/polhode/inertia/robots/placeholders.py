@@ -39,6 +39,8 @@ def is_placeholder(matrix: Array, mass: float, copies: int) -> str:
 
 def _digits(x: float) -> int:
     """Count the significant digits of a number."""
+    if x == 0:
+        return 0
     if not np.isfinite(x) or abs(x) < 1e-100:
         return 17
     return len(repr(float(f"{x:.17g}")).lower().partition("e")[0].replace(".", "").strip("-0"))

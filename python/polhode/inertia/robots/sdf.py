@@ -199,5 +199,5 @@ def _geometry(link: Link, into: Assembly, node: Node, owner: Node, place: _Place
             if not uri:
                 raise shape.wrong("<uri> is missing")
             link.add_mesh(into, uri, factors, pose, place.file, search)
-        elif shape.tag != "empty":
+        elif shape.tag not in ("empty", "plane"):   # a plane has no inside
             link.leave_out(into, "kind of shape", f"<{shape.tag}> is not read: not compared with it")

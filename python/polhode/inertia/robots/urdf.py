@@ -75,5 +75,5 @@ def _geometry(link: Link, into: Assembly, node: Node, file: pathlib.Path, search
             if len(scale) not in (1, 3):
                 raise shape.wrong(f"scale: must be 3 numbers, got {shape.get('scale')!r}")
             link.add_mesh(into, shape.word("filename"), np.resize(scale, 3), pose, file, search)
-        elif ":" not in shape.tag:
+        elif ":" not in shape.tag and shape.tag != "plane":   # a plane has no inside
             link.leave_out(into, "kind of shape", f"<{shape.tag}> is not read: not compared with it")
