@@ -27,7 +27,7 @@ SLACK = 0.01             # of the box round all that is seen; of what collides o
 EXACT = 0.1              # of a difference that a slip takes away all but this part of
 EXTENT = 1.1             # moments beyond this many times the limit, where no cause is found
 EXTENT_COLLISION = 3.0   # the same for collision shapes alone, whose box is taken twice as large besides
-OUTSIDE = 0.2            # of the geometry's size
+OUTSIDE = 0.15           # of the largest side of the geometry, where no cause is found
 LIGHT = 2.0              # [kg/m^3]
 
 
@@ -197,7 +197,7 @@ def _finding(breach: Breach, cause: Candidate | None, case: Case) -> Finding | N
     if cause is not None:
         return _with_cause(breach, cause, case, code)
     amount = breach.per_cent / 100
-    if outside and (worth not in ("body", "hull") or amount < OUTSIDE):
+    if outside and (worth not in ("body", "hull") or _distance(case) < OUTSIDE):
         return None
     if breach.what == "extent" and not outside:
         limit = EXTENT if worth in ("body", "hull") else EXTENT_COLLISION
@@ -209,6 +209,14 @@ def _finding(breach: Breach, cause: Candidate | None, case: Case) -> Finding | N
         return _plain(breach, case, "identified", "many links of this file are unlike their geometry, each in a way of "
                       "its own: identified parameters, of which only sums are known?", "PI204")
     return _plain(breach, case, "unknown", "no single slip explains it; look at mass, units and geometry", code)
+
+
+def _distance(case: Case) -> float:
+    """How far the centre of mass lies outside the box, as a part of its largest side: thin parts have thick neighbours."""
+    box = case.known.geometry.box
+    assert box is not None
+    com = case.link.pose.turn.T @ case.link.pose.place
+    return float(np.maximum(np.maximum(box[0] - com, com - box[1]), 0.0).max() / np.ptp(box, axis=0).max())
 
 
 def _density(breach: Breach, cause: Candidate | None, case: Case) -> Finding | None:
