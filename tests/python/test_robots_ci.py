@@ -1,6 +1,7 @@
 """`polhode inertia` for other people's CI: several files, levels, excuses, formats, repairs."""
 
 import json
+import pathlib
 import re
 import xml.etree.ElementTree as ET
 
@@ -13,8 +14,9 @@ from typer.testing import CliRunner
 import polhode as ph
 from polhode.cli.app import app
 from polhode.inertia.codes import CODES
-from polhode.inertia.robots import Rule, check, repair
+from polhode.inertia.robots import Rule, check, repair, suffixes
 
+ROOT = pathlib.Path(__file__).parents[2]
 WRONG = f'<mass value="1"/>{tensor(np.diag((0.2, 0.4, 5.23)))}'
 UNLIKELY = f'<mass value="1.31"/>{tensor(np.diag((0.213, 0.414, 0.515)))}'
 BOX = '<box size="0.2 0.2 0.2"/>'
@@ -204,3 +206,21 @@ def test_options_are_for_robots_alone():
                    ("--no-xacro",)):
         result = call("inertia", "S1", *option)
         assert result.exit_code == 2 and f"{option[0].replace('--no-', '--')}: must be used with robots" in result.stderr
+
+
+# ---- pages
+
+def test_each_code_has_its_page():
+    pages = {page.stem: page.read_text() for page in (ROOT / "docs/codes").glob("PI*.md")}
+    assert set(pages) == set(CODES)
+    table = (ROOT / "docs/codes/README.md").read_text()
+    for code in CODES.values():
+        assert pages[code.name].startswith(f"# {code.name}: {code.title}\n\nLevel: {code.level}. ")
+        assert f"| [{code.name}]({code.name}.md) | {code.level} | {code.title} |" in table
+
+
+def test_the_hook_calls_the_command_for_the_suffixes_that_are_read():
+    hook = (ROOT / ".pre-commit-hooks.yaml").read_text()
+    pattern = re.search(r"files: (.*)", hook)[1]
+    assert "entry: polhode inertia\n" in hook
+    assert [suffix for suffix in suffixes if not re.search(pattern, f"a{suffix}")] == [".xml", ".xacro"]

@@ -212,7 +212,7 @@ def _finding(breach: Breach, cause: Candidate | None, case: Case) -> Finding | N
 
 
 def _distance(case: Case) -> float:
-    """How far the centre of mass lies outside the box, as a part of its largest side: thin parts have thick neighbours."""
+    """How far the centre of mass lies outside the box, as a part of its largest side: a thin part may hide a motor."""
     box = case.known.geometry.box
     assert box is not None
     com = case.link.pose.turn.T @ case.link.pose.place
