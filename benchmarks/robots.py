@@ -3,8 +3,8 @@
     python benchmarks/robots.py DIR [--package name=folder ...] [--mujoco] [--json FILE]
 
 DIR holds any number of repositories. Each folder in it is taken as one: its files are searched for packages and meshes.
-`--mujoco` compares mass, centre and moments of each body with MuJoCo's own, of files that MuJoCo compiles. `--json` writes
-each finding with the numbers and the geometry that it is about, for a judgement by hand.
+`--mujoco` compares mass, centre and moments of each body with MuJoCo's own, of files that MuJoCo compiles. `--json`
+writes each finding with the numbers and the geometry that it is about, for a judgement by hand.
 """
 
 import argparse
@@ -67,7 +67,8 @@ def compare(report, file, tally):
         link = each.link
         if link.matrix is None or link.name not in bodies or not np.isfinite(link.matrix).all():
             continue
-        if any("MuJoCo" in note for note in (*link.notes, *report.notes)) or any(f.level == "error" for f in each.findings):
+        changed = any("MuJoCo" in note for note in (*link.notes, *report.notes))
+        if changed or any(finding.level == "error" for finding in each.findings):
             continue   # it changes the numbers, and says so
         mass, centre, matrix = bodies[link.name]
         own = link.pose.turn @ link.matrix @ link.pose.turn.T

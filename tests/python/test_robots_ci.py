@@ -150,11 +150,12 @@ def test_the_python_interface(folder):
 def test_a_repair_changes_numbers_alone(write):  # noqa: F811
     body = ph.shapes.box(12.0, (0.1, 0.2, 0.3))
     m = body.inertia.matrix
+    xx, yy, zz = (repr(float(m[i, i] * 1e6)) for i in range(3))
     text = f"""<?xml version='1.0'?>\r
 <!-- by  hand -- twice -->
 <robot name = "r">\t<link name="a"><inertial><origin xyz='0 0 0'/>
   <mass   value = '12' />
-  <inertia ixx="{float(m[0, 0] * 1e6)!r}"  ixy='0' ixz="0" iyy = "{float(m[1, 1] * 1e6)!r}" iyz="0" izz="{float(m[2, 2] * 1e6)!r}"/>
+  <inertia ixx="{xx}"  ixy='0' ixz="0" iyy = "{yy}" iyz="0" izz="{zz}"/>
 </inertial><visual><geometry><box size="0.2 0.4 0.6"/></geometry></visual></link></robot>
 <!-- end -->"""
     file = write("a.urdf", text)
@@ -177,8 +178,8 @@ def test_repairs_of_sdf_and_mjcf(write):  # noqa: F811
     body = ph.shapes.box(12.0, (0.1, 0.2, 0.3))
     xx, yy, zz = (float(x) for x in body.inertia.matrix.diagonal())
     sdf = (f"<sdf version='1.9'><model name='m'><link name='a'><inertial>\n<pose>0 0 0 0 0 0</pose><mass> 12000 </mass>"
-           f"<inertia><ixx>{xx}</ixx><iyy>{yy}</iyy><izz>{zz}</izz></inertia></inertial><visual name='v'><geometry><box>"
-           "<size>0.2 0.4 0.6</size></box></geometry></visual></link></model></sdf>")
+           f"<inertia><ixx>{xx}</ixx><iyy>{yy}</iyy><izz>{zz}</izz></inertia></inertial><visual name='v'><geometry>"
+           "<box><size>0.2 0.4 0.6</size></box></geometry></visual></link></model></sdf>")
     file = write("a.sdf", sdf)
     call("inertia", file, "--fix")
     fixed = (file.parent / "a.fixed.sdf").read_text()
@@ -205,7 +206,8 @@ def test_options_are_for_robots_alone():
     for option in (("--fail-on", "error"), ("--ignore", "a=b"), ("--path", "."), ("--fix",), ("--format", "sarif"),
                    ("--no-xacro",)):
         result = call("inertia", "S1", *option)
-        assert result.exit_code == 2 and f"{option[0].replace('--no-', '--')}: must be used with robots" in result.stderr
+        said = f"{option[0].replace('--no-', '--')}: must be used with robots"
+        assert result.exit_code == 2 and said in result.stderr
 
 
 # ---- pages

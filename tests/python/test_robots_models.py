@@ -53,7 +53,8 @@ def test_mjcf_agrees_with_mujoco(write):
 <body name="b" childclass="dense"><frame euler="0.1 0.2 0.3" pos="1 1 0"><geom type="ellipsoid" size="0.1 0.2 0.3"
  axisangle="1 2 3 0.5"/></frame><geom type="box" size="1 1 1" group="3"/></body>
 <body name="c"><frame pos="1 2 3" euler="0.4 0.5 0"><replicate count="3" offset="0.5 0 0.1" euler="0 0.3 0.7">
-<geom type="cylinder" size="0.1 0.3" pos="0.3 0 0"/></replicate></frame></body><body name="d"><geom type="mesh" mesh="part" pos="0 0 1" xyaxes="0 1 0 -1 0 0"/></body>
+<geom type="cylinder" size="0.1 0.3" pos="0.3 0 0"/></replicate></frame></body>
+<body name="d"><geom type="mesh" mesh="part" pos="0 0 1" xyaxes="0 1 0 -1 0 0"/></body>
 </worldbody></mujoco>""")
     model = mujoco.MjSpec.from_file(str(file)).compile()
     links = {link.name: link for link in robots.read(file).links}
@@ -85,7 +86,8 @@ def test_what_only_mujoco_makes_is_read_through_it(write):
     assert links["s"]["matrix"] is not None and not links["s"]["findings"]
     write("part.stl", _binary(CORNERS, SIDES))
     outside = write("deep/er/still/b.xml", '<mujoco><asset><mesh name="m" file="../../../part.stl"/></asset><worldbody>'
-                    '<body name="s"><geom type="box" size="0.1 0.2 0.3" shellinertia="true"/></body></worldbody></mujoco>')
+                    '<body name="s"><geom type="box" size="0.1 0.2 0.3" shellinertia="true"/></body></worldbody>'
+                    '</mujoco>')
     assert "not all read" in judged(outside)[1]["s"]["verdict"]
 
 
@@ -106,7 +108,7 @@ def test_sdf_includes_by_folder_merged_and_nested(write, tmp_path, monkeypatch):
     world = ("<sdf version='1.9'><world name='w'>" + include.format("", "<name>one</name>") + include.format("", "")
              + "<model name='m'>" + include.format(" merge='true'", "") + "</model></world></sdf>")
     file = write("far/away/worlds/w.sdf", world)
-    assert "<include> 'model://box' is not read" in call("inertia", file).stdout   # it lies outside of the file's project
+    assert "<include> 'model://box' is not read" in call("inertia", file).stdout   # outside of the project
     for options in (("--path", tmp_path / "models"), ()):
         if not options:
             monkeypatch.setenv("GZ_SIM_RESOURCE_PATH", str(tmp_path / "models"))
@@ -119,8 +121,9 @@ def test_sdf_includes_by_folder_merged_and_nested(write, tmp_path, monkeypatch):
 
 def test_sdf_poses_relative_to_other_frames(write):
     """The box is given in a frame that hangs on a joint's child: it comes to lie where the centre is."""
-    link = (f"<link name='a'><pose>1 0 0 0 0 1.5707963267948966</pose><inertial><pose relative_to='f'>0 0 1 0 0 0</pose>"
-            f"<mass>12</mass>{ENTRIES}</inertial>" + SHOWN.format("<pose relative_to='f'>0 0 1 0 0 0</pose>") + "</link>")
+    pose = "<pose relative_to='f'>0 0 1 0 0 0</pose>"
+    link = (f"<link name='a'><pose>1 0 0 0 0 1.5707963267948966</pose><inertial>{pose}<mass>12</mass>{ENTRIES}"
+            "</inertial>" + SHOWN.format(pose) + "</link>")
     frames = ("<joint name='j' type='fixed'><parent>world</parent><child>a</child><pose>0 0 0 0 0 -1.5707963267948966"
               "</pose></joint><frame name='f' attached_to='j'><pose>0 2 0 0 0 0</pose></frame>")
     (found,) = robots.read(write("a.sdf", model(link, "m", frames))).links
@@ -134,12 +137,14 @@ def test_sdf_poses_relative_to_other_frames(write):
 def test_old_sdf_and_static_models(write):
     old = ("<gazebo version='1.0'><model name='m'><link name='a'><inertial mass='12'><origin pose='0.1 0 0 0 0 0'/>"
            "<inertia ixx='0.52' iyy='0.4' izz='0.2' ixy='0' ixz='0' iyz='0'/></inertial><visual name='v'>"
-           "<origin pose='0.1 0 0 0 0 0'/><geometry><box size='0.2 0.4 0.6'/></geometry></visual></link></model></gazebo>")
+           "<origin pose='0.1 0 0 0 0 0'/><geometry><box size='0.2 0.4 0.6'/></geometry></visual></link></model>"
+           "</gazebo>")
     status, links = judged(write("a.world", old))
     assert status == 0 and links["a"]["mass"] == 12 and links["a"]["misfit"] < 1e-9
     wrong = model(f"<link name='a'>{INERTIAL.replace('0.52', '52.17')}{SHOWN.format('')}</link>")
     assert judged(write("b.sdf", wrong))[0] == 1
-    unlikely = model(f"<link name='a'>{INERTIAL.replace('0.52', '5.23').replace('0.4', '5.41')}{SHOWN.format('')}</link>")
+    large = INERTIAL.replace("0.52", "5.23").replace("0.4", "5.41")
+    unlikely = model(f"<link name='a'>{large}{SHOWN.format('')}</link>")
     assert judged(write("c.sdf", unlikely))[0] == 1
     status, links = judged(write("d.sdf", unlikely.replace("<link", "<static>true</static><link")))
     assert status == 0 and links["a"]["findings"][0]["level"] == "remark"
@@ -156,7 +161,8 @@ def test_a_cone_stands_on_its_middle(write):
 
 
 XACRO = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:include filename="{include}"/>
-<xacro:property name="m" value="12"/><link name="a"><inertial><mass value="${{m}}"/><xacro:tensor/></inertial></link></robot>"""
+<xacro:property name="m" value="12"/><link name="a"><inertial><mass value="${{m}}"/><xacro:tensor/>
+</inertial></link></robot>"""
 MACRO = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:macro name="tensor" params="">
 <inertia ixx="${1 + 1}" ixy="0" ixz="0" iyy="2" iyz="0" izz="3"/></xacro:macro></robot>"""
 
@@ -182,7 +188,8 @@ def test_without_the_extras_what_they_read_is_named(write, monkeypatch):
         monkeypatch.setitem(sys.modules, module, None)
     write("open.stl", stl(CORNERS, SIDES[:3]))
     write("part.obj", "v 0 0 0\n")
-    parts = "".join(f"<visual><geometry><mesh filename='{name}'/></geometry></visual>" for name in ("open.stl", "part.obj"))
+    parts = "".join(f"<visual><geometry><mesh filename='{name}'/></geometry></visual>"
+                    for name in ("open.stl", "part.obj"))
     inertial = ('<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1.1" iyz="0" izz="1.2"/></inertial>')
     (link,) = robots.read(write("a.urdf", robot(f'<link name="a">{inertial}{parts}</link>'))).links
     assert "only its extent is compared" in link.notes[0] and "pip install 'polhode[mesh]'" in link.notes[1]

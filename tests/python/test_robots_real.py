@@ -102,7 +102,8 @@ def test_a_density_is_a_cause(write):
     assert (finding["level"], finding["code"], finding["cause"]) == ("error", "PI006", "density")
     assert finding["mass"] == pytest.approx(48)
     light = f'<mass value="0.01"/>{tensor(BLOCK.inertia.matrix / 1200)}'
-    assert findings(write("b.urdf", robot(link(light, '<box size="0.2 0.4 0.6"/>')))) == [("remark", "PI206", "density")]
+    toy = write("b.urdf", robot(link(light, '<box size="0.2 0.4 0.6"/>')))
+    assert findings(toy) == [("remark", "PI206", "density")]
 
 
 def test_a_mass_raised_to_a_floor_is_told(write):
@@ -225,7 +226,8 @@ def test_files_outside_of_the_folders_are_not_opened(write, tmp_path):
     assert "outside" in note and "--path" in note
     near = robots.read(file, search=Search.of(allowed=[tmp_path])).links[0]
     assert near.visual.parts
-    including = write("one/two/three/four/a.sdf", "<sdf version='1.9'><include><uri>../../../../secret/m.sdf</uri></include>"
+    including = write("one/two/three/four/a.sdf", "<sdf version='1.9'><include><uri>../../../../secret/m.sdf</uri>"
+                      "</include>"
                       "<model name='m'><link name='a'/></model></sdf>")
     assert "outside" in robots.read(including).notes[0]
     (tmp_path / "one/two/three/four/link.stl").symlink_to(tmp_path / "secret/part.stl")
@@ -300,8 +302,8 @@ def test_the_hull_has_the_moments_of_its_triangles(count):
     moments, corners = convex_hull(points)
     hull = spatial.ConvexHull(points)
     faces = hull.simplices.astype(np.int64)
-    out = np.einsum("ni,ni->n", np.cross(points[faces[:, 1]] - points[faces[:, 0]], points[faces[:, 2]] - points[faces[:, 0]]),
-                    hull.equations[:, :3]) < 0
+    a, b, c = (points[faces[:, i]] for i in range(3))
+    out = np.einsum("ni,ni->n", np.cross(b - a, c - a), hull.equations[:, :3]) < 0
     faces[out] = faces[out][:, ::-1]
     body = ph.MassProperties.from_mesh(points, faces, density=1)
     assert moments.volume == pytest.approx(body.mass) and moments.centre == pytest.approx(np.array(body.com))

@@ -1,7 +1,7 @@
 """Inertia tensors, their principal axes, and the mass properties of bodies.
 
 `InertiaTensor` and `MassProperties` check their arguments. A tensor that no body can have is refused, with the axis,
-the deficit in per cent and the likely cause. `polhode.shapes` makes simple bodies. `robots` checks URDF, SDF and MJCF files.
+the deficit in per cent and the likely cause. `polhode.shapes` makes simple bodies. `robots` checks URDF, SDF and MJCF.
 """
 
 from __future__ import annotations

@@ -150,22 +150,26 @@ def convex_hull(points: Array) -> tuple[Moments, Array] | None:
     return Moments(volume, centre + middle, second), points[hull.vertices]
 
 
-_DIRECTIONS = np.array([(x, y, z) for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1) if (x, y, z) != (0, 0, 0)])
+# Thirteen directions, with their opposites: the axes of a cube, of its edges and of its corners.
+_DIRECTIONS = np.array([(x, y, z) for x in (0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1)
+                        if (x, y, z) > (0, 0, 0)], dtype=float)
 
 
 def _outer(points: Array, make: Any) -> Array:
-    """Leave out points within the hull of some extreme ones: they are no corners of the whole hull."""
+    """Leave out repeated points, and those within the hull of some extreme ones: they are no corners of the whole."""
     if len(points) < 1000:
         return points
-    extreme = points[np.unique((points @ _DIRECTIONS.T).argmax(0))]
+    along = points @ _DIRECTIONS.T
+    extreme = points[np.unique([along.argmax(0), along.argmin(0)])]
     if len(extreme) < 5:
         return points
-    planes = make(extreme).equations
     reach = float(np.abs(points).max())
     beyond = np.zeros(len(points), dtype=bool)
-    for plane in planes:
+    for plane in make(extreme).equations:
         beyond |= points @ plane[:3] + plane[3] > -1e-9 * reach
-    return points[beyond]
+    left = np.ascontiguousarray(points[beyond])
+    rows = np.unique(left.view([("", left.dtype)] * 3))
+    return rows.view(left.dtype).reshape(-1, 3)
 
 
 def placed(moments: Moments, scale: Array, turn: Array, place: Array) -> MassProperties:
