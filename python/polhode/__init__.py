@@ -17,6 +17,7 @@ from ._batch.closed_forms import gyrostat as gyrostat
 from ._batch.closed_forms import heavy_top as heavy_top
 from ._batch.solve_many import Motions as Motions
 from ._batch.solve_many import solve_many as solve_many
+from ._batch.step import step as step
 from ._build import build_info as build_info
 from ._build import cmake_prefix as cmake_prefix
 from ._core import DampedFree as DampedFree

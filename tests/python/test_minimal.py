@@ -59,6 +59,11 @@ def smoke_heavy_tops():
     assert np.allclose(omega[1], ph.HeavyTop((1, 1, 0.5), 2.0, (0.1, 0.2, 6)).at(3.5)[0])
 
 
+def smoke_step():
+    L, attitude = ph.step(BLOCK, np.multiply(BLOCK, OMEGA), (0, 0, 0, 1), 0.1, frame="body")
+    assert L.shape == (3,) and abs(np.linalg.norm(attitude) - 1) < 1e-15
+
+
 def smoke_free_motion():
     omega, attitude = ph.free_motion(BLOCK, OMEGA, (0, 0, 0, 1), TIMES)
     assert np.allclose(omega, ph.FreeMotion(BLOCK, OMEGA).at(TIMES)[0], rtol=1e-13)
@@ -143,7 +148,7 @@ def smoke_build_info():
 
 def smoke_cmake_prefix():
     prefix = pathlib.Path(ph.cmake_prefix())
-    assert (prefix / "include/polhode/polhode.hpp").exists()
+    assert all((prefix / "include/polhode" / name).exists() for name in ("polhode.hpp", "step.hpp", "polhode_step.h"))
     assert (prefix / "lib/cmake/polhode/polhodeConfig.cmake").exists()
 
 
@@ -176,6 +181,7 @@ SMOKE = {
     "cmake_prefix": smoke_cmake_prefix,
     "euler_rates": smoke_body_rates,
     "free_motion": smoke_free_motion,
+    "step": smoke_step,
     "generalised_forces": smoke_generalised_forces,
     "gyrostat": smoke_gyrostat,
     "heavy_top": smoke_heavy_tops,

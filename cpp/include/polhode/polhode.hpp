@@ -10,6 +10,7 @@
 #include "polhode/batch/gyrostat.hpp"
 #include "polhode/batch/heavy_top.hpp"
 #include "polhode/batch/solve_many.hpp"
+#include "polhode/batch/step.hpp"
 #include "polhode/core/build_info.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/core/float_state.hpp"

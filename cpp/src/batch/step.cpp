@@ -1,0 +1,122 @@
+#include "polhode/batch/step.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+#include "batch/lanes/step_kernels.hpp"
+#include "batch/parallel.hpp"
+#include "batch/rows.hpp"
+#include "polhode/core/error.hpp"
+#include "polhode/core/simd.hpp"
+#include "polhode/inertia/inertia_tensor.hpp"
+
+namespace polhode {
+namespace {
+
+constexpr std::size_t grain = 64;         // bodies; a multiple of every block of lanes
+constexpr std::size_t round_work = 65536;   // steps of bodies between two looks for Ctrl-C
+
+const StepKernels& choose_kernels() {
+  static const StepKernels& chosen = [&]() -> const StepKernels& {
+    const StepKernels* found = nullptr;
+    if (simd_level() == SimdLevel::avx512) found = avx512_step_lanes();
+    if (found == nullptr && simd_level() != SimdLevel::baseline) found = avx2_step_lanes();
+    return found != nullptr ? *found : *baseline_step_lanes();
+  }();
+  return chosen;
+}
+
+template <class T>
+bool is_body(const T* I) {
+  const T largest = std::max({I[0], I[1], I[2]}), smallest = std::min({I[0], I[1], I[2]}), sum = I[0] + I[1] + I[2];
+  constexpr T tolerance = std::is_same_v<T, float> ? T(1e-5) : T(InertiaTensor::tolerance);
+  return smallest > 0 && sum <= std::numeric_limits<T>::max() && 2 * largest - sum <= tolerance * largest;
+}
+
+template <class T>
+bool is_unit(const T* q) {
+  const T error = std::abs(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1);
+  return !(error > (std::is_same_v<T, float> ? T(1e-5) : T(2e-6)));   // NaN passes: it is the body's own
+}
+
+/// The first body that is refused, or the number of bodies.
+template <class T>
+std::size_t find_refused(const StepBatch<T>& b, std::size_t begin, std::size_t end) {
+  bool good = true;
+  if (!b.one_inertia)
+    for (std::size_t i = begin; i < end; ++i) good &= is_body(b.moments + 3 * i);
+  for (std::size_t i = begin; i < end; ++i) good &= is_unit(b.attitude + 4 * i);
+  if (good) return b.bodies;
+  for (std::size_t i = begin; i < end; ++i)
+    if ((!b.one_inertia && !is_body(b.moments + 3 * i)) || !is_unit(b.attitude + 4 * i)) return i;
+  return b.bodies;
+}
+
+template <class T>
+[[noreturn]] void refuse(const StepBatch<T>& b, std::size_t body) {
+  const T* I = b.moments + (b.one_inertia ? 0 : 3 * body);
+  if (!is_body(I)) {
+    throw InvalidInput(b.one_inertia ? "inertia" : row_name("inertia", body),
+                       "three positive, finite moments, none above the sum of the two others",
+                       "(" + to_text(I[0]) + ", " + to_text(I[1]) + ", " + to_text(I[2]) + ")",
+                       "a rod or a point has a zero moment, so its rate about that axis is undefined");
+  }
+  const T* q = b.attitude + 4 * body;
+  double norm2 = 0.0;
+  for (int k = 0; k < 4; ++k) norm2 += static_cast<double>(q[k]) * static_cast<double>(q[k]);
+  throw InvalidInput(row_name("attitude", body), "a unit quaternion (x, y, z, w)", "norm " + to_text(std::sqrt(norm2)),
+                     "normalise it first, if it is meant to be an attitude");
+}
+
+template <class T>
+void run(const StepBatch<T>& batch, int threads) {
+  if (!std::isfinite(batch.step)) {
+    throw InvalidInput("h", "a finite time step [s]", to_text(static_cast<double>(batch.step)));
+  }
+  if (batch.bodies == 0) return;
+  if (batch.one_inertia && !is_body(batch.moments)) refuse(batch, 0);
+  const std::size_t steps = static_cast<std::size_t>(std::max(1L, batch.count));
+  const std::size_t work = steps > std::numeric_limits<std::size_t>::max() / batch.bodies
+                               ? std::numeric_limits<std::size_t>::max()
+                               : steps * batch.bodies;
+  const std::size_t workers = std::min(thread_count(threads, work, 20000), (batch.bodies + grain - 1) / grain);
+  std::atomic<std::size_t> refused{batch.bodies};
+  parallel_for(batch.bodies, workers, grain, [&](std::size_t begin, std::size_t end) {
+    const std::size_t found = find_refused(batch, begin, end);
+    std::size_t first = refused;
+    while (found < first && !refused.compare_exchange_weak(first, found)) continue;
+  });
+  if (refused < batch.bodies) refuse(batch, refused);
+  if (batch.count == 0) return;
+
+  const StepKernels& kernels = choose_kernels();
+  // In pieces, so that Ctrl-C is heard. Kicks between the steps of a call last a whole step, also between its pieces.
+  const long most = static_cast<long>(std::max<std::size_t>(1, round_work / grain));
+  parallel_for(batch.bodies, workers, grain, [&](std::size_t begin, std::size_t end) {
+    const std::size_t bodies = std::max(grain, round_work / std::min(steps, round_work) / grain * grain);
+    for (std::size_t i = begin; i < end; i += bodies) {
+      StepBatch<T> piece = batch;
+      for (long left = batch.count; left > 0; left -= piece.count) {
+        check_interrupt();
+        piece.count = std::min(left, most);
+        piece.first = left == batch.count ? batch.first : 1.0;
+        piece.last = left == piece.count ? batch.last : 0.0;
+        if constexpr (std::is_same_v<T, float>) {
+          kernels.run_f(piece, i, std::min(end, i + bodies));
+        } else {
+          kernels.run_d(piece, i, std::min(end, i + bodies));
+        }
+      }
+    }
+  });
+}
+
+}  // namespace
+
+void step_bodies(const StepBatch<float>& batch, int threads) { run(batch, threads); }
+void step_bodies(const StepBatch<double>& batch, int threads) { run(batch, threads); }
+
+}  // namespace polhode

@@ -1,0 +1,33 @@
+#include "convert.hpp"
+#include "gil.hpp"
+#include "polhode/batch/step.hpp"
+
+namespace polhode::python {
+namespace {
+
+/// Python has checked shapes, types and order, and made what is not the caller's. Both outputs hold the start.
+template <class T>
+void step_rows(const py::array_t<T>& moments, py::array_t<T>& momentum, py::array_t<T>& attitude, double step,
+               const py::object& torque, bool space, long count, double first, double last, int threads) {
+  StepBatch<T> batch;
+  batch.bodies = static_cast<std::size_t>(momentum.size()) / 3;
+  batch.moments = moments.data(), batch.one_inertia = moments.ndim() == 1;
+  py::array_t<T> kicks;
+  if (!torque.is_none()) {
+    kicks = torque.cast<py::array_t<T>>();
+    batch.torque = kicks.data(), batch.one_torque = kicks.ndim() == 1;
+  }
+  batch.space = space, batch.step = static_cast<T>(step), batch.count = count, batch.first = first, batch.last = last;
+  batch.momentum = momentum.mutable_data(), batch.attitude = attitude.mutable_data();
+  const WithoutGil nogil;
+  step_bodies(batch, threads);
+}
+
+}  // namespace
+
+void bind_batch_step(py::module_& m) {
+  m.def("_step_f", &step_rows<float>);
+  m.def("_step_d", &step_rows<double>);
+}
+
+}  // namespace polhode::python
