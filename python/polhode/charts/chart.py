@@ -16,6 +16,7 @@ from .._scene.files import find_scene, read_toml
 from .._scene.scene import Scene
 from . import pictures
 from .candidates import candidates
+from .engines import find_errors_per_turn
 from .measure import SceneResult, measure
 from .results import document
 from .runners import make_runner
@@ -109,6 +110,7 @@ def chart(
             label = scene.name or "scene"
             report = functools.partial(_report, progress, index, label)
             results.append(measure(scene, title, taking_part, share, report, runner))
+            results[-1].per_turn = find_errors_per_turn(scene)
             if together:
                 results[-1].notes.append(together)
             show(results[-1])

@@ -66,6 +66,7 @@ class SceneResult:
     notes: list[str]
     seconds: float = 0.0
     startups: dict[str, float] = field(default_factory=dict)   # seconds before the first answer, beside that answer's
+    per_turn: dict[str, float] = field(default_factory=dict)   # error per turn at 1/60 s [rad], by fixed-step method
 
     def of(self, candidate: str) -> list[Point]:
         """The points of one candidate that answered, from loose to tight."""

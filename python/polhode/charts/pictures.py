@@ -14,6 +14,7 @@ import numpy as np
 from .._plot import style
 from .._plot.text import to_error, to_time
 from .._solve.motion import Floats
+from .engines import engine_line
 from .findings import (
     adaptive, dominated, headline, held_by_stability, program_ratios, stalls, to_ratio, under_headline, without_answer,
 )  # fmt: skip
@@ -167,12 +168,14 @@ def overview(results: list[SceneResult], folder: pathlib.Path) -> list[pathlib.P
         names |= {p.candidate: p.family for p in result.points if p.answered and p.candidate not in pale}
     with style.used() as plt:
         title, across = _wrap(_overview_title(results), 22 * columns), max(2, round(1.4 * columns))
+        advice = _wrap(engine_line(results), 42 * columns) if engine_line(results) else ""
+        below = 0.15 + 0.18 * (advice.count("\n") + 1) if advice else 0.0
         legend_rows = -(-(len(names) + 2) // across)
         top = 1.1 + 0.19 * legend_rows + 0.25 * title.count("\n")
-        width, height = 1.25 + 2.35 * columns, 0.32 + top + 2.3 * rows
+        width, height = 1.25 + 2.35 * columns, 0.32 + top + 2.3 * rows + below
         figure, grid = plt.subplots(rows, columns, figsize=(width, height), sharex=True, sharey=True, squeeze=False)
-        figure.subplots_adjust(left=0.97 / width, right=1 - 0.15 / width, bottom=0.62 / height, top=1 - top / height,
-                               wspace=0.09, hspace=0.28)
+        figure.subplots_adjust(left=0.97 / width, right=1 - 0.15 / width, bottom=(0.62 + below) / height,
+                               top=1 - top / height, wspace=0.09, hspace=0.28)
         for axes in grid.flat[len(results):]:
             axes.set_visible(False)
         for axes, result in zip(grid.flat, results):
@@ -196,7 +199,8 @@ def overview(results: list[SceneResult], folder: pathlib.Path) -> list[pathlib.P
                       bbox_to_anchor=(0.3 / width, 1 - (0.72 + 0.25 * title.count("\n")) / height),
                       fontsize=8.5, ncols=across, frameon=False, borderaxespad=0, handlelength=2.0, columnspacing=1.4)
         figure.supxlabel("largest error over all samples (more accurate to the right)", fontsize=9.5, color=style.QUIET,
-                         y=0.1 / height)
+                         y=(0.1 + below) / height)
+        figure.text(0.3 / width, 0.1 / height, advice, fontsize=8.5, color=style.QUIET, va="bottom")
         figure.supylabel("time for all samples", fontsize=9.5, color=style.QUIET, x=0.06 / width,
                          y=(1 - (top - 0.62) / height) / 2)
         style.heading(figure, title,

@@ -21,7 +21,8 @@ MEASURE = ("error: over all samples, the larger of |omega - truth| / max |truth|
            "the attitudes [rad]; seconds: CPU time of the thread for all samples, median of the repeats, taken in turn "
            "with all others, fastest and slowest among them; startups: wall seconds before and above the first answer, "
            "such "
-           "as for a compiler; drift: largest move of each invariant from its start, relative")
+           "as for a compiler; drift: largest move of each invariant from its start, relative; error per turn at "
+           "1/60 s: of the attitude of a method with a fixed step, over ten turns at the start's rate [rad]")
 
 
 def _number(value: float) -> float | None:
@@ -58,6 +59,7 @@ def document(results: list[SceneResult], seconds: float, files: list[str], with_
             {"name": r.scene.name, "title": r.title, "samples": int(r.scene.times.size),
              "span": float(np.ptp(np.append(r.scene.times, r.scene.t0))), "scene": _scene(r.scene),
              "reference": to_json(r.truth), "finding": headline(r),
+             "error_per_turn_at_60_hz": {name: _number(value) for name, value in r.per_turn.items()},
              "dominated": sorted(dominated(r)), "without_answer": without_answer(r), "startups": r.startups,
              "notes": r.notes, "seconds": r.seconds, "points": [_point(p) for p in r.points]}
             for r in results

@@ -199,6 +199,15 @@ def _drifts(point: Point) -> tuple[str, str]:
     return tuple(f"{v[0]:.0e}" if v else "-" for v in (energy, momentum))  # type: ignore[return-value]
 
 
+def _per_turn(result: SceneResult, point: Point, shown: set[str]) -> str:
+    """The error per turn of a method at 1/60 s, in its first row."""
+    value = result.per_turn.get(point.candidate)
+    if value is None or point.candidate in shown:
+        return ""
+    shown.add(point.candidate)
+    return f"{value:.0e}" if value < 0.5 else "lost"
+
+
 def scene(result: SceneResult) -> None:
     """Print the table of one scene of a chart."""
     from .._plot.text import to_time
@@ -210,14 +219,15 @@ def scene(result: SceneResult) -> None:
     out.print(Text(f"\n{result.scene.name} {result.title}: {headline(result)}"))
     out.print(Text(f"reference: {truth.kind} ({truth.source}), {known}"))
     table = _table("method", "setting", "error", "time", "fastest", "slowest", "of", "steps", "derivatives",
-                   "drift of energy", "of momentum", left=2)
+                   "drift of energy", "of momentum", "per turn, 1/60 s", left=2)
+    shown: set[str] = set()
     for point in result.points:
         if not point.answered:
             continue
         counts = [f"{point.stats[key]:,}" if key in point.stats else "-" for key in ("steps", "derivatives")]
         times = [to_time(seconds) for seconds in (point.seconds, point.fastest, point.slowest)]
         table.add_row(point.candidate, point.setting, f"{point.error:.1e}", *times, str(point.repeats), *counts,
-                      *_drifts(point))
+                      *_drifts(point), _per_turn(result, point, shown))
     out.print(table)
     missing: dict[tuple[str, str], list[str]] = {}
     for point in result.points:
