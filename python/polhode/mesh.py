@@ -158,7 +158,8 @@ def _by_trimesh(file: pathlib.Path, data: bytes) -> tuple[Vertices, Faces]:
     try:
         # No tidying: what the file holds is what is judged.
         if kind == ".dae":
-            import collada  # type: ignore[import-untyped, import-not-found, unused-ignore]  # noqa: F401  before trimesh misses it
+            # Before trimesh misses it.
+            import collada  # type: ignore[import-untyped, import-not-found, unused-ignore]  # noqa: F401
 
             with _silent():   # its log is about textures
                 scene = trimesh.load(io.BytesIO(data), file_type="dae", force="scene", process=False)
