@@ -83,7 +83,7 @@ def whole(path: pathlib.Path) -> Iterator[pathlib.Path]:
         raise
 
 
-def write(path: pathlib.Path, text: str) -> None:
-    """Write a text whole or not at all."""
+def write(path: pathlib.Path, content: str | bytes) -> None:
+    """Write a file whole or not at all."""
     with whole(path) as draft:
-        draft.write_text(text, encoding="utf-8")
+        draft.write_bytes(content.encode() if isinstance(content, str) else content)

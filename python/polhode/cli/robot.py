@@ -101,8 +101,7 @@ def _write_repaired(report: Report) -> None:
         print(f"{report.file}: {line}", file=sys.stderr)
     if any(line.endswith(": repaired") for line in said):
         copy = file.with_name(f"{file.stem}.fixed{file.suffix}")
-        with _files.whole(copy) as draft:
-            draft.write_bytes(data)
+        _files.write(copy, data)
         print(f"wrote {copy}", file=sys.stderr)
 
 
