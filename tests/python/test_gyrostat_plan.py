@@ -43,6 +43,7 @@ def test_the_bound_has_the_rounding_of_the_rotors():
     assert plain == pytest.approx(20 * 2.0**-52)
     for rotors in ([ph.Rotor((1, 2, 2), momentum=0.5)], [ph.Rotor((0, 0, 1), inertia=0.1, speed=5.0)],
                    [ph.Rotor((0, 0, 1), inertia=0.1, speed=5.0, free=True)],
+                   [ph.Rotor((0, 0, 1), inertia=0.1, momentum=0.5, free=True)],   # what it leaves of the inertia
                    [ph.Rotor((0, 0, 1), momentum=h) for h in (0.1, 0.7, 0.2)]):
         error = ph.plan(scene(rotors=rotors)).predicted_error
         assert 1.2 * plain < error < (2e-11 if len(rotors) > 1 else 2e-13)

@@ -176,9 +176,10 @@ def test_the_plan_says_why():
 @pytest.mark.parametrize("accuracy", [1e-6, 1e-9, 1e-12])
 @pytest.mark.parametrize("axis", [0, 1])
 def test_a_braked_swing_carries_its_error_in_the_plane(axis, accuracy):
-    """About the intermediate axis, too, where a start beside the plane would leave it."""
+    """About the intermediate axis, too, where a start beside the plane would leave it. The error of the brake grows in
+    the last swings."""
     brake = ph.torques.During(ph.torques.AngularDamping(0.4), [(4, 6)])
-    one = ph.Scene(inertia=BODY, omega=1.5 * np.eye(3)[axis], torques=[GRAVITY, brake], times=TIMES)
+    one = ph.Scene(inertia=BODY, omega=1.5 * np.eye(3)[axis], torques=[GRAVITY, brake], times=np.linspace(0, 300, 301))
     motion = ph.solve(one, accuracy)
     assert [piece.model for piece in motion.plan.pieces] == ["pendulum", "euler", "pendulum"]
     truth = _core.reference(one, 30, 1e-20, 10**6)
