@@ -148,8 +148,9 @@ def parse_bytes(data: bytes, name: str) -> Node:
 
 
 _COMMENT = re.compile(rb"<!--.*?-->", re.S)
+_BLANKS = re.compile(rb"\s*")
 _LEADING = re.compile(rb"[^<\0\xef]+(?=<)")
-_DECLARATION = re.compile(rb"(?:\xef\xbb\xbf)?(?:\s|<!--.*?-->)*(<\?xml\b[^>]*?\?>)", re.S)
+_DECLARATION = re.compile(rb"<\?xml\b[^>]*?\?>")
 
 
 def _blank(found: re.Match[bytes]) -> bytes:
@@ -160,12 +161,24 @@ def _without_declaration(data: bytes) -> tuple[bytes, str | None]:
     """Blank the XML declaration, wherever it stands before the root, so that bytes and lines keep their numbers."""
     if data[:2] not in (b"\xff\xfe", b"\xfe\xff") and (found := _LEADING.match(data)) is not None:
         data = _blank(found) + data[found.end():]   # text before the first element
-    found = _DECLARATION.match(data)
+    found = _DECLARATION.match(data, _after_comments(data))
     if found is None:
         return data, None
-    encoding = re.search(rb"encoding\s*=\s*[\"']([A-Za-z0-9._-]+)[\"']", found[1])
-    blanked = data[:found.start(1)] + _blank(re.match(rb".*", found[1], re.S) or found) + data[found.end(1):]
+    encoding = re.search(rb"encoding\s*=\s*[\"']([A-Za-z0-9._-]+)[\"']", found[0])
+    blanked = data[:found.start()] + _blank(found) + data[found.end():]
     return blanked, encoding[1].decode() if encoding else None
+
+
+def _after_comments(data: bytes) -> int:
+    """The place behind a byte order mark, blanks and comments at the beginning."""
+    place = 3 if data.startswith(b"\xef\xbb\xbf") else 0
+    while True:
+        found = _BLANKS.match(data, place)
+        place = found.end() if found else place
+        end = data.find(b"-->", place) if data.startswith(b"<!--", place) else -1
+        if end < 0:
+            return place
+        place = end + 3
 
 
 class _Builder:
