@@ -203,11 +203,12 @@ def _geom(node: Node, style: str, frame: Pose, model: Model, link: Link, from_ge
     low, high = model.compiler.groups
     if not low <= float(node.convert(told.get("group", "0"), 1, "group")[0]) <= high:
         return [(part, 0.0)]
-    if (mass := told.get("mass")) is not None:
-        return [(part, float(node.convert(mass, 1, "mass")[0]))]
+    mass = told.get("mass")
     density = float(node.convert(told.get("density", "1000"), 1, "density")[0])
-    if from_geoms and density and (told.get("shellinertia") == "true" or part.bound):
+    if from_geoms and (told.get("shellinertia") == "true" or part.bound) and (density if mass is None else mass != "0"):
         link.leave_out(into, "shell", "mass of a shell or an open mesh is not read")
+    if mass is not None:
+        return [(part, float(node.convert(mass, 1, "mass")[0]))]
     return [(part, density * (part.solid.mass if part.solid is not None else 0.0))]
 
 
