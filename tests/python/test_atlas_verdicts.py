@@ -175,6 +175,9 @@ def test_thresholds_are_where_they_are_said_to_be():
             == ["holds", "degrades", "degrades", "fails"])
     assert ([level("damping", points(steps={10.0: 50, 1e6: n})) for n in (10_000, 10_001, None)]
             == ["holds", "degrades", "fails"])
+    askew = damping.judge(points(steps={damping.ASKEW: None, 10.0: 50, 1e6: 60}))
+    assert (askew.level, askew.text) == ("fails", "not S7b")
+    assert damping.judge(points(steps={10.0: 50, 1e6: None})).text == "to c = 1e1"
 
 
 def test_a_refused_scale_is_not_a_wrong_one():

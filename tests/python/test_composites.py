@@ -121,6 +121,7 @@ def test_one_mesh_in_a_file(tmp_path):
     same(load(tmp_path, 'mesh = "parts/b.stl"\nmass = 48.0\n'), BOX(48, (1, 2, 3)))
     same(load(tmp_path, 'mesh = "parts/b.stl"\ndensity = 2.0\nunit = 0.5\n'), BOX(12, (0.5, 1, 1.5)))
     same(load(tmp_path, 'shape = "box"\ndensity = 2.0\nhalf_sides = [1.0, 2.0, 3.0]\n'), BOX(96, (1, 2, 3)))
+    same(load(tmp_path, 'shape = "box"\ndensity = 0.5\nhalf_sides = [1.0, 2.0, 3.0]\n'), BOX(24, (1, 2, 3)))
     scene = tmp_path / "scene.toml"
     scene.write_text('[body]\nmesh = "parts/b.stl"\nmass = 48.0\nabout = [0.0, 0.0, 3.0]\n[start]\nomega = [1.0, 2.0, '
                      '3.0]\n'

@@ -113,6 +113,14 @@ def test_a_tensor_alone_is_judged_alike_at_every_scale(scale):
     assert "about z" in finding.text and "izz" in finding.advice
 
 
+@pytest.mark.parametrize("factor", [10.0, 0.1, 100.0, 0.01, 1000.0, 0.001])
+def test_a_shifted_decimal_point_is_put_back(factor):
+    """By one to three places."""
+    wrong = np.diag((0.2, 0.5, 0.6 * factor))
+    finding = next(f for f in diagnose(wrong).findings if f.cause == "decimal")
+    np.testing.assert_allclose(finding.matrix, np.diag((0.2, 0.5, 0.6)), rtol=1e-12)
+
+
 def test_what_is_broken_is_said_by_how_much():
     negative = diagnose(np.diag((-0.2, 0.4, 0.52)))
     assert negative.findings[0].what == "positive" and negative.findings[0].per_cent == pytest.approx(100 * 0.2 / 0.52)

@@ -21,6 +21,17 @@ def vertical(q):
     return np.array([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)])
 
 
+@pytest.mark.parametrize("count", [6, 7])
+def test_of_many_pieces_the_first_and_the_last_are_listed(count):
+    windows = [(2.0 * k + 1, 2.0 * k + 2) for k in range(count)]
+    scene = ph.Scene(inertia=BLOCK, omega=(0.1, 0.2, 0.3), times=[2.0 * count], torques=[During(FIRING, windows)])
+    plan = ph.plan(scene, accuracy=1e-6)
+    assert len(plan.pieces) == 2 * count
+    text = str(plan)
+    assert ("  ... 2 more ..." in text) == (count == 7) and ("more" in text) == (count == 7)
+    assert sum("Constant" in line and " to " not in line for line in text.split("\n")) >= 6
+
+
 def pull(torque, t, w, q):
     """The torques' formulas, written once more."""
     if isinstance(torque, Constant):

@@ -131,6 +131,9 @@ def test_what_cannot_be_compared_is_named(write):
     body = f'<mass value="12"/>{tensor(ph.shapes.box(12.0, (0.1, 0.2, 0.3)).inertia.matrix)}'
     status, links = judged(write("a.urdf", urdf(body, '<mesh filename="package://gone/part.stl"/>')))
     assert status == 0 and "not found" in links["a"]["notes"][0]
+    (link,) = robots.read(write("a.urdf", urdf(body, '<mesh filename="package://gone/part.stl"/>'))).links
+    (other,) = robots.read(write("d.urdf", urdf(body, '<box size="0 1 1"/>'))).links
+    assert not link.visual.whole and not other.visual.whole   # what was not read may reach further
     write("open.stl", stl(CORNERS, SIDES[:3]))
     status, links = judged(write("b.urdf", urdf(body, '<mesh filename="open.stl"/>')))
     assert "not closed" in links["a"]["notes"][0]

@@ -36,6 +36,12 @@ def test_threads_and_division_change_nothing():
     assert (half.omega == one.omega[6:]).all()
 
 
+def test_results_are_compared_as_objects():
+    """Not by their arrays, which have no one truth."""
+    one, other = (ph.solve_many(COMMON, inertia=MOMENTS, omega=SPINS, rtol=1e-6) for _ in range(2))
+    assert one == one and one != other and len({one, other}) == 2
+
+
 def test_scenes_of_their_own():
     scenes = [scene("S5", times=TIMES), scene("S9", times=TIMES), scene("S6", times=TIMES)]
     many = ph.solve_many(scenes, method="dop853", rtol=1e-10)

@@ -1,0 +1,58 @@
+"""Which tests belong to a word: files of Python tests, and folders of C++ tests."""
+
+SOLVE = ["solve", "plan", "plan_exact", "plan_limits", "plan_custom", "handover", "pieces", "certificates", "events",
+         "taylor_invariants", "torque_windows", "methods", "doors", "proof"]
+
+# By the first parts of a path below python/polhode; the longest that fits holds.
+PYTHON = {
+    "_attitude": ["attitude", "attitude_euler", "attitude_fits", "attitude_refusals", "doors"],
+    "_batch/closed_forms": ["batch", "batch_top", "doors", "minimal"],
+    "_batch/broadcast": ["batch", "batch_top", "solve_many", "doors"],
+    "_batch/solve_many": ["solve_many", "solve_many_rk45", "solve_many_lanes", "doors", "interrupts"],
+    "_files": ["outputs", "hostile_files", "schema", "mesh_files"],
+    "_harness": ["workers", "charts", "atlas", "charts_limits"],
+    "_plot": ["plot", "charts"],
+    "_scene": ["schema", "hostile_files", "cli_mesh", "minimal", "composites", "homework", "family", "doors",
+               "scenes_reference", "torque_windows", "solve", "fuzz"],
+    "_solve/costs": ["plan", "plan_limits", "hostile_files", "cli"],
+    "_solve/calibrate": ["plan", "hostile_files", "cli"],
+    "_solve": ["solve", "plan", "plan_exact", "plan_limits", "doors", "pieces", "handover", "events",
+               "certificates", "minimal", "cli", "scenes_reference"],
+    "atlas": ["atlas_verdicts", "atlas_claims", "atlas"],
+    "charts": ["charts_limits", "charts_peers", "charts"],
+    "cli": ["cli", "cli_mesh", "outputs", "robots", "atlas", "report"],
+    "elliptic": ["elliptic", "doors"],
+    "inertia/robots": ["robots", "hostile_files", "fuzz"],
+    "inertia": ["diagnosis", "inertia", "robots", "principal_axes", "shapes", "mesh", "doors"],
+    "mesh": ["mesh_files", "mesh", "hostile_files", "cli_mesh", "fuzz"],
+    "report": ["report"],
+    "shapes": ["shapes", "composites", "doors"],
+    "": ["minimal", "doors", "stubs"],
+}
+
+# By the folder of a source in cpp/src.
+CPP = {
+    "attitude": ["attitude", "attitude_euler", "attitude_fits", "attitude_refusals"],
+    "batch": ["batch", "batch_top", "solve_many", "solve_many_rk45", "solve_many_lanes", "interrupts"],
+    "core": ["minimal", "interrupts", "attitude_refusals"],
+    "exact": ["free_motion", "heavy_top", "time_grid", "batch", "batch_top", "plan_exact"],
+    "inertia": ["inertia", "principal_axes", "shapes", "mesh", "mesh_files", "diagnosis"],
+    "math": ["elliptic", "free_motion"],
+    "method": ["methods", "taylor", "taylor_invariants", "solve", "events"],
+    "ode": ["methods", "events", "solve"],
+    "scene": ["solve", "schema", "minimal"],
+    "solve": SOLVE,
+    "torque": ["torque", "torque_windows", "methods"],
+}
+
+
+def python_tests(path):
+    """The test files for a file of the package, by its path below python/polhode."""
+    word = max((key for key in PYTHON if path.startswith(key)), key=len)
+    return PYTHON[word]
+
+
+def word_of(language, path):
+    """The word under which a mutant is counted."""
+    return path.removeprefix("cpp/src/").split("/")[0] if language == "C++" else (
+        path.removeprefix("python/polhode/").split("/")[0].removesuffix(".py"))
