@@ -16,7 +16,8 @@ $(shell mkdir -p build; find python/polhode -type f -not -name '*.py[ci]' | sort
 inputs := build/.names $(shell find CMakeLists.txt pyproject.toml cpp python/CMakeLists.txt python/bindings \
             tests/cpp/CMakeLists.txt scenes -type f 2>/dev/null)
 
-.PHONY: help demo test same-bits check-long install module clang sanitize aarch64 debian13 wheels stubs clean
+.PHONY: help demo test same-bits check-long install module clang sanitize valgrind fuzz mutants \
+        aarch64 debian13 free-threaded wheels stubs clean
 .NOTPARALLEL:
 # An environment whose Python has gone is made anew.
 ifneq ($(shell $(VENV)/bin/python -c 'import pip; print("there")' 2>/dev/null),there)
@@ -75,12 +76,26 @@ clang: $(VENV)/.demo
 	@cmake --build build/clang -j $(JOBS) --target polhode_tests polhode_headers_alone | sed -n '/warning:\|error:/p'
 	@build/clang/tests/cpp/polhode_tests
 
-# The C++ tests under the address and undefined-behaviour sanitizers.
+# The C++ tests under sanitizers: address and undefined behaviour, then threads, each by GCC and by Clang. A part alone:
+# make sanitize SANITIZERS=thread COMPILERS=g++
+SANITIZERS ?= address,undefined,float-cast-overflow thread
+COMPILERS  ?= g++ clang++
 sanitize: $(VENV)/.demo
-	@cmake -S . -B build/sanitize -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo -DPOLHODE_BUILD_TESTS=ON \
-	  -DPOLHODE_SANITIZE=ON $$($(VENV)/bin/python .ci/eigen_dir.py --cmake) > /dev/null
-	@cmake --build build/sanitize -j $(JOBS) --target polhode_tests
-	@build/sanitize/tests/cpp/polhode_tests
+	@for compiler in $(COMPILERS); do for sanitizer in $(SANITIZERS); do .ci/sanitize $$compiler $$sanitizer; done; done
+
+# The C++ tests under valgrind, whose long double has 64 bits: those that need more are left out.
+valgrind: install
+	@.ci/valgrind
+
+# Every door for FUZZ_SECONDS each by libFuzzer (Clang) and, for the readers of files, by atheris.
+FUZZ_SECONDS ?= 60
+fuzz: install
+	@.ci/fuzz $(FUZZ_SECONDS)
+
+# Which changes of the sources the tests see: a sample drawn by a seed. It goes on where the last run stopped.
+# make mutants MUTANTS="--minutes 30", or --again for those that survived, --show for the results so far.
+mutants: install
+	@$(PYTHON) tests/mutants/run.py $(MUTANTS)
 
 # The C++ tests for AArch64, emulated: among them that its answers have the bits of x86's baseline.
 aarch64: $(VENV)/.demo
@@ -95,6 +110,10 @@ aarch64: $(VENV)/.demo
 # Debian 13: GCC 14, Clang 19, Python 3.13, in a folder made by debootstrap (needs root).
 debian13:
 	@.ci/machines/debian13
+
+# Free-threaded Python 3.13 in that folder, built from Debian's source, and the Python tests by it.
+free-threaded:
+	@.ci/machines/free_threaded
 
 # A wheel for each Python at hand, checked and tested in a bare environment, and the sdist.
 wheels:

@@ -64,7 +64,7 @@ void bind_scene(py::module_& m) {
              for (const py::handle rotor : rotors)
                wheels.push_back(to_rotor(rotor, "scene.rotors[" + std::to_string(wheels.size()) + "]"));
              return Scene(SceneParts{to_inertia(inertia, "scene.inertia"), to_vector3(omega, "scene.omega"),
-                                     to_attitude(attitude, "scene.attitude", 2), std::move(list), to_times(times),
+                                     to_attitude(attitude, "scene.attitude", 3), std::move(list), to_times(times),
                                      to_wanted(want), to_real(t0, "scene.t0"), name.cast<std::string>(),
                                      std::move(wheels)});
            }),

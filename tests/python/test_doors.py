@@ -1,5 +1,6 @@
 """What is given at the doors: overlapping outputs, odd addresses, masks, wrong keywords, likely slips."""
 
+import contextlib
 import copy
 import pathlib
 import pickle
@@ -204,6 +205,11 @@ WRONG = {
     "During: .*nothing for 'windows'": lambda: ph.torques.During(ph.torques.Constant(OMEGA)),
     r"Gravity: .*weight is the mass times g: Gravity\(weight=mass": lambda: ph.torques.Gravity(mass=3, arm=(0, 0, 1)),
     "Gravity: .*did you mean 'weight'": lambda: ph.torques.Gravity(wieght=3, arm=(0, 0, 1)),
+    "solve: has no keyword 'accuarcy', did you mean 'accuracy'": lambda: ph.solve(ph.Scene.load("S1"), accuarcy=1e-6),
+    "plan: .* it has scene, accuracy, method": lambda: ph.plan(ph.Scene.load("S1"), tol=1e-6),
+    "solve_many: .* did you mean 'threads'": lambda: ph.solve_many([ph.Scene.load("S1")], thread=1),
+    "Scene: .* did you mean 'times'": lambda: ph.Scene(inertia=BLOCK, omega=OMEGA, time=[1]),
+    "Scene.replace: .* did you mean 'omega'": lambda: ph.Scene.load("S1").replace(omegas=OMEGA),
     "want: must be": lambda: ph.free_motion(BLOCK, OMEGA, HERE, 1.0, want=3),
     "want: must be one": lambda: ph.free_motion(BLOCK, OMEGA, HERE, 1.0, want=[["omega"]]),
     "out: must be": lambda: ph.free_motion(BLOCK, OMEGA, HERE, 1.0, out=3),
@@ -266,6 +272,19 @@ def test_a_likely_scalar_first_quaternion_is_taken_with_a_warning(name):
         warnings.simplefilter("error")
         for given in (ph.Rotation(HALF), HERE, (0, 1, 0, 0), (-1, 0, 0, 0), (0.6, 0.8, 0, 0)):
             call(given)
+
+
+@pytest.mark.parametrize("part, taken", [(0.000999, True), (0.001, True), (0.0010001, False)])
+def test_every_door_has_one_tolerance_for_attitudes(part, taken):
+    """At 0.001 the norm is 1e-6 off to rounding, and its square a little more than 2e-6."""
+    q = (0.0, part, part, 1.0)
+    scene = ph.Scene(inertia=BLOCK, omega=OMEGA, times=[1])
+    for call in (lambda: ph.FreeMotion(BLOCK, OMEGA, q), lambda: ph.free_motion(BLOCK, OMEGA, q, [1.0, 2.0]),
+                 lambda: ph.heavy_top(TOP, 2.0, OMEGA, q, [1.0]), lambda: ph.Rotation(q), lambda: ph.Rotation([q, q]),
+                 lambda: ph.Scene(inertia=BLOCK, omega=OMEGA, attitude=q, times=[1]),
+                 lambda: ph.solve_many(scene, omega=[OMEGA], attitude=q)):
+        with contextlib.nullcontext() if taken else pytest.raises(ph.InvalidInput, match="unit"):
+            call()
 
 
 def test_an_attitude_that_was_taken_gives_no_second_warning():

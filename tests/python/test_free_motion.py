@@ -287,3 +287,17 @@ def test_a_level_that_does_not_exist_is_refused():
     run = subprocess.run([sys.executable, "-c", "import polhode; polhode.build_info()"], capture_output=True, text=True,
                          env={**os.environ, "POLHODE_SIMD": "mmx"})
     assert run.returncode != 0 and "POLHODE_SIMD" in run.stderr
+
+
+@pytest.mark.parametrize("omega", [(1.7e308, 1e-3, 1e-3), (1e-160, -22.0, 1e160), (0.0, 1.0, 1e-320),
+                                   (0.0, -1e-3, 5.8e303)])
+@pytest.mark.parametrize("moments", [(1.0, 1.0, 1.0), (1.0, 1.5, 2.0), (1.0, 1.0, 1.5)])
+def test_rates_that_vanish_beside_another_are_refused(moments, omega):
+    """Divided by the largest they are no normal numbers, and the phase would be NaN."""
+    with pytest.raises(ph.InvalidInput, match="below 1e-286 of the largest"):
+        ph.FreeMotion(moments, omega)
+    with pytest.warns(RuntimeWarning, match="1 "):
+        w, q = ph.free_motion(moments, [omega, (1, 2, 3)], (0, 0, 0, 1), 0.5)
+    assert np.isnan(w[0]).all() and np.isnan(q[0]).all() and np.isfinite(w[1]).all()
+    least = [rate if rate == max(omega) else 0.0 for rate in omega]   # 0 is no vanishing rate
+    assert np.isfinite(ph.FreeMotion(moments, least).at(0.0)[0]).all()

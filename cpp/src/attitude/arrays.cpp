@@ -102,7 +102,7 @@ std::size_t normalize(std::size_t n, const double* q, double* unit_q) {
   for (std::size_t i = 0; i < n; ++i) {
     Quat unit = load(q + 4 * i);
     const double square = square_norm(unit);
-    if (!(std::abs(square - 1.0) <= 2e-6)) return i;
+    if (!(std::abs(square - 1.0) <= 1.9e-6 || std::abs(std::sqrt(square) - 1.0) <= 1e-6)) return i;
     if (std::abs(square - 1.0) > 1e-12) {
       const double size = std::sqrt(square);
       unit = {unit.x / size, unit.y / size, unit.z / size, unit.w / size};

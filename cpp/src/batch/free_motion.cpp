@@ -22,7 +22,7 @@ bool finite(const double* values, std::size_t n) { return within(values, n); }
 /// Whether FreeMotion takes the moments with these rates; any positive ones are checked elsewhere.
 bool carries(const double* I, const double* omega) {
   const bool turns = omega[0] != 0.0 || omega[1] != 0.0 || omega[2] != 0.0;
-  return !(std::min({I[0], I[1], I[2]}) > 0.0) || !turns || exact::carries_moments(I);
+  return !(std::min({I[0], I[1], I[2]}) > 0.0) || !turns || (exact::carries_moments(I) && exact::carries_rates(omega));
 }
 
 void check_moments(const double* I, std::size_t body) {
@@ -44,7 +44,8 @@ double check_body(const FreeMotionBatch& b, std::size_t body) {
   if (!b.tensor) check_moments(b.moments + 3 * body, body);
   const double *w = b.omega + 3 * body, *q = b.attitude + 4 * body;
   const double norm2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-  if (!(std::abs(norm2 - 1.0) <= 2e-6)) {
+  // As make_attitude, whose square root only the edge of the tolerance needs.
+  if (!(std::abs(norm2 - 1.0) <= 1.9e-6 || std::abs(norm({q[0], q[1], q[2], q[3]}) - 1.0) <= 1e-6)) {
     throw InvalidInput(row_name("attitude", body), "a unit quaternion (x, y, z, w)",
                        "norm " + to_text(std::sqrt(norm2)), "normalise it first, if it is meant to be an attitude");
   }
@@ -125,24 +126,23 @@ class Run {
     check_interrupt();
     const exact::FreeKernels& kernels = exact::free_kernels();
     const std::size_t n = end - begin;
+    const double *omega = b_.omega + 3 * begin, *attitude = b_.attitude + 4 * begin;
+    const bool rotated = principal_ && principal_->rotated;
+    const exact::FreeStarts starts = principal_ ? (*principal_)(omega, attitude, n)
+                                                : exact::FreeStarts{b_.moments + 3 * begin, omega, attitude};
     bool all_finite[block];
     for (std::size_t i = 0; i < n; ++i) {
       const std::size_t body = begin + i;
       all_finite[i] = (b_.tensor || finite(b_.moments + 3 * body, 3)) && finite(b_.omega + 3 * body, 3) &&
                       finite(b_.attitude + 4 * body, 4);
       if (!all_finite[i]) continue;
-      const Vector3d tensor_moments = b_.tensor ? b_.tensor->moments() : Vector3d::Zero();
-      if (!carries(b_.tensor ? tensor_moments.data() : b_.moments + 3 * body, b_.omega + 3 * body)) {
+      if (!carries(starts.moments + 3 * i, starts.omega + 3 * i)) {
         all_finite[i] = false;
         continue;
       }
       const double* t = rows_.times_of(body);
       check_times(t, b_.times, b_.own_times ? kernels.times.reach(t, b_.times) : reach_, check_body(b_, body), body);
     }
-    const double *omega = b_.omega + 3 * begin, *attitude = b_.attitude + 4 * begin;
-    const bool rotated = principal_ && principal_->rotated;
-    const exact::FreeStarts starts = principal_ ? (*principal_)(omega, attitude, n)
-                                                : exact::FreeStarts{b_.moments + 3 * begin, omega, attitude};
     std::size_t left[block], remaining = 0;
     const bool once = !rotated && b_.times == 1 && (b_.own_times || b_.bodies == 1);
     if (once) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "polhode/core/quat.hpp"
 #include "polhode/exact/detail/free_kernels.hpp"
@@ -14,6 +15,13 @@ int exponent_of(const Vector3d& v);
 /// Whether the ratio of the least moment to the largest is at least 2^-511: its square is then a normal float64.
 inline bool carries_moments(const double* I) {
   return std::min({I[0], I[1], I[2]}) >= 0x1p-511 * std::max({I[0], I[1], I[2]});
+}
+
+/// Whether each rate is 0 or at least 2^-950 of the largest: products with differences of moments are then normal float64.
+inline bool carries_rates(const double* w) {
+  const double largest = std::max({std::abs(w[0]), std::abs(w[1]), std::abs(w[2])});
+  const auto carried = [largest](double rate) { return rate == 0.0 || std::abs(rate) / largest >= 0x1p-950; };
+  return carried(w[0]) && carried(w[1]) && carried(w[2]);
 }
 
 /// 2^e v.

@@ -102,6 +102,10 @@ void FreeMotion::set_up(const Vector3d& moments, const Matrix3d& R_BP, bool exac
   moment_exponent_ = exponent_of(moments);
   frame_.time_scale = std::ldexp(1.0, time_exponent_);
   const Vector3d w = R_BP.transpose() * ldexp(omega_, -time_exponent_), I = ldexp(moments, -moment_exponent_);
+  if (!exact::carries_rates(exact_axes ? omega_.data() : w.data())) {   // as given: scaled, it may have become 0
+    throw InvalidInput("omega", "of rates within the range of float64", vector_text(omega_),
+                       "the least is below 1e-286 of the largest, and not 0");
+  }
 
   exact::FreeStart<double> start{};
   for (int a = 0; a < 3; ++a) start.I[a] = I[a], start.w[a] = w[a], start.M[a][a] = 1.0;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double custom_rtol = 1e-3;       // of the pilot run; a tighter one costs too much at loose accuracies
 constexpr int intervals = 32;             // of the span, to count the revolutions
-constexpr std::size_t stride = 4;         // samples between two looks at the damping
+constexpr std::size_t pilot_stride = 4;         // samples between two looks at the damping
 constexpr long most_pilot_steps = 300;    // some 4000 calls
 constexpr double usual_steps = 1.4;       // steps at this tolerance over their forecast, by benchmarks/planner
 constexpr double stiff_steps = 100.0;     // explicit steps of stability from which the pilot run is implicit
@@ -30,7 +30,7 @@ void measure_decay(const Scene& scene, const std::vector<double>& times, const T
   Facts& facts = decision.facts;
   double sum = facts.decay;
   int looks = 1;
-  for (std::size_t i = stride; i < times.size(); i += stride, ++looks) {
+  for (std::size_t i = pilot_stride; i < times.size(); i += pilot_stride, ++looks) {
     const std::size_t row = std::min(i, run.t.size() - 1);
     SceneParts parts = scene.parts();
     parts.t0 = times[i];

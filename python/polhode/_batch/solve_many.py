@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _core
+from .._keywords import checked
 from .._scene.scene import Scene
 from .._solve.motion import Floats
 from .._solve.solve import check_max_steps
@@ -57,12 +58,13 @@ class Motions:
 
 
 def _rows(value: Any, width: int, name: str) -> Floats:
-    array = to_attitudes(value, 4) if name == "attitude" else to_rows(value, name, None)
+    array = to_attitudes(value, 5) if name == "attitude" else to_rows(value, name, None)
     if array.ndim not in (1, 2) or array.shape[-1] != width:
         raise _core.InvalidInput(f"{name}: must be of shape ({width},) or (bodies, {width}), got {array.shape}")
     return array
 
 
+@checked
 def solve_many(
     scenes: Scene | Iterable[Scene],
     *,

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _core
+from .._keywords import checked, wrong
 
 if TYPE_CHECKING:
     import pathlib
@@ -49,6 +50,7 @@ class Scene(_core.Scene):
     __slots__ = ("_torques",)
     _torques: tuple[Any, ...]
 
+    @checked
     def __init__(
         self,
         *,
@@ -103,7 +105,11 @@ class Scene(_core.Scene):
 
     def replace(self, **changes: Any) -> Scene:
         """Return a scene with some parts changed, by the names of the constructor."""
-        return _restore(type(self), {**self._parts(), **changes}, "attitude" not in changes)
+        parts = self._parts()
+        for key in changes:
+            if key not in parts:
+                raise _core.InvalidInput(wrong("Scene.replace", key, tuple(parts)))
+        return _restore(type(self), {**parts, **changes}, "attitude" not in changes)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _restore, (type(self), self._parts())

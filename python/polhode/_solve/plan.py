@@ -7,6 +7,7 @@ import math
 from typing import Any, Literal, NamedTuple
 
 from .. import _core
+from .._keywords import checked
 from .._scene.scene import Scene
 from . import costs
 
@@ -283,6 +284,7 @@ def _lines(plan: Plan) -> list[str]:
     return lines
 
 
+@checked
 def plan(scene: Scene, accuracy: float | None = None, *, method: str | None = None,
          certify: bool | Literal["proof"] = True, formulation: str = "euler") -> Plan:
     """Choose the simplest model and the cheapest method for a scene, without running them.

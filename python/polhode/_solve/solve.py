@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _core
+from .._keywords import checked
 from .._scene.scene import Scene
 from .costs import factors
 from .motion import Floats, Motion
@@ -78,6 +79,7 @@ def check_max_steps(max_steps: int) -> int:
     return int(max_steps)
 
 
+@checked
 def solve(
     scene: Scene,
     accuracy: float | None = None,

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -276,4 +277,16 @@ TEST_CASE("two zeros within one step are both found, and a touch is met once") {
   REQUIRE(result.hits.size() == 2);
   CHECK(result.hits[0].t == doctest::Approx(4.0).epsilon(1e-14));
   CHECK(result.hits[1].t == doctest::Approx(6.5).epsilon(1e-14));
+}
+
+TEST_CASE("taylor has an order for any tolerance, and for none") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  int last = 100;
+  for (const double tolerance : {1e-300, 1e-16, 1e-9, 1e-3, 1.0, 1e9, nan}) {
+    const int order = Taylor::choose_order(tolerance);
+    CHECK(order >= Taylor::least_order);
+    CHECK(order <= last);
+    last = order;
+  }
+  CHECK(last == Taylor::least_order);
 }

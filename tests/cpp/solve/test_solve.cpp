@@ -10,6 +10,7 @@
 #include "polhode/method/euler_problem.hpp"
 #include "polhode/method/methods.hpp"
 #include "polhode/solve/invariants.hpp"
+#include "polhode/solve/plan.hpp"
 #include "polhode/solve/solve.hpp"
 
 using namespace polhode;
@@ -82,6 +83,24 @@ struct Thruster {
 };
 
 }  // namespace
+
+TEST_CASE("rates whose square is beyond float64 are no success of any method") {
+  SceneParts parts{.inertia_B = InertiaTensor::from_moments({1.6, 1.6, 1.7})};
+  parts.omega = {1e-3, 1e-3, 1e160};
+  parts.times = {1e-3, 1.0};
+  const Scene scene(parts);
+  for (const ode::MethodRecord& record : methods()) {
+    CAPTURE(record.name);
+    if (!compute_refusal(record.name, scene).empty()) continue;
+    SolveOptions options{.method = std::string(record.name), .max_steps = 100};
+    if (record.adaptive) {
+      options.rtol = 1e-6;
+    } else {
+      options.step = 1e-2;
+    }
+    CHECK_FALSE(succeeded(scene, solve(scene, options)));
+  }
+}
 
 TEST_CASE("a functor is stepped by any general method, with no call between") {
   const Scene scene = make_block({5.0}, {torques::Constant({0.01, -0.02, 0.03})});

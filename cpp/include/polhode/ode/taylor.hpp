@@ -68,8 +68,8 @@ struct Taylor {
   /// lower orders are better, because short steps round less.
   static int choose_order(double tolerance) {
     const double digits = -math::fast_log(tolerance), tight = std::clamp((digits - 18.0) / 18.0, 0.0, 1.0);
-    const int order = static_cast<int>(std::ceil(1.0 + (1.0 - 0.46 * tight) * digits));
-    return std::clamp(order, least_order, most_series_order - 2);
+    const double order = std::ceil(1.0 + (1.0 - 0.46 * tight) * digits);   // NaN if the rates are beyond float64
+    return order > least_order ? static_cast<int>(std::min(order, most_series_order - 2.0)) : least_order;
   }
 
   template <SeriesProblem P>
