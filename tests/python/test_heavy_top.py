@@ -221,3 +221,12 @@ def test_what_float64_cannot_hold_is_refused_when_asked_for():
     with pytest.raises(ph.InvalidInput, match="^energy:"):
         _ = top.energy
     assert np.isfinite(top.at(1e-100)[0]).all()
+
+
+def test_weight_over_moment_may_be_beyond_float64():
+    """Moments of 2^-520 under a weight of 2^520: rates of 2^520, and all bits but the exponents."""
+    tilted = ph.Rotation.from_euler("ZXZ", (0.1, 0.7, 0.2)).as_quat()
+    w, q = ph.HeavyTop((1, 1, 0.5), 1.0, (0, 0, 0), tilted).at([0.0, 1.5])
+    fast, same = ph.HeavyTop((2.0**-520, 2.0**-520, 2.0**-521), 2.0**520, (0, 0, 0), tilted).at([0.0, 1.5 * 2.0**-520])
+    np.testing.assert_array_equal(same, q)
+    np.testing.assert_array_equal(fast, w * 2.0**520)

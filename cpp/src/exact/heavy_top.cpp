@@ -167,7 +167,7 @@ void HeavyTop::set_up() {
   const Vector3d w = omega_.unaryExpr([&](double c) { return std::ldexp(c, -e); });
   const bool below = weight_arm_ < 0.0;
   exact::HeavyTopStart s{.A = std::ldexp(body.A, -e_A), .C = std::ldexp(body.C, -e_A),
-                         .M = std::ldexp(std::ldexp(std::abs(weight_arm_), -e_A), -2 * e),
+                         .M = std::ldexp(std::abs(weight_arm_), -e_A - 2 * e),
                          .w1 = w[0], .w2 = w[1], .w3 = w[2],
                          .x = attitude_.x, .y = attitude_.y, .z = attitude_.z, .w = attitude_.w};
   constants_.framed = below || axis_ != Vector3d::UnitZ();
