@@ -6,6 +6,7 @@ from typing import Any as _Any
 
 from . import elliptic as elliptic
 from . import inertia as inertia
+from . import measured as measured
 from . import mesh as mesh
 from . import shapes as shapes
 from . import torques as torques
@@ -30,6 +31,10 @@ from ._core import Pendulum as Pendulum
 from ._core import Rotor as Rotor
 from ._core import __version__ as __version__
 from ._scene.scene import Scene as Scene
+from ._sensitivity.fit import fit as fit
+from ._sensitivity.free import free_sensitivity as free_sensitivity
+from ._sensitivity.result import FitResult as FitResult
+from ._sensitivity.sensitivity import Sensitivity as Sensitivity
 from ._solve.motion import Motion as Motion
 from ._solve.plan import Plan as Plan
 from ._solve.plan import plan as plan

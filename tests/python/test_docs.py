@@ -48,7 +48,7 @@ def blocks(page, language):
 
 
 @pytest.mark.parametrize("page", ["plan", "batch", "solve", "ode", "exact", "gyrostat", "damped_free", "heavy_top",
-                                  "math", "pendulum", "torque"])
+                                  "math", "pendulum", "torque", "sensitivity", "fit"])
 def test_the_python_examples_of_a_page_run_in_their_order(page):
     found, names = blocks(f"docs/{page}.md", "python"), {}
     assert found

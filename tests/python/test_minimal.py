@@ -64,6 +64,31 @@ def smoke_step():
     assert L.shape == (3,) and abs(np.linalg.norm(attitude) - 1) < 1e-15
 
 
+def smoke_free_sensitivity():
+    s = ph.free_sensitivity(BLOCK, OMEGA, (0, 0, 0, 1), TIMES)
+    assert s.d_omega.shape == (5, 3, 6) and np.allclose(s.d_omega[..., 3:] @ BLOCK, 0, atol=1e-13)
+
+
+def smoke_sensitivity():
+    s = ph.FreeMotion(BLOCK, OMEGA).sensitivity(TIMES, ("omega", "attitude"))
+    assert isinstance(s, ph.Sensitivity) and np.allclose(np.linalg.det(s.transition), 1)
+
+
+def measured_rates():
+    t = np.linspace(0, 5, 100)
+    rng = np.random.default_rng(1)
+    return ph.measured.Rates(t, ph.FreeMotion(BLOCK, OMEGA).at(t)[0] + 0.01 * rng.normal(size=(100, 3)), 0.01)
+
+
+def smoke_fit():
+    assert np.allclose(ph.fit(measured_rates(), fit=("omega", "inertia")).omega, OMEGA, atol=0.05)
+
+
+def smoke_fit_result():
+    found = ph.fit(measured_rates(), fit=("omega", "inertia"))
+    assert isinstance(found, ph.FitResult) and found.predict([0.0, 9.0]).spread[1] > 0
+
+
 def smoke_free_motion():
     omega, attitude = ph.free_motion(BLOCK, OMEGA, (0, 0, 0, 1), TIMES)
     assert np.allclose(omega, ph.FreeMotion(BLOCK, OMEGA).at(TIMES)[0], rtol=1e-13)
@@ -160,6 +185,7 @@ def smoke_solve_many():
 SMOKE = {
     "Event": smoke_event,
     "DampedFree": smoke_damped_free,
+    "FitResult": smoke_fit_result,
     "FreeMotion": smoke_free_motion_object,
     "Gyrostat": smoke_gyrostat_object,
     "HeavyTop": smoke_heavy_top,
@@ -175,13 +201,16 @@ SMOKE = {
     "Rotation": smoke_rotation,
     "Rotor": smoke_rotor,
     "Scene": smoke_scene,
+    "Sensitivity": smoke_sensitivity,
     "__version__": smoke_build_info,
     "body_rates": smoke_body_rates,
     "build_info": smoke_build_info,
     "cmake_prefix": smoke_cmake_prefix,
     "euler_rates": smoke_body_rates,
+    "fit": smoke_fit,
     "free_motion": smoke_free_motion,
     "step": smoke_step,
+    "free_sensitivity": smoke_free_sensitivity,
     "generalised_forces": smoke_generalised_forces,
     "gyrostat": smoke_gyrostat,
     "heavy_top": smoke_heavy_tops,
@@ -235,7 +264,7 @@ def test_a_late_module_is_there_when_it_is_asked_for(name):
 
 
 def test_all_names_what_is_meant_to_be_public():
-    modules = {"elliptic", "inertia", "mesh", "shapes", "torques"}
+    modules = {"elliptic", "inertia", "measured", "mesh", "shapes", "torques"}
     assert set(ph.__all__) == modules | set(SMOKE) and set(ph.__all__) <= set(dir(ph))
     with pytest.raises(AttributeError, match="module 'polhode' has no attribute 'nonsense'"):
         ph.nonsense

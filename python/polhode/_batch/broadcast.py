@@ -45,9 +45,9 @@ def check_want(want: str | Sequence[str]) -> tuple[str, ...]:
     return names
 
 
-def _require_memory(shape: tuple[int, ...], names: tuple[str, ...]) -> None:
-    states = math.prod(shape)
-    needed = states * sum(8 * WIDTHS[name] for name in names)
+def require_memory(states: int, bytes_each: int) -> None:
+    """Raise MemoryError if results of this size cannot fit into this machine."""
+    needed = states * bytes_each
     if needed < 2**28:
         return
     try:
@@ -58,7 +58,11 @@ def _require_memory(shape: tuple[int, ...], names: tuple[str, ...]) -> None:
         raise MemoryError(f"{states} states need {needed} bytes; this machine has {there}")
 
 
-def _axes(shape: tuple[int, ...], loops: Sequence[tuple[int, ...]]) -> tuple[list[int], list[int]]:
+def _require_memory(shape: tuple[int, ...], names: tuple[str, ...]) -> None:
+    require_memory(math.prod(shape), sum(8 * WIDTHS[name] for name in names))
+
+
+def split_axes(shape: tuple[int, ...], loops: Sequence[tuple[int, ...]]) -> tuple[list[int], list[int]]:
     """Return the axes of the result along which parameters vary, and the axes of times alone."""
     padded = [(1,) * (len(shape) - len(loop)) + loop for loop in loops]
     bodies = [k for k in range(len(shape)) if any(loop[k] != 1 for loop in padded)]
@@ -83,7 +87,7 @@ def check_out(out: Any, names: tuple[str, ...], shape: tuple[int, ...]) -> dict[
     return targets
 
 
-def _in_place(target: Any, others: Iterable[Any]) -> bool:
+def in_place(target: Any, others: Iterable[Any]) -> bool:
     """Return True if results can be written into `target` while the other arrays are read and written.
 
     As in NumPy, an output that overlaps an input or another output gets a copy of results computed apart.
@@ -93,7 +97,8 @@ def _in_place(target: Any, others: Iterable[Any]) -> bool:
     return not any(other is not target and np.may_share_memory(target, other) for other in others)
 
 
-def _warn(poisoned: int, level: int) -> None:
+def warn_poisoned(poisoned: int, level: int) -> None:
+    """Warn that so many rows are NaN."""
     warnings.warn(f"{poisoned} rows are NaN because their input is not finite or beyond float64", RuntimeWarning,
                   stacklevel=level)
 
@@ -111,17 +116,42 @@ def _evaluate_one(
     results: dict[str, Any] = {}
     for name in names:
         target = targets.get(name)
-        fits = _in_place(target, [*parameters, t, *targets.values()])
+        fits = in_place(target, [*parameters, t, *targets.values()])
         results[name] = target if fits else np.empty((*t.shape, WIDTHS[name]))
     flat = [array[None] for array in parameters]
     poisoned = kernel(*flat, t.reshape(-1), results.get("omega"), results.get("attitude"))
     if poisoned:
-        _warn(poisoned, 5)
+        warn_poisoned(poisoned, 5)
     for name, target in targets.items():
         if results[name] is not target:
             target[...] = results[name]
             results[name] = target
     return results[want] if isinstance(want, str) else tuple(results[name] for name in names)
+
+
+def flatten(
+    parameters: Sequence[tuple[Array, int]],
+    t: Array,
+    shape: tuple[int, ...],
+    bodies: list[int],
+    times: list[int],
+) -> tuple[list[Array], Array]:
+    """Return the parameters as (bodies, ...) and the times as (times,) or (bodies, times), C-contiguous."""
+    order = bodies + times
+    n_bodies, n_times = math.prod(shape[k] for k in bodies), math.prod(shape[k] for k in times)
+    flat = []
+    for array, core in parameters:
+        tail = array.shape[array.ndim - core :]
+        spread = np.broadcast_to(array, (*shape, *tail))
+        spread = spread.transpose(*order, *range(len(shape), len(shape) + core))
+        first = (slice(None),) * len(bodies) + (0,) * len(times)   # the parameters are the same at all times
+        spread = spread[first] if all(shape[k] for k in times) else spread.reshape(0, *tail)
+        flat.append(np.ascontiguousarray(spread).reshape(-1, *tail))
+    own_times = any(size != 1 for k, size in enumerate((1,) * (len(shape) - t.ndim) + t.shape) if k in bodies)
+    spread_t = np.broadcast_to(t, shape).transpose(order)
+    if own_times or n_times == 0 or n_bodies == 0:
+        return flat, np.ascontiguousarray(spread_t).reshape(n_bodies, n_times)
+    return flat, np.ascontiguousarray(spread_t[(0,) * len(bodies)]).reshape(n_times)
 
 
 def evaluate(
@@ -146,38 +176,23 @@ def evaluate(
         raise InvalidInput(f"t: must broadcast with the bodies, got shapes {shapes}") from None
     targets = check_out(out, names, shape)
     _require_memory(shape, names)
-    bodies, times = _axes(shape, loops)
+    bodies, times = split_axes(shape, loops)
     order = bodies + times
     body_shape, time_shape = [shape[k] for k in bodies], [shape[k] for k in times]
-
-    flat = []
-    for array, core in parameters:
-        tail = array.shape[array.ndim - core :]
-        spread = np.broadcast_to(array, (*shape, *tail))
-        spread = spread.transpose(*order, *range(len(shape), len(shape) + core))
-        first = (slice(None),) * len(bodies) + (0,) * len(times)   # the parameters are the same at all times
-        spread = spread[first] if all(time_shape) else spread.reshape(0, *tail)
-        flat.append(np.ascontiguousarray(spread).reshape(-1, *tail))
+    flat, flat_t = flatten(parameters, t, shape, bodies, times)
     n_bodies, n_times = math.prod(body_shape), math.prod(time_shape)
-    own_times = any(size != 1 for k, size in enumerate((1,) * (len(shape) - t.ndim) + t.shape) if k in bodies)
-    spread_t = np.broadcast_to(t, shape).transpose(order)
-    flat_t: Array
-    if own_times or n_times == 0 or n_bodies == 0:
-        flat_t = np.ascontiguousarray(spread_t).reshape(n_bodies, n_times)
-    else:
-        flat_t = np.ascontiguousarray(spread_t[(0,) * len(bodies)]).reshape(n_times)
 
     results: dict[str, Any] = {}
     others = [*(array for array, _ in parameters), t, *targets.values()]
     for name in names:
         target = targets.get(name)
-        if order == sorted(order) and _in_place(target, others):
+        if order == sorted(order) and in_place(target, others):
             results[name] = target
         else:
             results[name] = np.empty((*body_shape, *time_shape, WIDTHS[name]))
     poisoned = kernel(*flat, flat_t, results.get("omega"), results.get("attitude")) if n_bodies and n_times else 0
     if poisoned:
-        _warn(poisoned, 4)
+        warn_poisoned(poisoned, 4)
 
     inverse = [*np.argsort(order), len(shape)]
     for name in names:

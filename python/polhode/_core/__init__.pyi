@@ -430,6 +430,35 @@ class FreeMotion:
         ndarray, shape (..., 3)
             omega / sqrt(2 T), on the inertia ellipsoid [kg^-1/2 m^-1].
         """
+    def sensitivity(self: FreeMotion, t: typing.Any, wrt: typing.Any = ('omega', 'inertia'), side: str = 'space') -> typing.Any:
+        """
+        The motion and its derivatives at the given times.
+
+        Parameters
+        ----------
+        t : array_like, any shape
+            Times [s], as for :meth:`at`.
+        wrt : str or sequence of str
+            What to differentiate with respect to, in the order of the columns: 'omega' (omega at t = 0), 'inertia' (the principal
+            moments at fixed omega; ascending for a full tensor), 'attitude' (a small rotation at t = 0), 'axes' (a small
+            rotation of the principal axes in the body), each three columns, and 'time', one.
+        side : {'space', 'body'}
+            Small rotations of the attitude R: exp(d theta) R in space axes, or R exp(d theta) in body axes.
+
+        Returns
+        -------
+        Sensitivity
+            `omega`, `attitude`, `d_omega` and `d_attitude` of shape (..., 3, n), `columns`, `transition`.
+
+        Raises
+        ------
+        InvalidInput
+            An unknown name, a name twice, or abs(omega t) > 1e25 rad.
+
+        Notes
+        -----
+        The error of a column is a few units of rounding of its size, in every regime. See docs/sensitivity.md.
+        """
     @property
     def angular_momentum(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -1130,6 +1159,8 @@ class Answer:
 def _complete_K(arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
     ...
 def _free_motion(arg0: typing.Any, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg3: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg4: typing.Any, arg5: typing.Any, arg6: typing.SupportsInt | typing.SupportsIndex) -> int:
+    ...
+def _free_sensitivity(arg0: typing.Any, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg3: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg4: typing.Any, arg5: str, arg6: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg7: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg8: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg9: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg10: typing.SupportsInt | typing.SupportsIndex) -> int:
     ...
 def _gyrostat(arg0: typing.Any, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg3: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg4: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg5: typing.Any, arg6: typing.Any, arg7: typing.SupportsInt | typing.SupportsIndex) -> int:
     ...

@@ -147,6 +147,45 @@ def plan(
 
 
 @_command
+def fit(
+    data: Annotated[pathlib.Path, typer.Argument(help="A CSV file with a header, or without one and --columns.")],
+    sigma: Annotated[str, typer.Option(help="Noise of each sensor, such as omega=0.01,attitude=0.02.")],
+    columns: Annotated[str | None, typer.Option(
+        help="Names of the columns: t, omega_x to omega_z, attitude_x to attitude_w, axis_x to axis_z, direction_x to "
+             "direction_z. Others are ignored. By default the header.")] = None,
+    parameters: Annotated[str, typer.Option(
+        "--fit", help="What to fit, of omega, attitude, inertia and axes.")] = "omega,attitude,inertia",
+    axis: Annotated[str, typer.Option(help="The body axis that axis_* see in space.")] = "0,0,1",
+    direction: Annotated[str | None, typer.Option(help="The space vector that direction_* see in the body.")] = None,
+    bias: Annotated[bool, typer.Option("--bias", help="Fit a constant bias of the rates.")] = False,
+    degrees: Annotated[bool, typer.Option("--degrees", help="Rates are in degrees a second.")] = False,
+    loss: Annotated[str, typer.Option(help="linear, soft_l1, huber or cauchy.")] = "linear",
+    seed: Annotated[int, typer.Option(help="Seed of the search for a start.")] = 0,
+    picture: Annotated[pathlib.Path | None, typer.Option(
+        "--plot", help="Draw motion, residuals, correlations and spread: .png, .svg or .pdf.")] = None,
+    as_json: Json = False,
+) -> int:
+    """Fit a free body to measurements: its start, the ratios of its moments, its principal axes.
+
+    Needs no start values. Prints the parameters with their standard errors, and what the data cannot tell.
+    """
+    from . import fit as part
+
+    if picture is not None:
+        _need_matplotlib("pictures")
+        files.check(picture, (".png", ".svg", ".pdf"), "plot")
+    found = part.run(data, columns, sigma, parameters, axis, direction, bias, degrees, loss, seed)
+    if picture is not None:
+        with _files.whole(picture) as draft:
+            found.plot().savefig(draft, dpi=160)
+    if as_json:
+        _print_json(part.to_json(found))
+    else:
+        print(repr(found))
+    return 0 if found.success else 1
+
+
+@_command
 def calibrate(as_json: Json = False) -> int:
     """Measure the speed of this machine for later plans.
 

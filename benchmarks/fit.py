@@ -1,0 +1,160 @@
+"""Derivatives of free motions and fits to made measurements: speed with its error, and how often a fit finds the truth.
+
+    python benchmarks/fit.py              # all bars, some minutes on one core
+    python benchmarks/fit.py --trials 20  # fewer trials
+
+Times are CPU time of this thread. Each fit starts from nothing, with a seed that the truth does not share.
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import time
+
+import numpy as np
+
+import polhode as ph
+
+BLOCK = (0.20, 0.40, 0.52)
+
+
+def best(work, repeats=15):
+    work()
+    found = np.inf
+    for _ in range(repeats):
+        start = time.thread_time_ns()
+        work()
+        found = min(found, time.thread_time_ns() - start)
+    return found
+
+
+def random_body(rng):
+    half = rng.uniform(0.1, 1, 3) ** 2
+    q = rng.normal(size=4)
+    return half.sum() - half, rng.normal(size=3), q / np.linalg.norm(q)
+
+
+def speed():
+    """ns a state: one body at many times, and many bodies at one time each."""
+    rng = np.random.default_rng(1)
+    n = 16384
+    t, start = rng.uniform(1, 1000, n), (0.0, 0.0, 0.0, 1.0)
+    out = (np.empty((n, 3)), np.empty((n, 4)), np.empty((n, 3, 6)), np.empty((n, 3, 6)))
+    cost = {}
+    for name, omega in (("one body, any times", (1, 2, 3)), ("near the separatrix, any times", (1e-4, 5, 1e-4))):
+        cost[name] = best(lambda w=omega: ph.free_sensitivity(BLOCK, w, start, t, out=out, threads=1)) / n
+    many = 20_000
+    bodies = [random_body(rng) for _ in range(many)]
+    moments, omega, q = (np.array(part) for part in zip(*bodies, strict=True))
+    t = rng.uniform(1, 1000, many)
+    out = tuple(np.empty((many, *a.shape[1:])) for a in out)
+    cost["many bodies, a time each"] = best(
+        lambda: ph.free_sensitivity(moments, omega, q, t, out=out, threads=1), 7) / many
+    cost["free_motion, the same bodies"] = best(
+        lambda: ph.free_motion(moments, omega, q, t, out=out[:2], threads=1), 7) / many
+    return {"level": ph.build_info()["simd"], "cost": cost}
+
+
+def measure(motion, t, kind, sigma, rng):
+    omega, q = motion.at(t)
+    noise = sigma * rng.normal(size=(t.size, 3))
+    if kind == "rates":
+        return ph.measured.Rates(t, omega + noise, sigma)
+    if kind == "attitudes":
+        return ph.measured.Attitudes(t, ph.Rotation.from_quat(q) * ph.Rotation.from_rotvec(noise), sigma)
+    return ph.measured.Axis(t, ph.Rotation.from_quat(q).as_matrix()[:, :, 2] + noise, sigma, (0, 0, 1))
+
+
+def trial(kind, noise, seed):
+    """(found, CPU seconds): found means that chi2 fits and every moment is within 6 standard errors, up to twins."""
+    rng = np.random.default_rng([17, seed])
+    inertia, omega, q = random_body(rng)
+    motion = ph.FreeMotion(inertia, omega, q)
+    fast = np.linalg.norm(omega)
+    if kind == "rates":
+        data = measure(motion, np.linspace(0, 4 * motion.period, 200), kind, noise * fast, rng)
+        groups = ("omega", "inertia")
+    else:
+        turns, count = (20, 50) if kind == "attitudes" else (10, 80)
+        data = measure(motion, np.sort(rng.uniform(0, turns * 2 * np.pi / fast, count)), kind, noise, rng)
+        groups = ("omega", "attitude", "inertia")
+    start = time.thread_time()
+    found = ph.fit(data, fit=groups, seed=seed)
+    spent = time.thread_time() - start
+    P = 0.5 * inertia.sum() - inertia
+    here = [found.parameters.index(name) for name in ("log_p1_p3", "log_p2_p3")]
+    twins = [P] if kind != "axis" else [P, P[[1, 0, 2]]]
+    sigma = np.maximum(found.stderr[here], 1e-9)
+    near = min(np.abs((found.x[here] - np.log(p[:2] / p[2])) / sigma).max() for p in twins)
+    return bool(found.success and near < 6), spent
+
+
+def coverage(trials):
+    """The share of 95 % intervals that hold the truth, least and most over the parameters."""
+    inertia, omega = np.array([0.3, 0.5, 0.62]), np.array([1.0, -2.0, 0.7])
+    q = np.array([0.5, -0.1, 0.7, 0.5])
+    span = 3 * 2 * np.pi / np.linalg.norm(omega)
+    t = np.linspace(0, span, 60)
+    P = 0.5 * inertia.sum() - inertia
+    truth = np.concatenate([omega, np.log(P[:2] / P[2])])
+    scene = ph.Scene(inertia=tuple(inertia), omega=tuple(omega), attitude=q, times=t)
+    rows = {}
+    for kind, sigma, groups in (("rates", 0.006, ("omega", "inertia")), ("rates", 0.06, ("omega", "inertia")),
+                                ("attitudes", 0.003, ("omega", "inertia", "attitude")),
+                                ("attitudes", 0.03, ("omega", "inertia", "attitude")),
+                                ("attitudes", 0.15, ("omega", "inertia", "attitude"))):
+        rng = np.random.default_rng([5, len(rows)])
+        hits = []
+        for _ in range(trials):
+            found = ph.fit(measure(ph.FreeMotion(inertia, omega, q), t, kind, sigma, rng), scene, fit=groups,
+                           start="scene")
+            inside = np.abs(found.x[:5] - truth) <= 1.96 * found.stderr[:5]
+            if "attitude" in groups:
+                off = (found.attitude * ph.Rotation.from_quat(q).inv()).as_rotvec()
+                inside = np.concatenate([inside, np.abs(off) <= 1.96 * found.stderr[5:8]])
+            hits.append(inside)
+        share = 100 * np.mean(hits, axis=0)
+        rows[f"{kind}, noise {sigma:g}"] = (share.min(), share.max())
+    return rows
+
+
+def local_fit():
+    rng = np.random.default_rng(3)
+    inertia, omega = np.array([0.3, 0.5, 0.6]), np.array([1.0, 2.0, 0.5])
+    t = np.linspace(0, 10, 400)
+    data = ph.measured.Rates(t, ph.FreeMotion(inertia, omega).at(t)[0] + 0.01 * rng.normal(size=(400, 3)), 0.01)
+    scene = ph.Scene(inertia=tuple(inertia * (1, 1.03, 0.98)), omega=tuple(omega + 0.02), times=t)
+    return best(lambda: ph.fit(data, scene, fit=("omega", "inertia"), start="scene"), 60) / 1e6
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--trials", type=int, default=100)
+    parser.add_argument("--speed", action="store_true", help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.speed:
+        return print(json.dumps(speed()))
+    print(f"load {os.getloadavg()[0]:.1f}; ns a state with all 36 derivatives")
+    for level in ("avx512", "avx2"):
+        run = subprocess.run([sys.executable, __file__, "--speed"], capture_output=True, text=True,
+                             env={**os.environ, "POLHODE_SIMD": level})
+        if run.returncode:
+            continue
+        found = json.loads(run.stdout)
+        for name, cost in found["cost"].items():
+            print(f"  {found['level']:8} {name:36} {cost:8.1f}")
+    print(f"one local fit of 400 gyro samples: {local_fit():.2f} ms")
+    for kind, noise in (("rates", 0.01), ("rates", 0.03), ("rates", 0.1), ("attitudes", 0.01), ("axis", 0.01)):
+        results = [trial(kind, noise, seed) for seed in range(options.trials)]
+        spent = [s for _, s in results]
+        print(f"{kind}, noise {noise:g}: {sum(good for good, _ in results)} of {len(results)} found, "
+              f"{np.median(spent):.3f} s in the median, {max(spent):.2f} s at most; "
+              f"lost: {[seed for seed, (good, _) in enumerate(results) if not good]}", flush=True)
+    for name, (least, most) in coverage(2 * options.trials).items():
+        print(f"coverage of 95 % intervals, {name}: {least:.1f} to {most:.1f} %")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,17 @@
+// Built with the flags of avx2 (cpp/CMakeLists.txt) where the compiler has them, else empty.
+#include "exact/sensitivity/kernels.hpp"
+
+#ifdef __AVX2__
+#define POLHODE_ISA isa_avx2
+#include "math/lanes/avx2.hpp"
+// The loops need `Wide`, which the line above defines.
+#include "exact/sensitivity/lanes/column_loops.hpp"
+
+namespace polhode::exact {
+const FreeColumnsKernels* avx2_free_columns_kernels() { return &POLHODE_ISA::column_kernels; }
+}  // namespace polhode::exact
+#else
+namespace polhode::exact {
+const FreeColumnsKernels* avx2_free_columns_kernels() { return nullptr; }
+}  // namespace polhode::exact
+#endif

@@ -1,0 +1,1 @@
+"""Derivatives of motions, and fits of bodies to measurements."""

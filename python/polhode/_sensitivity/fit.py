@@ -1,0 +1,198 @@
+"""Fits of a turning body to measurements."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from .._core import InvalidInput
+from .._scene.scene import Scene
+from ..measured import Attitudes, Axis, Direction, Measurement, Rates
+from . import turns
+from .least_squares import LOSSES, Minimum, minimise
+from .problem import GROUPS, Problem, State, ratios_of
+from .result import FitResult, make_result
+from .start import GOOD, from_rates, grow, search, wahba
+from .turns import Array
+
+SPANS = (0.1, 0.2, 0.4, 0.7, 1.0)   # growing windows, of the whole span
+
+
+def _to_data(data: Any) -> list[Measurement]:
+    found = [data] if isinstance(data, Measurement) else list(data)
+    if not found or not all(isinstance(m, Measurement) for m in found):
+        raise InvalidInput("data: must be one or several of ph.measured.Rates, Attitudes, Axis, Direction and Scalar")
+    return found
+
+
+def _to_groups(fit: str | Sequence[str]) -> tuple[str, ...]:
+    groups = (fit,) if isinstance(fit, str) else tuple(fit)
+    if not groups or len(set(groups)) != len(groups) or not set(groups) <= set(GROUPS):
+        raise InvalidInput(f"fit: must be some of {', '.join(GROUPS)}, each once, got {fit!r}")
+    return groups
+
+
+def _of_scene(scene: Scene | None, groups: Sequence[str], count: int) -> tuple[State, float]:
+    """Return the state that a scene gives, and its largest moment."""
+    bias = np.zeros(count)
+    if scene is None:
+        known = {"inertia", "omega"} - set(groups)
+        if known:
+            raise InvalidInput(f"scene: needed for {' and '.join(sorted(known))}, which `fit` does not hold")
+        return State(np.array([0.0, 0, 0, 1]), np.zeros(3), np.zeros(2), np.array([0.0, 0, 0, 1]), bias), 1.0
+    if len(scene.torques) or len(getattr(scene, "rotors", ())):
+        raise InvalidInput("scene: must be of a free body, without torques; fits of driven bodies are not there yet")
+    tensor = scene.inertia
+    matrix = np.asarray(tensor.matrix)
+    diagonal = not (matrix - np.diag(np.diag(matrix))).any()
+    moments = np.diag(matrix) if diagonal else np.asarray(tensor.principal().moments)
+    axes = np.array([0.0, 0, 0, 1]) if diagonal else turns.of_matrix(np.asarray(tensor.principal().axes))
+    attitude = np.asarray(scene.attitude.as_quat() if hasattr(scene.attitude, "as_quat") else scene.attitude)
+    return State(attitude, np.asarray(scene.omega, dtype=float), ratios_of(moments), axes, bias), float(moments.max())
+
+
+def _bounds(problem: Problem, bounds: Mapping[str, tuple[float, float]] | None) -> tuple[Array | None, Array | None]:
+    if bounds is None:
+        return None, None
+    low, high = np.full(len(problem.names), -np.inf), np.full(len(problem.names), np.inf)
+    for name, (least, most) in bounds.items():
+        if name not in problem.names or name.startswith(("attitude", "axes")):
+            possible = [n for n in problem.names if not n.startswith(("attitude", "axes"))]
+            raise InvalidInput(f"bounds: must name some of {', '.join(possible)}, got {name!r}")
+        if not least < most:
+            raise InvalidInput(f"bounds: {name} must have a lower bound below the upper one, got {(least, most)}")
+        low[problem.names.index(name)], high[problem.names.index(name)] = least, most
+    return low, high
+
+
+def _first_attitude(problem: Problem, state: State) -> State:
+    """Return the state with the start attitude that fits the vectors and attitudes best."""
+    pairs = []
+    for m in problem.data:
+        if not isinstance(m, (Attitudes, Axis, Direction)):
+            continue
+        motion = State(np.array([0.0, 0, 0, 1]), state.omega, state.ratios, state.axes, state.bias).motion()
+        q = turns.product(motion.at(m.t)[1], turns.conjugate(state.axes))
+        R = turns.to_matrix(q)
+        if isinstance(m, Attitudes):
+            Y = turns.to_matrix(m.y)
+            pairs += [(R[None, :, :, k], Y[..., k], 1.0) for k in range(3)]
+        elif isinstance(m, Axis):
+            pairs.append(((R @ m.known)[None], m.y, 1.0))
+        else:
+            pairs.append((np.einsum("kij,kj->ki", R, m.y)[None], np.broadcast_to(m.known, m.y.shape), 1.0))
+    if not pairs:
+        return state
+    return State(wahba(pairs)[1][0], state.omega, state.ratios, state.axes, state.bias)
+
+
+def _start(problem: Problem, state: State, rng: np.random.Generator, loss: str, scale: float) -> tuple[State, str]:
+    """Return the start of the last fit, and how it was found."""
+    rates = [m for m in problem.data if isinstance(m, Rates) and len(m) >= 8]
+    last = float(np.abs(problem.t).max())
+    if rates:
+        gyro = max(rates, key=len)
+        ratios, axes = state.ratios, state.axes
+        if "inertia" in problem.slices:
+            moments, axes = from_rates(gyro.t, gyro.y, "axes" in problem.slices)
+            ratios = ratios_of(moments)
+        omega = state.omega
+        if "omega" in problem.slices:
+            omega = gyro.y[np.argmin(np.abs(gyro.t))]
+        first = State(state.attitude, omega, ratios, axes, state.bias)
+        if "attitude" in problem.slices:
+            first = _first_attitude(problem, first)
+        spans = np.quantile(np.abs(gyro.t), SPANS)
+        found, _ = grow(problem, first, spans, "soft_l1" if loss == "linear" else loss, scale)
+        if 2 * found.cost <= GOOD * found.residuals.size or loss != "linear":
+            return found.state, "a linear start from the rates and growing windows"
+    if rates and not any(isinstance(m, (Attitudes, Axis, Direction)) for m in problem.data):
+        found_best: Minimum = found
+        gyro = max(rates, key=len)
+        for _ in range(30):   # other ratios, the same windows
+            P = rng.uniform(0.05, 1, 3)
+            ratios = ratios_of(P.sum() - P) if "inertia" in problem.slices else state.ratios
+            other, good = grow(problem, State(state.attitude, gyro.y[0], ratios, axes, state.bias),
+                               np.quantile(np.abs(gyro.t), SPANS), loss, scale)
+            found_best = min(found_best, other, key=lambda m: m.cost if m.residuals.size == problem.t.size else np.inf)
+            if good:
+                return other.state, "growing windows from ratios at random"
+        return found_best.state, "the best of the starts: none fits"
+    if last == 0:
+        return state, "the scene"
+    searched = search(problem, state, rng, loss, scale)
+    if searched is None:
+        return state, "nothing: the search found no motion that fits"
+    return searched.state, "a search through motions at random"
+
+
+def fit(
+    data: Measurement | Sequence[Measurement],
+    scene: Scene | None = None,
+    fit: str | Sequence[str] = ("omega", "attitude", "inertia"),
+    start: str | Sequence[float] | None = "search",
+    bounds: Mapping[str, tuple[float, float]] | None = None,
+    loss: str = "linear",
+    f_scale: float = 1.0,
+    seed: int = 0,
+) -> FitResult:
+    """Fit the start, the moments' ratios and the axes of a free body to measurements.
+
+    Parameters
+    ----------
+    data : Measurement or sequence of them
+        Of :mod:`polhode.measured`, in any mixture.
+    scene : Scene, optional
+        A free body. It gives what is not fitted, the start of the fit with start='scene', and the scale of the inertia,
+        which no free motion tells.
+    fit : str or sequence of str
+        Some of 'omega', 'attitude', 'inertia' (two ratios of second moments) and 'axes' (the principal axes in the
+        body; without it the given axes are principal).
+    start : {'search', 'scene'}
+        'search' needs no start. 'scene' starts at the scene's values.
+    bounds : dict, optional
+        (least, most) of parameters by name, for 'omega_x' and so on, 'log_p1_p3', 'log_p2_p3' and 'bias_x'.
+    loss : {'linear', 'soft_l1', 'huber', 'cauchy'}
+        The loss of (residual / (sigma f_scale))^2, as for SciPy's `least_squares`.
+    f_scale : float
+        The residual over sigma from which the loss counts it as an outlier.
+    seed : int
+        Of the search.
+
+    Returns
+    -------
+    FitResult
+        SciPy's names (`x`, `cost`, `fun`, `jac`, `nfev`, `status`, `message`, `success`), `omega`, `attitude`,
+        `inertia`, `cov`, `stderr`, `correlation`, `parameters`, `chi2`, `dof`, `unobservable`, `twins`, `scene`,
+        `problem`, and `predict(t)`.
+
+    Raises
+    ------
+    InvalidInput
+        Data of unequal lengths, sigma that is not positive, too few samples, or a body with torques.
+
+    Notes
+    -----
+    A gyroscope's scale and an offset of times are not fitted. See docs/fit.md.
+    """
+    measurements, groups = _to_data(data), _to_groups(fit)
+    if loss not in LOSSES:
+        raise InvalidInput(f"loss: must be one of {', '.join(LOSSES)}, got {loss!r}")
+    if not f_scale > 0:
+        raise InvalidInput(f"f_scale: must be positive, got {f_scale}")
+    if start not in ("search", "scene") or (start == "scene" and scene is None):
+        raise InvalidInput(f"start: must be 'search', or 'scene' with a scene, got {start!r}")
+    state, largest = _of_scene(scene, groups, sum(m.bias for m in measurements))
+    problem = Problem(measurements, groups, state)
+    independent = sum(m.independent for m in measurements)
+    if independent < len(problem.names) or problem.t.size < 2:
+        raise InvalidInput(f"data: {independent} numbers cannot give {len(problem.names)} parameters; "
+                           f"{sum(m.left_out for m in measurements)} samples were left out as NaN")
+    how = "the scene"
+    if start == "search":
+        state, how = _start(problem, state, np.random.default_rng(seed), loss, f_scale)
+    low, high = _bounds(problem, bounds)
+    found = minimise(problem, state, loss=loss, scale=f_scale, low=low, high=high, most=200)
+    return make_result(problem, found, scene, largest, how, loss)

@@ -1,0 +1,178 @@
+"""The residuals of a free body and their derivatives, as functions of the parameters of a fit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .._core import FreeMotion, InertiaTensor
+from . import turns
+from .turns import Array
+
+if TYPE_CHECKING:
+    from ..measured import Measurement
+
+GROUPS = {"attitude": ("attitude_x", "attitude_y", "attitude_z"), "omega": ("omega_x", "omega_y", "omega_z"),
+          "inertia": ("log_p1_p3", "log_p2_p3"), "axes": ("axes_x", "axes_y", "axes_z")}
+
+
+class State:
+    """The parameters of a free body: start attitude, omega(0) and two ratios of second moments, and the axes.
+
+    The second moments P of mass give the moments J = (P2 + P3, P3 + P1, P1 + P2), P3 = 1. Any two numbers log(P1 / P3)
+    and log(P2 / P3) are those of a body that exists. The scale of J does not change a free motion.
+    """
+
+    def __init__(self, attitude: Array, omega: Array, ratios: Array, axes: Array, bias: Array) -> None:
+        self.attitude, self.omega, self.ratios, self.axes, self.bias = attitude, omega, ratios, axes, bias
+
+    @property
+    def moments(self) -> Array:
+        """Principal moments, P3 = 1."""
+        a, b = np.exp(np.clip(self.ratios, -80, 80))
+        return np.array([b + 1, a + 1, a + b])
+
+    def moved(self, step: Array, slices: dict[str, slice]) -> State:
+        """Return the state after a step of the parameters; small rotations are applied on the left."""
+        def part(name: str, width: int) -> Array:
+            return step[slices[name]] if name in slices else np.zeros(width)
+
+        def turned(q: Array, vector: Array) -> Array:
+            if not vector.any():
+                return q
+            new = turns.product(turns.exp(vector), q)
+            out: Array = new / np.linalg.norm(new)
+            return out
+
+        return State(turned(self.attitude, part("attitude", 3)), self.omega + part("omega", 3),
+                     np.clip(self.ratios + part("inertia", 2), -30, 30), turned(self.axes, part("axes", 3)),
+                     self.bias + part("bias", self.bias.size))
+
+    def motion(self) -> FreeMotion:
+        """The motion in principal axes."""
+        inertia = InertiaTensor.from_moments(self.moments, physical=False)
+        if not self.turned:
+            return FreeMotion(inertia, self.omega, self.attitude)
+        back = turns.conjugate(self.axes)
+        attitude = turns.product(self.attitude, self.axes)
+        return FreeMotion(inertia, turns.rotate(back, self.omega), attitude / np.linalg.norm(attitude))
+
+    @property
+    def turned(self) -> bool:
+        """Whether the given axes are not principal."""
+        return bool(self.axes[:3].any())
+
+    def to_body(self, omega: Array, attitude: Array) -> tuple[Array, Array]:
+        """Return states in the given axes from those in principal axes."""
+        if not self.turned:
+            return omega, attitude
+        return turns.rotate(self.axes, omega), turns.product(attitude, turns.conjugate(self.axes))
+
+
+def ratios_of(moments: Array) -> Array:
+    """Return log(P1 / P3) and log(P2 / P3), the second moments kept above 1e-6 of the largest."""
+    P = 0.5 * moments.sum() - moments
+    P = np.maximum(P, 1e-6 * P.max())
+    out: Array = np.log(P[:2] / P[2])
+    return out
+
+
+class Problem:
+    """Residuals over sigma of all measurements, and their Jacobian, for `groups` of a state's parameters.
+
+    Attributes
+    ----------
+    names : tuple of str
+        The parameters.
+    base : State
+        Where the parameters of `fun` and `jac` start: attitude and axes are small rotations from it.
+    """
+
+    def __init__(self, data: Sequence[Measurement], groups: Sequence[str], base: State) -> None:
+        self.data, self.groups, self.base = list(data), tuple(groups), base
+        self.slices: dict[str, slice] = {}
+        names: list[str] = []
+        for group in self.groups:
+            self.slices[group] = slice(len(names), len(names) + len(GROUPS[group]))
+            names += GROUPS[group]
+        count = sum(measurement.bias for measurement in self.data)
+        if count:
+            self.slices["bias"] = slice(len(names), len(names) + count)
+            names += [f"bias_{k // 3}_{'xyz'[k % 3]}" if count > 3 else f"bias_{'xyz'[k]}" for k in range(count)]
+        self.names = tuple(names)
+        times = [measurement.t for measurement in self.data]
+        self.ends = np.cumsum([0, *(len(t) for t in times)])
+        self.t = np.concatenate(times) if times else np.zeros(0)
+        wanted = {"omega", *(["inertia"] if "inertia" in groups else []), *(["axes"] if "axes" in groups else [])}
+        self.wrt = tuple(sorted(wanted))
+
+    def _each(self, state: State, omega: Array, attitude: Array) -> list[Array]:
+        parts, bias = [], 0
+        for k, measurement in enumerate(self.data):
+            here = slice(self.ends[k], self.ends[k + 1])
+            own = state.bias[bias : bias + measurement.bias]
+            parts.append(measurement.whiten(measurement.residual(omega[here], attitude[here], own)).ravel())
+            bias += measurement.bias
+        return parts
+
+    def residuals(self, state: State) -> Array:
+        """Residuals over sigma."""
+        return np.concatenate(self._each(state, *state.to_body(*state.motion().at(self.t))))
+
+    def columns(self, state: State) -> tuple[Array, Array, Array, Array]:
+        """(omega, attitude, d omega, d theta) of the parameters of the motion, small rotations in space axes."""
+        s = state.motion().sensitivity(self.t, self.wrt)
+        E = turns.to_matrix(state.axes)
+        n, width = self.t.size, len(self.names)
+        d_omega, d_turn = np.zeros((n, 3, width)), np.zeros((n, 3, width))
+
+        def put(group: str, transform: Array) -> None:
+            first = 3 * self.wrt.index(group)
+            part = s.d_omega[..., first : first + 3] @ transform
+            d_omega[..., self.slices[group]] = E @ part if state.turned else part
+            d_turn[..., self.slices[group]] = s.d_attitude[..., first : first + 3] @ transform
+
+        if "attitude" in self.slices:
+            d_turn[..., self.slices["attitude"]] = np.eye(3)
+        if "omega" in self.slices:
+            put("omega", E.T)
+        if "inertia" in self.slices:
+            a, b = np.exp(np.clip(state.ratios, -80, 80))
+            put("inertia", np.array([[0, b], [a, 0], [a, b]]))
+        if "axes" in self.slices:
+            put("axes", E.T)
+        return *state.to_body(s.omega, s.attitude), d_omega, d_turn
+
+    def residuals_and_jacobian(self, state: State) -> tuple[Array, Array]:
+        """Residuals over sigma, and their derivatives by a step of the parameters."""
+        omega, attitude, d_omega, d_turn = self.columns(state)
+        rows, bias = [], self.slices["bias"].start if "bias" in self.slices else 0
+        for k, measurement in enumerate(self.data):
+            here = slice(self.ends[k], self.ends[k + 1])
+            part = measurement.rows(omega[here], attitude[here], d_omega[here], d_turn[here])
+            if measurement.bias:
+                part = part.copy()
+                part[:, :, bias : bias + 3] = np.eye(3)
+                bias += measurement.bias
+            rows.append(measurement.whiten(part).reshape(-1, len(self.names)))
+        return np.concatenate(self._each(state, omega, attitude)), np.concatenate(rows)
+
+    def fun(self, x: Array) -> Array:
+        """Residuals at a step `x` from the base, for SciPy's `least_squares`."""
+        return self.residuals(self.base.moved(np.asarray(x, dtype=float), self.slices))
+
+    def jac(self, x: Array) -> Array:
+        """The derivative of `fun`."""
+        x = np.asarray(x, dtype=float)
+        _, jacobian = self.residuals_and_jacobian(self.base.moved(x, self.slices))
+        for group in ("attitude", "axes"):   # a step of the rotation vector turns by its left Jacobian
+            if group in self.slices:
+                here = self.slices[group]
+                jacobian[:, here] = jacobian[:, here] @ np.linalg.inv(turns.inverse_right_jacobian(x[here]).T)
+        return jacobian
+
+    def with_data(self, data: Sequence[Measurement]) -> Problem:
+        """Return the same problem with other samples."""
+        return Problem(data, self.groups, self.base)

@@ -1,0 +1,240 @@
+"""What a fit found, and how sure it is."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .._attitude.rotation import Rotation
+from .._core import InertiaTensor
+from .._scene.scene import Scene
+from ..measured import Axis, Rates, Scalar
+from . import turns
+from .least_squares import Minimum
+from .problem import Problem, State
+from .turns import Array
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+HIDDEN = 1e-10     # a singular value below this part of the largest is not observable
+GOOD_CHI2 = 4.0
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class Prediction:
+    """A fitted motion at some times with its covariance.
+
+    Attributes
+    ----------
+    t : ndarray, shape (n,)
+        Times [s].
+    omega : ndarray, shape (n, 3)
+        In body axes [rad/s].
+    attitude : ndarray, shape (n, 4)
+        Body to space, (x, y, z, w).
+    cov_omega, cov_attitude : ndarray, shape (n, 3, 3)
+        Covariances of omega in body axes and of the small rotation in space axes [rad^2].
+    spread : ndarray, shape (n,)
+        The largest standard deviation of the attitude [rad]. Above about 1 the attitude is unknown.
+    """
+
+    t: Array
+    omega: Array
+    attitude: Array
+    cov_omega: Array
+    cov_attitude: Array
+
+    @property
+    def spread(self) -> Array:
+        """The largest standard deviation of the attitude [rad]."""
+        out: Array = np.sqrt(np.maximum(np.linalg.eigvalsh(self.cov_attitude)[..., -1], 0))
+        return out
+
+    def unknown_after(self, limit: float = 1.0) -> float:
+        """Return the first of the times at which the spread exceeds `limit`; inf if none does."""
+        beyond = np.flatnonzero(self.spread > limit)
+        return float(self.t[beyond[0]]) if beyond.size else float("inf")
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class FitResult:
+    """The result of :func:`polhode.fit`, with SciPy's names.
+
+    Attributes
+    ----------
+    x : ndarray, shape (p,)
+        The parameters in the order of `parameters`: rotation vectors of the start attitude and of the axes, omega,
+        log(P1 / P3) and log(P2 / P3) of the second moments of mass, biases.
+    cost : float
+        Half the sum of the loss of the residuals over sigma.
+    fun, jac : ndarray
+        Residuals over sigma, shape (m,), and their derivatives by steps of the parameters, shape (m, p).
+    nfev, status, message, success
+        As for SciPy's `least_squares`. `success` is False where chi2 is above 4 for each degree of freedom.
+    omega : ndarray, shape (3,)
+        Angular velocity at t = 0, body axes [rad/s].
+    attitude : Rotation
+        Attitude at t = 0, body to space.
+    inertia : ndarray, shape (3,), or InertiaTensor
+        As :class:`FreeMotion` takes it; the largest moment is 1, or that of the scene. A tensor where axes were fitted.
+    cov, stderr, correlation
+        Of the parameters; small rotations stand for attitude and axes. NaN where not observable.
+    chi2, dof : float, int
+        The sum of squared residuals over sigma, and how many independent numbers exceed the parameters.
+    unobservable, twins : tuple of str
+        In words: what these data cannot tell, and which other bodies fit as well.
+    left_out : int
+        Samples with a NaN.
+    problem : object
+        `problem.fun` and `problem.jac` for SciPy's `least_squares`, from problem.base.
+    """
+
+    x: Array
+    cost: float
+    fun: Array
+    jac: Array
+    nfev: int
+    status: int
+    message: str
+    success: bool
+    omega: Array
+    attitude: Rotation
+    inertia: Any
+    cov: Array
+    stderr: Array
+    correlation: Array
+    parameters: tuple[str, ...]
+    chi2: float
+    dof: int
+    unobservable: tuple[str, ...]
+    twins: tuple[str, ...]
+    left_out: int
+    bias: Array
+    scene: Scene
+    problem: Problem
+    state: State
+
+    def predict(self, t: npt.ArrayLike) -> Prediction:
+        """Return the fitted motion with its covariance at times t, shape (n,)."""
+        times = np.atleast_1d(np.asarray(t, dtype=float))
+        problem = Problem([], self.problem.groups, self.state)
+        problem.t = times
+        omega, attitude, d_omega, d_turn = problem.columns(self.state)
+        cov = np.nan_to_num(self.cov[: len(problem.names), : len(problem.names)])
+        return Prediction(times, omega, attitude, d_omega @ cov @ d_omega.transpose(0, 2, 1),
+                          d_turn @ cov @ d_turn.transpose(0, 2, 1))
+
+    def plot(self) -> Any:
+        """Draw the motion over the data, the residuals, the correlations and the spread of the prediction."""
+        from .._plot.fit import draw
+
+        return draw(self)
+
+    def interval(self, level: float = 1.96) -> dict[str, tuple[float, float]]:
+        """Return value - level stderr and value + level stderr of each parameter."""
+        return {name: (float(v - level * s), float(v + level * s))
+                for name, v, s in zip(self.parameters, self.x, self.stderr, strict=True)}
+
+    def __repr__(self) -> str:
+        lines = [f"FitResult: {self.message}", f"  chi2 {self.chi2:.6g} for {self.dof} degrees of freedom"]
+        lines += [f"  {name} = {value:.9g} +- {error:.2g}"
+                  for name, value, error in zip(self.parameters, self.x, self.stderr, strict=True)]
+        lines += [f"  not observable: {text}" for text in self.unobservable]
+        lines += [f"  twin: {text}" for text in self.twins]
+        return "\n".join(lines)
+
+
+def covariance(jacobian: Array, names: tuple[str, ...]) -> tuple[Array, list[str]]:
+    """Return the covariance from the singular values of the column-scaled Jacobian, and what it does not see."""
+    count = jacobian.shape[1]
+    size = np.linalg.norm(jacobian, axis=0)
+    hidden = [f"{name}: the data do not depend on it" for name, s in zip(names, size, strict=True) if s == 0]
+    seen = np.flatnonzero(size > 0)
+    cov = np.full((count, count), np.nan)
+    if not seen.size:
+        return cov, hidden
+    _, values, right = np.linalg.svd(jacobian[:, seen] / size[seen], full_matrices=False)
+    keep = values > HIDDEN * values[0]
+    lost = np.zeros(seen.size, dtype=bool)
+    for row in right[~keep]:
+        involved = np.abs(row) > 0.05
+        lost |= involved
+        hidden.append("a combination of " + ", ".join(names[k] for k in seen[involved]))
+    inverse = right[keep].T / values[keep]
+    found = inverse @ inverse.T / size[seen] / size[seen][:, None]
+    found[lost], found[:, lost] = np.nan, np.nan
+    cov[np.ix_(seen, seen)] = found
+    return cov, hidden
+
+
+def _twins(problem: Problem, moments: Array) -> tuple[str, ...]:
+    kinds = {type(m) for m in problem.data}
+    found = []
+    if kinds == {Axis} and "inertia" in problem.slices:
+        axis = np.asarray(problem.data[0].known) if isinstance(problem.data[0], Axis) else np.zeros(3)
+        if np.count_nonzero(axis) == 1:
+            one, other = (str(k + 1) for k in range(3) if not axis[k])
+            found.append(f"axis {int(np.argmax(np.abs(axis))) + 1} alone is seen: the body with moments {one} and "
+                         f"{other} exchanged, and each turned by half a turn or a quarter about that axis, fit as well")
+    if kinds == {Scalar}:
+        found.append("a scalar does not tell a motion from its image under the symmetries of the function")
+    if "axes" in problem.slices:
+        found.append("the principal axes may be relabelled and reversed: the tensor is the same")
+    return tuple(found)
+
+
+def _symmetry(problem: Problem, state: State, cov: Array) -> list[str]:
+    """Say which two moments do not differ beyond two standard deviations."""
+    if "inertia" not in problem.slices:
+        return []
+    here = problem.slices["inertia"]
+    found = []
+    for pair, direction in (("1 and 2", (1, -1)), ("1 and 3", (1, 0)), ("2 and 3", (0, 1))):
+        d = np.array(direction)   # J1 = J3 where log(P1 / P3) = 0, and so on
+        if abs(d @ state.ratios) <= 2 * np.sqrt(d @ cov[here, here] @ d):
+            found.append(f"whether moments {pair} differ; the directions of their axes in a symmetric body")
+    return found
+
+
+def make_result(problem: Problem, found: Minimum, scene: Scene | None, largest: float, how: str, loss: str,
+                ) -> FitResult:
+    """Make the result from a minimum."""
+    state = found.state
+    cov, hidden = covariance(found.jacobian, problem.names)
+    stderr = np.sqrt(np.diag(cov))
+    with np.errstate(invalid="ignore"):
+        correlation = cov / stderr / stderr[:, None]
+    moments = state.moments / state.moments.max() * largest
+    E = turns.to_matrix(state.axes)
+    turned = "axes" in problem.slices or bool(np.abs(state.axes[:3]).any())
+    inertia: Any = InertiaTensor(E @ np.diag(moments) @ E.T, physical=False) if turned else moments
+    unobservable = [] if scene is not None else ["the scale of the inertia: a free motion does not depend on it"]
+    if "attitude" in problem.slices and all(isinstance(m, Rates) for m in problem.data):
+        hidden = [text for text in hidden if not text.startswith("attitude")]
+        hidden.insert(0, "the attitude: rates alone do not depend on it")
+    hidden += _symmetry(problem, state, cov)
+    x = np.zeros(len(problem.names))
+    for group, value in (("attitude", turns.log(state.attitude)), ("omega", state.omega), ("inertia", state.ratios),
+                         ("axes", turns.log(state.axes)), ("bias", state.bias)):
+        if group in problem.slices:
+            x[problem.slices[group]] = value
+    chi2 = float(found.residuals @ found.residuals)
+    dof = sum(m.independent for m in problem.data) - len(problem.names)
+    good = chi2 <= GOOD_CHI2 * max(dof, 1) or loss != "linear"
+    left_out = sum(m.left_out for m in problem.data)
+    message = ("converged" if found.status else "the most evaluations were made") + f"; the start was {how}"
+    if not good:
+        message = f"chi2 is {chi2 / max(dof, 1):.3g} for each degree of freedom: the model does not fit; {message}"
+    if left_out:
+        message += f"; {left_out} samples were left out as NaN"
+    attitude = Rotation.from_quat(state.attitude)
+    times = np.unique(problem.t)
+    scene_out = Scene(inertia=inertia if turned else tuple(moments), omega=tuple(state.omega),
+                      attitude=attitude, times=times, name=scene.name if scene is not None else "fit")
+    return FitResult(x, found.cost, found.residuals, found.jacobian, found.nfev, found.status, message,
+                     bool(found.status > 0 and good), state.omega, attitude, inertia, cov, stderr, correlation,
+                     problem.names, chi2, dof, tuple(unobservable + hidden), _twins(problem, moments), left_out,
+                     state.bias, scene_out, Problem(problem.data, problem.groups, state), state)

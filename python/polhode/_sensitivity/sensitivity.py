@@ -1,0 +1,86 @@
+"""The derivatives of a motion, by column."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from .._core import InvalidInput
+
+Array = npt.NDArray[np.float64]
+_NAMES = {"omega": "xyz", "attitude": "xyz", "axes": "xyz", "inertia": "123"}
+
+
+def to_names(wrt: str | Sequence[str]) -> tuple[str, ...]:
+    """Return the names of groups as a tuple."""
+    return (wrt,) if isinstance(wrt, str) else tuple(wrt)
+
+
+def name_columns(wrt: str | Sequence[str]) -> tuple[str, ...]:
+    """Return a name for each column: 'omega_x' to 'omega_z', 'inertia_1' to 'inertia_3' and so on."""
+    return tuple(f"{group}_{part}" if part else group for group in to_names(wrt) for part in _NAMES.get(group, [""]))
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class Sensitivity:
+    """A motion and its derivatives at some times.
+
+    Attributes
+    ----------
+    omega : ndarray, shape (..., 3)
+        Angular velocity in body axes [rad/s].
+    attitude : ndarray, shape (..., 4)
+        Body to space, unit, (x, y, z, w).
+    d_omega : ndarray, shape (..., 3, n)
+        Derivatives of omega in body axes, one column for each parameter.
+    d_attitude : ndarray, shape (..., 3, n)
+        The small rotations of the attitude R [rad]: exp(d theta) R for side 'space', R exp(d theta) for 'body'.
+    columns : tuple of str
+        The names of the columns.
+    side : {'space', 'body'}
+        The axes of the small rotations, those of the attitude at t = 0 included.
+    error : ndarray, shape (n,), or None
+        The estimated error of each column relative to its size, where the motion was integrated.
+
+    Notes
+    -----
+    The size of a column is the larger of abs(d omega) / abs(omega(0)) and the angle of the small rotation.
+    """
+
+    omega: Array
+    attitude: Array
+    d_omega: Array
+    d_attitude: Array
+    columns: tuple[str, ...]
+    side: str = "space"
+    error: Array | None = None
+
+    def column(self, name: str) -> tuple[Array, Array]:
+        """Return (d omega, d attitude) of one column, each of shape (..., 3)."""
+        if name not in self.columns:
+            raise InvalidInput(f"name: must be among the columns {', '.join(self.columns)}, got {name!r}")
+        k = self.columns.index(name)
+        return self.d_omega[..., k], self.d_attitude[..., k]
+
+    @property
+    def transition(self) -> Array:
+        """(..., 6, 6): d (omega, attitude) at t by d (omega, attitude) at t = 0; needs both groups."""
+        wanted = name_columns(("omega", "attitude"))
+        if not set(wanted) <= set(self.columns):
+            raise InvalidInput("transition: needs the columns of 'omega' and 'attitude', got "
+                               f"{', '.join(self.columns)}; ask for wrt=('omega', 'attitude')")
+        which = [self.columns.index(name) for name in wanted]
+        return np.concatenate([self.d_omega[..., which], self.d_attitude[..., which]], axis=-2)
+
+    def __repr__(self) -> str:
+        shape = self.omega.shape[:-1]
+        return f"Sensitivity(shape={shape}, columns={self.columns}, side={self.side!r})"
+
+
+def of_groups(omega: Array, attitude: Array, d_omega: Array, d_attitude: Array, wrt: str | Sequence[str],
+              side: str) -> Sensitivity:
+    """Make the result from the names of groups."""
+    return Sensitivity(omega, attitude, d_omega, d_attitude, name_columns(wrt), side)
