@@ -13,11 +13,13 @@ constexpr std::pair<const char*, SensitivityTo> names[] = {{"omega", Sensitivity
                                                            {"time", SensitivityTo::time}};
 
 std::vector<SensitivityTo> to_wrt(py::handle given) {
-  const py::tuple wanted = py::isinstance<py::str>(given) ? py::tuple(py::make_tuple(given)) : py::tuple(given.cast<py::object>());
+  const bool is_one = py::isinstance<py::str>(given);
+  const py::tuple wanted = is_one ? py::make_tuple(given) : py::tuple(given.cast<py::object>());
   std::vector<SensitivityTo> wrt;
   for (const py::handle item : wanted) {
     const std::string text = py::str(item).cast<std::string>();
-    const auto* found = std::find_if(std::begin(names), std::end(names), [&](const auto& n) { return text == n.first; });
+    const auto* found =
+        std::find_if(std::begin(names), std::end(names), [&](const auto& name) { return text == name.first; });
     if (found == std::end(names)) {
       throw InvalidInput("wrt", "among 'omega', 'attitude', 'inertia', 'axes' and 'time'", "'" + text + "'");
     }
@@ -91,9 +93,9 @@ Parameters
 t : array_like, any shape
     Times [s], as for :meth:`at`.
 wrt : str or sequence of str
-    What to differentiate with respect to, in the order of the columns: 'omega' (omega at t = 0), 'inertia' (the principal
-    moments at fixed omega; ascending for a full tensor), 'attitude' (a small rotation at t = 0), 'axes' (a small
-    rotation of the principal axes in the body), each three columns, and 'time', one.
+    What to differentiate with respect to, in the order of the columns: 'omega' (omega at t = 0), 'inertia' (the
+    principal moments at fixed omega; ascending for a full tensor), 'attitude' (a small rotation at t = 0), 'axes' (a
+    small rotation of the principal axes in the body), each three columns, and 'time', one.
 side : {'space', 'body'}
     Small rotations of the attitude R: exp(d theta) R in space axes, or R exp(d theta) in body axes.
 

@@ -76,9 +76,9 @@ class ColumnsRun {
       } else if (singly) {
         evaluate(exact::MotionColumns(motion(body)), body, 0, b_.times);
       } else {
-        evaluate(exact::ColumnsBody(start(body), exact::ColumnsForm::trig, columns_[i], rates_.data() + 3 * i, &trig_[i],
-                                    nullptr, frames_[i]),
-                 body, 0, b_.times);
+        const exact::ColumnsBody columns(start(body), exact::ColumnsForm::trig, columns_[i], rates_.data() + 3 * i,
+                                         &trig_[i], nullptr, frames_[i]);
+        evaluate(columns, body, 0, b_.times);
       }
     }
   }

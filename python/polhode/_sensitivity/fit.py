@@ -14,9 +14,11 @@ from . import turns
 from .least_squares import LOSSES, Minimum, minimise
 from .problem import GROUPS, Problem, State, ratios_of
 from .result import FitResult, make_result
-from .start import GOOD, from_rates, grow, search, wahba
+from .start import fits, from_rates, grow, search, wahba
 from .turns import Array
 
+STARTS = 12     # other ratios that are tried where the linear start does not fit
+THIN = 8.0      # log of a ratio of second moments beyond which other ratios are tried too
 SPANS = (0.1, 0.2, 0.4, 0.7, 1.0)   # growing windows, of the whole span
 
 
@@ -88,6 +90,12 @@ def _first_attitude(problem: Problem, state: State) -> State:
     return State(wahba(pairs)[1][0], state.omega, state.ratios, state.axes, state.bias)
 
 
+def _grown(problem: Problem, state: State, spans: Array, loss: str, scale: float) -> Minimum:
+    """Return the minimum on all data, after windows that grow under a loss that bears outliers."""
+    found, _ = grow(problem, state, spans, "soft_l1" if loss == "linear" else loss, scale)
+    return minimise(problem, found.state, loss=loss, scale=scale)
+
+
 def _start(problem: Problem, state: State, rng: np.random.Generator, loss: str, scale: float) -> tuple[State, str]:
     """Return the start of the last fit, and how it was found."""
     rates = [m for m in problem.data if isinstance(m, Rates) and len(m) >= 8]
@@ -97,7 +105,7 @@ def _start(problem: Problem, state: State, rng: np.random.Generator, loss: str, 
         ratios, axes = state.ratios, state.axes
         if "inertia" in problem.slices:
             moments, axes = from_rates(gyro.t, gyro.y, "axes" in problem.slices)
-            ratios = ratios_of(moments)
+            ratios = ratios_of(moments, 0.02)
         omega = state.omega
         if "omega" in problem.slices:
             omega = gyro.y[np.argmin(np.abs(gyro.t))]
@@ -105,21 +113,19 @@ def _start(problem: Problem, state: State, rng: np.random.Generator, loss: str, 
         if "attitude" in problem.slices:
             first = _first_attitude(problem, first)
         spans = np.quantile(np.abs(gyro.t), SPANS)
-        found, _ = grow(problem, first, spans, "soft_l1" if loss == "linear" else loss, scale)
-        if 2 * found.cost <= GOOD * found.residuals.size or loss != "linear":
-            return found.state, "a linear start from the rates and growing windows"
-    if rates and not any(isinstance(m, (Attitudes, Axis, Direction)) for m in problem.data):
-        found_best: Minimum = found
-        gyro = max(rates, key=len)
-        for _ in range(30):   # other ratios, the same windows
-            P = rng.uniform(0.05, 1, 3)
-            ratios = ratios_of(P.sum() - P) if "inertia" in problem.slices else state.ratios
-            other, good = grow(problem, State(state.attitude, gyro.y[0], ratios, axes, state.bias),
-                               np.quantile(np.abs(gyro.t), SPANS), loss, scale)
-            found_best = min(found_best, other, key=lambda m: m.cost if m.residuals.size == problem.t.size else np.inf)
-            if good:
-                return other.state, "growing windows from ratios at random"
-        return found_best.state, "the best of the starts: none fits"
+        found = _grown(problem, first, spans, loss, scale)
+        how = "a linear start from the rates and growing windows"
+        if fits(found) and np.abs(found.state.ratios).max() < THIN:
+            return found.state, how
+        if "inertia" in problem.slices:
+            for _ in range(STARTS):   # other ratios, the same windows
+                P = rng.uniform(0.1, 1, 3) ** 2
+                other = State(first.attitude, first.omega, ratios_of(P.sum() - P), axes, state.bias)
+                other_found = _grown(problem, other, spans, loss, scale)
+                if other_found.cost < 0.999 * found.cost:
+                    found, how = other_found, "growing windows from ratios at random"
+        if fits(found) or not any(isinstance(m, (Attitudes, Axis, Direction)) for m in problem.data):
+            return found.state, how
     if last == 0:
         return state, "the scene"
     searched = search(problem, state, rng, loss, scale)
@@ -194,5 +200,5 @@ def fit(
     if start == "search":
         state, how = _start(problem, state, np.random.default_rng(seed), loss, f_scale)
     low, high = _bounds(problem, bounds)
-    found = minimise(problem, state, loss=loss, scale=f_scale, low=low, high=high, most=200)
+    found = minimise(problem, state, loss=loss, scale=f_scale, low=low, high=high, most=1000)
     return make_result(problem, found, scene, largest, how, loss)

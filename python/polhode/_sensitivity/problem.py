@@ -71,10 +71,10 @@ class State:
         return turns.rotate(self.axes, omega), turns.product(attitude, turns.conjugate(self.axes))
 
 
-def ratios_of(moments: Array) -> Array:
-    """Return log(P1 / P3) and log(P2 / P3), the second moments kept above 1e-6 of the largest."""
+def ratios_of(moments: Array, least: float = 1e-9) -> Array:
+    """Return log(P1 / P3) and log(P2 / P3), the second moments kept above `least` of the largest."""
     P = 0.5 * moments.sum() - moments
-    P = np.maximum(P, 1e-6 * P.max())
+    P = np.maximum(P, least * P.max())
     out: Array = np.log(P[:2] / P[2])
     return out
 

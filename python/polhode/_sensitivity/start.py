@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 GOOD = 4.0          # chi^2 a residual: above it a start is wrong
 STAGES = ((40_000, 5), (100_000, 4), (400_000, 8), (400_000, 6))        # bodies, epochs: attitudes
 AXIS_STAGES = ((100_000, 10), (300_000, 14), (400_000, 18))             # unit vectors
+OTHERS = 16         # further candidates after one that fits, where there may be false minima: vectors and scalars
 BLOCK = 20_000      # bodies at once: some megabytes
 
 
@@ -168,6 +169,7 @@ def search(problem: Problem, state: State, rng: np.random.Generator, loss: str, 
             for k in np.argpartition(costs, 40)[:40]:
                 kept.append((float(costs[k]), omega[k], moments[k], attitude[k]))
         kept.sort(key=lambda item: item[0])
+        more = OTHERS
         spans = [until]
         while spans[-1] < last:
             spans.append(min(1.5 * spans[-1], last))
@@ -179,8 +181,10 @@ def search(problem: Problem, state: State, rng: np.random.Generator, loss: str, 
             found = minimise(problem, found.state, loss=loss, scale=scale)
             if best is None or found.cost < best.cost:
                 best = found
-            if fits(found):
-                return found
+            if fits(best):
+                more -= 1
+            if fits(best) and (rich or more == 0):
+                return best
         if best is not None and 2 * best.cost <= GOOD * best.residuals.size:
             return best
     return None

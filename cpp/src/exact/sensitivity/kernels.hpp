@@ -28,7 +28,8 @@ struct ColumnTarget {
 };
 
 struct FreeColumnsKernels {
-  /// The columns' constants of n bodies, beside those of FreeKernels::set_up, which have the same meaning; `omega` in working axes.
+  /// The columns' constants of n bodies, beside those of FreeKernels::set_up, which have the same meaning.
+  /// `omega` is in working axes.
   std::size_t (*set_up)(FreeStarts starts, std::size_t n, FreeTrig<double>* trig, FreeFrame* frames,
                         FreeColumns<double>* columns, double* omega, std::size_t* left);
 

@@ -46,8 +46,8 @@ POLHODE_INLINE void rotate_into(const double* matrix, const T (&v)[3], T (&rows)
 /// The small rotation in working space axes, from dL there, the change dm of the momentum in working body axes, and
 /// the angle about the momentum.
 template <class T>
-POLHODE_INLINE void turn_of(const FreeColumns<double>& c, const Place<T>& at, double dL_x, double dL_y, const T (&dm)[3],
-                            T psi, T (&turn)[3]) {
+POLHODE_INLINE void turn_of(const FreeColumns<double>& c, const Place<T>& at, double dL_x, double dL_y,
+                            const T (&dm)[3], T psi, T (&turn)[3]) {
   const T x = madd(at.R_x[0], dm[0], madd(at.R_x[1], dm[1], at.R_x[2] * dm[2]));
   const T y = madd(at.R_y[0], dm[0], madd(at.R_y[1], dm[1], at.R_y[2] * dm[2]));
   const T inverse(1.0 / c.L);
@@ -176,7 +176,8 @@ POLHODE_INLINE void columns_at(const exact::FreeHyper<double>& body, const BodyC
 }
 
 template <class Body>
-void columns_loop(const Body& body_in, const BodyColumns& b_in, const double* t, std::size_t n, const ColumnTarget& to) {
+void columns_loop(const Body& body_in, const BodyColumns& b_in, const double* t, std::size_t n,
+                  const ColumnTarget& to) {
   const Body body = body_in;  // copies, which writing the results cannot change
   const BodyColumns b = b_in;
   std::size_t i = 0;
