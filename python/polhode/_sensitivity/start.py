@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 GOOD = 4.0          # chi^2 a residual: above it a start is wrong
 STAGES = ((40_000, 5), (100_000, 4), (400_000, 8), (400_000, 6))        # bodies, epochs: attitudes
 AXIS_STAGES = ((100_000, 10), (300_000, 14), (400_000, 18))             # unit vectors
-OTHERS = 16         # further candidates after one that fits, where there may be false minima: vectors and scalars
+OTHERS = 8          # further candidates after one that fits, where there may be false minima: vectors and scalars
 BLOCK = 20_000      # bodies at once: some megabytes
 
 
