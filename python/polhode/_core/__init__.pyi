@@ -439,9 +439,9 @@ class FreeMotion:
         t : array_like, any shape
             Times [s], as for :meth:`at`.
         wrt : str or sequence of str
-            What to differentiate with respect to, in the order of the columns: 'omega' (omega at t = 0), 'inertia' (the principal
-            moments at fixed omega; ascending for a full tensor), 'attitude' (a small rotation at t = 0), 'axes' (a small
-            rotation of the principal axes in the body), each three columns, and 'time', one.
+            What to differentiate with respect to, in the order of the columns: 'omega' (omega at t = 0), 'inertia' (the
+            principal moments at fixed omega; ascending for a full tensor), 'attitude' (a small rotation at t = 0), 'axes' (a
+            small rotation of the principal axes in the body), each three columns, and 'time', one.
         side : {'space', 'body'}
             Small rotations of the attitude R: exp(d theta) R in space axes, or R exp(d theta) in body axes.
 
