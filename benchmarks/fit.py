@@ -39,12 +39,14 @@ def random_body(rng):
 def speed():
     """ns a state: one body at many times, and many bodies at one time each."""
     rng = np.random.default_rng(1)
-    n = 16384
+    n = 65536  # so that the call itself is little
     t, start = rng.uniform(1, 1000, n), (0.0, 0.0, 0.0, 1.0)
     out = (np.empty((n, 3)), np.empty((n, 4)), np.empty((n, 3, 6)), np.empty((n, 3, 6)))
     cost = {}
     for name, omega in (("one body, any times", (1, 2, 3)), ("near the separatrix, any times", (1e-4, 5, 1e-4))):
         cost[name] = best(lambda w=omega: ph.free_sensitivity(BLOCK, w, start, t, out=out, threads=1)) / n
+    cost["free_motion, one body, any times"] = best(
+        lambda: ph.free_motion(BLOCK, (1, 2, 3), start, t, out=out[:2], threads=1)) / n
     many = 20_000
     bodies = [random_body(rng) for _ in range(many)]
     moments, omega, q = (np.array(part) for part in zip(*bodies, strict=True))
