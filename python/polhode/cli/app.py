@@ -165,9 +165,9 @@ def fit(
         "--plot", help="Draw motion, residuals, correlations and spread: .png, .svg or .pdf.")] = None,
     as_json: Json = False,
 ) -> int:
-    """Fit a free body to measurements: its start, the ratios of its moments, its principal axes.
+    """Fit a free body to measurements.
 
-    Needs no start values. Prints the parameters with their standard errors, and what the data cannot tell.
+    Finds its start, the ratios of its moments and its principal axes, without start values. Prints the parameters with their standard errors, and what the data cannot tell.
     """
     from . import fit as part
 
