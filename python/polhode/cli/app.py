@@ -167,7 +167,8 @@ def fit(
 ) -> int:
     """Fit a free body to measurements.
 
-    Finds its start, the ratios of its moments and its principal axes, without start values. Prints the parameters with their standard errors, and what the data cannot tell.
+    Finds its start, the ratios of its moments and its principal axes, without start values. Prints the parameters with
+    their standard errors, and what the data cannot tell.
     """
     from . import fit as part
 
