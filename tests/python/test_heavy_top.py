@@ -216,6 +216,15 @@ def test_bad_times_are_refused(t):
         ph.HeavyTop(*TOP).at(t)
 
 
+def test_nutations_beyond_count_are_refused():
+    """Next to the homoclinic motion nutations are counted in a double; beyond 2^52 of them the state was NaN."""
+    top = ph.HeavyTop((1, 1, 0.5), 1.0, (-0.07, 0, 0.5))
+    assert np.isfinite(top.at(4e16)[0]).all()
+    for t in (1e17, -1e21):
+        with pytest.raises(ph.InvalidInput, match="too few digits"):
+            top.at(t)
+
+
 def test_what_float64_cannot_hold_is_refused_when_asked_for():
     top = ph.HeavyTop((1e200, 1e200, 1e200), 0.0, (0, 1e100, 1e100))
     with pytest.raises(ph.InvalidInput, match="^energy:"):

@@ -197,6 +197,10 @@ void HeavyTop::set_up() {
           [&] { return "a tilt or kick of " + to_text(motion.lost_within) + " beside 1"; },
           "float64 cannot follow it from there");
 
+  // The hyperbolic form counts its nutations in a double.
+  if (constants_.hyper && constants_.rate_z.hi > 0.0)
+    largest_time_ = std::min(largest_time_, std::ldexp(0x1p52 / constants_.rate_z.hi, -e));
+
   const Matrix3d R_SB = to_matrix(constants_.q_SB);
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) constants_.R_BS[3 * i + j] = R_SB(j, i);
@@ -235,7 +239,7 @@ void HeavyTop::at(const exact::TimeGrid& times, double* omega, double* attitude)
     for (std::size_t i = 0; i < times.n; ++i) {
       if (!(std::abs(times.t[i]) <= largest_time_)) {
         throw InvalidInput("t", "finite and at most " + to_text(largest_time_) + " s in size", to_text(times.t[i]),
-                           "beyond it the phase has fewer than 7 digits");
+                           "beyond it the phase has too few digits");
       }
     }
   }
