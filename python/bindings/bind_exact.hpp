@@ -1,7 +1,9 @@
 #pragma once
 
+#include <pybind11/operators.h>
 #include <pybind11/typing.h>
 
+#include <string>
 #include <vector>
 
 #include "convert.hpp"
@@ -35,6 +37,55 @@ py::typing::Tuple<Array, Array> at(const Motion& motion, py::handle t) {
     motion.at(in, n, w, q);
   }
   return py::make_tuple(omega, attitude);
+}
+
+/// A curve of a closed form: three numbers at each time, with the GIL released.
+template <class Motion, Vector3d (Motion::*curve)(double) const>
+Array along(const Motion& motion, py::handle t) {
+  const Array times = to_array(t, "t");
+  Array points = result_for(times, 3);
+  const double* in = times.data();
+  double* out = points.mutable_data();
+  const py::ssize_t n = times.size();
+  const WithoutGil nogil;
+  for (py::ssize_t i = 0; i < n; ++i) {
+    if (i % 1024 == 0) check_interrupt();
+    Eigen::Map<Vector3d>(out + 3 * i) = (motion.*curve)(in[i]);
+  }
+  return points;
+}
+
+/// What a closed form started from, and equality.
+template <class Motion>
+void bind_start(py::class_<Motion>& cls, const char* inertia = "The InertiaTensor.") {
+  cls.def_property_readonly("inertia", &Motion::inertia, inertia)
+      .def_property_readonly(
+          "omega", [](const Motion& motion) { return from_vector3(motion.omega()); },
+          "(3,) omega at t = 0, in body axes [rad/s].")
+      .def_property_readonly(
+          "attitude", [](const Motion& motion) { return from_quat(motion.attitude()); }, "(4,) attitude at t = 0.")
+      .def(py::self == py::self);
+}
+
+/// The call that makes this motion: `middle` stands between inertia and omega, `end` behind attitude.
+template <class Motion>
+std::string call_text(const char* name, const Motion& motion, const std::string& middle = "",
+                      const std::string& end = "") {
+  return std::string(name) + "(" + py::cast<std::string>(py::repr(py::cast(motion.inertia()))) + middle +
+         ", omega=" + array_text(from_vector3(motion.omega())) +
+         ", attitude=" + array_text(from_quat(motion.attitude())) + end + ")";
+}
+
+/// A hash of some of a motion's numbers.
+template <class... Numbers>
+py::ssize_t hash_of(const Vector3d& omega, Numbers... others) {
+  return py::hash(py::make_tuple(others..., omega[0], omega[1], omega[2]));
+}
+
+/// The attitude in a pickle, as it was: to make it unit again could move it by a unit of rounding.
+inline Quat stored_attitude(py::handle value) {
+  const Array q = to_array_with_tail(value, "attitude", {4});
+  return {q.data()[0], q.data()[1], q.data()[2], q.data()[3]};
 }
 
 }  // namespace polhode::python

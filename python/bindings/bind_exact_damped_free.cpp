@@ -1,4 +1,3 @@
-#include <pybind11/operators.h>
 #include <pybind11/typing.h>
 
 #include "bind_exact.hpp"
@@ -82,27 +81,20 @@ float
                              "Bound on the angle of rotation from t = 0 on, abs(omega) / c [rad]; infinite for c <= 0.")
       .def_property_readonly("free", &DampedFree::free, "The FreeMotion in slowed time.")
       .def_property_readonly("damping", &DampedFree::damping, "The rate c [1/s].")
-      .def_property_readonly("inertia", &DampedFree::inertia, "The InertiaTensor.")
-      .def_property_readonly("omega", [](const DampedFree& f) { return from_vector3(f.omega()); },
-                             "(3,) omega at t = 0, in body axes [rad/s].")
-      .def_property_readonly("attitude", [](const DampedFree& f) { return from_quat(f.attitude()); },
-                             "(4,) attitude at t = 0.")
-      .def(py::self == py::self)
-      .def("__hash__",
-           [](const DampedFree& f) {
-             return py::hash(py::make_tuple(f.damping(), f.omega()[0], f.omega()[1], f.omega()[2]));
-           })
-      .def("__repr__", [](const DampedFree& f) {
-        const auto text = [](const Array& a) { return py::cast<std::string>(py::str(a.attr("tolist")())); };
-        return "DampedFree(" + py::cast<std::string>(py::repr(py::cast(f.inertia()))) +
-               ", damping=" + to_text(f.damping()) + ", omega=" + text(from_vector3(f.omega())) +
-               ", attitude=" + text(from_quat(f.attitude())) + ")";
-      });
+      .def("__hash__", [](const DampedFree& f) { return hash_of(f.omega(), f.damping()); })
+      .def("__repr__",
+           [](const DampedFree& f) { return call_text("DampedFree", f, ", damping=" + to_text(f.damping())); });
+  bind_start(cls);
   cls.def(py::pickle(
       [](const DampedFree& f) {
         return py::make_tuple(f.inertia(), f.damping(), from_vector3(f.omega()), from_quat(f.attitude()));
       },
-      [](const py::tuple& s) { return make_damped_free(s[0], s[1], s[2], s[3]); }));
+      [](const py::tuple& state) {
+        return from_state("DampedFree", state, 4, [](const py::tuple& s) {
+          const auto& inertia = s[0].cast<const InertiaTensor&>();
+          return DampedFree(inertia, to_real(s[1], "damping"), to_vector3(s[2], "omega"), stored_attitude(s[3]));
+        });
+      }));
 }
 
 }  // namespace polhode::python

@@ -1,4 +1,3 @@
-#include <pybind11/operators.h>
 #include <pybind11/typing.h>
 
 #include "bind_exact.hpp"
@@ -15,23 +14,6 @@ FreeMotion make_free_motion(py::handle inertia, py::handle omega, py::handle att
   const Quat q = to_attitude(attitude, "attitude");
   if (py::isinstance<InertiaTensor>(inertia)) return {inertia.cast<const InertiaTensor&>(), w, q};
   return {to_moments(inertia, "inertia"), w, q};
-}
-
-using Curve = Vector3d (FreeMotion::*)(double) const;
-
-template <Curve curve>
-Array along(const FreeMotion& motion, py::handle t) {
-  const Array times = to_array(t, "t");
-  Array points = result_for(times, 3);
-  const double* in = times.data();
-  double* out = points.mutable_data();
-  const py::ssize_t n = times.size();
-  const WithoutGil nogil;
-  for (py::ssize_t i = 0; i < n; ++i) {
-    if (i % 1024 == 0) check_interrupt();
-    Eigen::Map<Vector3d>(out + 3 * i) = (motion.*curve)(in[i]);
-  }
-  return points;
 }
 
 }  // namespace
@@ -76,7 +58,7 @@ omega : ndarray, shape (..., 3)
     In body axes [rad/s].
 attitude : ndarray, shape (..., 4)
     Body to space, unit, (x, y, z, w).)")
-      .def("euler_angles", &along<&FreeMotion::euler_angles>, py::arg("t"), R"(Angles about the angular momentum.
+      .def("euler_angles", &along<FreeMotion, &FreeMotion::euler_angles>, py::arg("t"), R"(Angles about the angular momentum.
 
 Parameters
 ----------
@@ -88,7 +70,7 @@ Returns
 ndarray, shape (..., 3)
     (phi, theta, psi) [rad], intrinsic z-x-z of the body axes in a space frame whose z axis is the angular momentum
     (space z turned there the shortest way): precession, nutation and spin. phi and psi in [-pi, pi].)")
-      .def("polhode", &along<&FreeMotion::polhode>, py::arg("t"), R"(Poinsot's point of contact in body axes.
+      .def("polhode", &along<FreeMotion, &FreeMotion::polhode>, py::arg("t"), R"(Poinsot's point of contact in body axes.
 
 Parameters
 ----------
@@ -99,7 +81,7 @@ Returns
 -------
 ndarray, shape (..., 3)
     omega / sqrt(2 T), on the inertia ellipsoid [kg^-1/2 m^-1].)")
-      .def("herpolhode", &along<&FreeMotion::herpolhode>, py::arg("t"), R"(Poinsot's point of contact in space axes.
+      .def("herpolhode", &along<FreeMotion, &FreeMotion::herpolhode>, py::arg("t"), R"(Poinsot's point of contact in space axes.
 
 Parameters
 ----------
@@ -147,28 +129,15 @@ ndarray, shape (n,)
       .def_property_readonly(
           "angular_momentum", [](const FreeMotion& f) { return from_vector3(f.angular_momentum()); },
           "(3,) in space axes, constant [kg m^2/s].")
-      .def_property_readonly("inertia", &FreeMotion::inertia, "The InertiaTensor.")
-      .def_property_readonly(
-          "omega", [](const FreeMotion& f) { return from_vector3(f.omega()); },
-          "(3,) omega at t = 0, in body axes [rad/s].")
-      .def_property_readonly(
-          "attitude", [](const FreeMotion& f) { return from_quat(f.attitude()); }, "(4,) attitude at t = 0.")
-      .def(py::self == py::self)
-      .def("__hash__",
-           [](const FreeMotion& f) { return py::hash(py::make_tuple(f.omega()[0], f.omega()[1], f.omega()[2])); })
-      .def("__repr__", [](const FreeMotion& f) {
-        const auto text = [](const Array& a) { return py::cast<std::string>(py::str(a.attr("tolist")())); };
-        return "FreeMotion(" + py::cast<std::string>(py::repr(py::cast(f.inertia()))) +
-               ", omega=" + text(from_vector3(f.omega())) + ", attitude=" + text(from_quat(f.attitude())) + ")";
-      });
+      .def("__hash__", [](const FreeMotion& f) { return hash_of(f.omega()); })
+      .def("__repr__", [](const FreeMotion& f) { return call_text("FreeMotion", f); });
+  bind_start(cls);
   cls.def(py::pickle(
       [](const FreeMotion& f) { return py::make_tuple(f.inertia(), from_vector3(f.omega()), from_quat(f.attitude())); },
       [](const py::tuple& state) {
         return from_state("FreeMotion", state, 3, [](const py::tuple& s) {
           const auto& inertia = s[0].cast<const InertiaTensor&>();
-          const Array q = to_array_with_tail(s[2], "attitude", {4});
-          return FreeMotion(inertia, to_vector3(s[1], "omega"),
-                            {q.data()[0], q.data()[1], q.data()[2], q.data()[3]});
+          return FreeMotion(inertia, to_vector3(s[1], "omega"), stored_attitude(s[2]));
         });
       }));
 }

@@ -1,4 +1,3 @@
-#include <pybind11/operators.h>
 #include <pybind11/typing.h>
 
 #include "bind_exact.hpp"
@@ -39,23 +38,6 @@ Gyrostat make_gyrostat(py::handle inertia, const py::object& rotors, const py::o
                                  : InertiaTensor::from_moments(to_moments(inertia, "inertia"));
   if (!rotors.is_none() && py::len(rotors) > 0) return make_with_rotors(body, rotors, w, q);
   return {body, momentum.is_none() ? Vector3d::Zero() : to_vector3(momentum, "momentum"), w, q};
-}
-
-using GyrostatCurve = Vector3d (Gyrostat::*)(double) const;
-
-template <GyrostatCurve curve>
-Array along_gyrostat(const Gyrostat& motion, py::handle t) {
-  const Array times = to_array(t, "t");
-  Array points = result_for(times, 3);
-  const double* in = times.data();
-  double* out = points.mutable_data();
-  const py::ssize_t n = times.size();
-  const WithoutGil nogil;
-  for (py::ssize_t i = 0; i < n; ++i) {
-    if (i % 1024 == 0) check_interrupt();
-    Eigen::Map<Vector3d>(out + 3 * i) = (motion.*curve)(in[i]);
-  }
-  return points;
 }
 
 }  // namespace
@@ -106,7 +88,7 @@ omega : ndarray, shape (..., 3)
     In body axes [rad/s].
 attitude : ndarray, shape (..., 4)
     Body to space, unit, (x, y, z, w).)")
-      .def("euler_angles", &along_gyrostat<&Gyrostat::euler_angles>, py::arg("t"), R"(Angles about the total momentum.
+      .def("euler_angles", &along<Gyrostat, &Gyrostat::euler_angles>, py::arg("t"), R"(Angles about the total momentum.
 
 Parameters
 ----------
@@ -118,7 +100,7 @@ Returns
 ndarray, shape (..., 3)
     (phi, theta, psi) [rad], intrinsic z-x-z of the body axes in a space frame whose z axis is the total momentum
     (space z turned there the shortest way): precession, nutation and spin. phi and psi in [-pi, pi].)")
-      .def("polhode", &along_gyrostat<&Gyrostat::polhode>, py::arg("t"), R"(The total momentum in body axes.
+      .def("polhode", &along<Gyrostat, &Gyrostat::polhode>, py::arg("t"), R"(The total momentum in body axes.
 
 Parameters
 ----------
@@ -140,27 +122,15 @@ ndarray, shape (..., 3)
       .def_property_readonly(
           "angular_momentum", [](const Gyrostat& g) { return from_vector3(g.angular_momentum()); },
           "(3,) total momentum in space axes, constant [kg m^2/s].")
-      .def_property_readonly("inertia", &Gyrostat::inertia, "The InertiaTensor.")
       .def_property_readonly(
           "momentum", [](const Gyrostat& g) { return from_vector3(g.momentum()); },
           "(3,) the rotors' momentum h in body axes [kg m^2/s].")
-      .def_property_readonly(
-          "omega", [](const Gyrostat& g) { return from_vector3(g.omega()); },
-          "(3,) omega at t = 0, in body axes [rad/s].")
-      .def_property_readonly(
-          "attitude", [](const Gyrostat& g) { return from_quat(g.attitude()); }, "(4,) attitude at t = 0.")
-      .def(py::self == py::self)
       .def("__hash__",
-           [](const Gyrostat& g) {
-             return py::hash(py::make_tuple(g.momentum()[0], g.momentum()[1], g.momentum()[2], g.omega()[0],
-                                            g.omega()[1], g.omega()[2]));
-           })
+           [](const Gyrostat& g) { return hash_of(g.omega(), g.momentum()[0], g.momentum()[1], g.momentum()[2]); })
       .def("__repr__", [](const Gyrostat& g) {
-        const auto text = [](const Array& a) { return py::cast<std::string>(py::str(a.attr("tolist")())); };
-        return "Gyrostat(" + py::cast<std::string>(py::repr(py::cast(g.inertia()))) +
-               ", momentum=" + text(from_vector3(g.momentum())) + ", omega=" + text(from_vector3(g.omega())) +
-               ", attitude=" + text(from_quat(g.attitude())) + ")";
+        return call_text("Gyrostat", g, ", momentum=" + array_text(from_vector3(g.momentum())));
       });
+  bind_start(cls);
   cls.def(py::pickle(
       [](const Gyrostat& g) {
         return py::make_tuple(g.inertia(), from_vector3(g.momentum()), from_vector3(g.omega()),
@@ -169,9 +139,7 @@ ndarray, shape (..., 3)
       [](const py::tuple& state) {
         return from_state("Gyrostat", state, 4, [](const py::tuple& s) {
           const auto& inertia = s[0].cast<const InertiaTensor&>();
-          const Array q = to_array_with_tail(s[3], "attitude", {4});
-          return Gyrostat(inertia, to_vector3(s[1], "momentum"), to_vector3(s[2], "omega"),
-                          {q.data()[0], q.data()[1], q.data()[2], q.data()[3]});
+          return Gyrostat(inertia, to_vector3(s[1], "momentum"), to_vector3(s[2], "omega"), stored_attitude(s[3]));
         });
       }));
 }

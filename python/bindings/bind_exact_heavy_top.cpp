@@ -1,4 +1,3 @@
-#include <pybind11/operators.h>
 #include <pybind11/typing.h>
 
 #include <vector>
@@ -95,25 +94,14 @@ InvalidInput
                              "Angular momentum about the symmetry axis, with rotors [kg m^2/s].")
       .def_property_readonly("axis", [](const HeavyTop& top) { return from_vector3(top.axis()); },
                              "(3,) the symmetry axis in body axes, unit.")
-      .def_property_readonly("inertia", &HeavyTop::inertia, "The InertiaTensor about the pivot.")
       .def_property_readonly("weight_arm", &HeavyTop::weight_arm, "Signed along the symmetry axis [N m].")
       .def_property_readonly("rotor", &HeavyTop::rotor, "Momentum of rotors about the symmetry axis [kg m^2/s].")
-      .def_property_readonly("omega", [](const HeavyTop& top) { return from_vector3(top.omega()); },
-                             "(3,) omega at t = 0, in body axes [rad/s].")
-      .def_property_readonly("attitude", [](const HeavyTop& top) { return from_quat(top.attitude()); },
-                             "(4,) attitude at t = 0.")
-      .def(py::self == py::self)
-      .def("__hash__",
-           [](const HeavyTop& top) {
-             return py::hash(py::make_tuple(top.weight_arm(), top.omega()[0], top.omega()[1], top.omega()[2]));
-           })
+      .def("__hash__", [](const HeavyTop& top) { return hash_of(top.omega(), top.weight_arm()); })
       .def("__repr__", [](const HeavyTop& top) {
-        const auto text = [](const Array& a) { return py::cast<std::string>(py::str(a.attr("tolist")())); };
-        return "HeavyTop(" + py::cast<std::string>(py::repr(py::cast(top.inertia()))) +
-               ", weight_arm=" + to_text(top.weight_arm()) + ", omega=" + text(from_vector3(top.omega())) +
-               ", attitude=" + text(from_quat(top.attitude())) +
-               (top.rotor() == 0.0 ? "" : ", rotor=" + to_text(top.rotor())) + ")";
+        return call_text("HeavyTop", top, ", weight_arm=" + to_text(top.weight_arm()),
+                         top.rotor() == 0.0 ? "" : ", rotor=" + to_text(top.rotor()));
       });
+  bind_start(cls, "The InertiaTensor about the pivot.");
   cls.def(py::pickle(
       [](const HeavyTop& top) {
         return py::make_tuple(top.inertia(), top.weight_arm(), from_vector3(top.omega()), from_quat(top.attitude()),
@@ -122,9 +110,8 @@ InvalidInput
       [](const py::tuple& state) {
         return from_state("HeavyTop", state, 5, [](const py::tuple& s) {
           const auto& inertia = s[0].cast<const InertiaTensor&>();
-          const Array q = to_array_with_tail(s[3], "attitude", {4});  // as it was: normalising again could move an ulp
-          return HeavyTop(inertia, to_real(s[1], "weight_arm"), to_vector3(s[2], "omega"),
-                          {q.data()[0], q.data()[1], q.data()[2], q.data()[3]}, to_real(s[4], "rotor"));
+          return HeavyTop(inertia, to_real(s[1], "weight_arm"), to_vector3(s[2], "omega"), stored_attitude(s[3]),
+                          to_real(s[4], "rotor"));
         });
       }));
 }

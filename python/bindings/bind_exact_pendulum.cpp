@@ -1,4 +1,3 @@
-#include <pybind11/operators.h>
 #include <pybind11/typing.h>
 
 #include "bind_exact.hpp"
@@ -78,31 +77,27 @@ InvalidInput
                              "Angular frequency of small swings, sqrt(m g r / I) [rad/s].")
       .def_property_readonly("axis", [](const Pendulum& p) { return from_vector3(p.axis()); },
                              "(3,) the axis of rotation in body axes, with omega along it.")
-      .def_property_readonly("inertia", &Pendulum::inertia, "The InertiaTensor about the pivot.")
       .def_property_readonly("weight", &Pendulum::weight, "m g [N].")
       .def_property_readonly("arm", [](const Pendulum& p) { return from_vector3(p.arm()); },
                              "(3,) from the pivot to the centre of mass, in body axes [m].")
-      .def_property_readonly("omega", [](const Pendulum& p) { return from_vector3(p.omega()); },
-                             "(3,) omega at t = 0, in body axes [rad/s].")
-      .def_property_readonly("attitude", [](const Pendulum& p) { return from_quat(p.attitude()); },
-                             "(4,) attitude at t = 0.")
-      .def(py::self == py::self)
-      .def("__hash__",
-           [](const Pendulum& p) {
-             return py::hash(py::make_tuple(p.weight(), p.omega()[0], p.omega()[1], p.omega()[2]));
-           })
+      .def("__hash__", [](const Pendulum& p) { return hash_of(p.omega(), p.weight()); })
       .def("__repr__", [](const Pendulum& p) {
-        const auto text = [](const Array& a) { return py::cast<std::string>(py::str(a.attr("tolist")())); };
-        return "Pendulum(" + py::cast<std::string>(py::repr(py::cast(p.inertia()))) +
-               ", weight=" + to_text(p.weight()) + ", arm=" + text(from_vector3(p.arm())) +
-               ", omega=" + text(from_vector3(p.omega())) + ", attitude=" + text(from_quat(p.attitude())) + ")";
+        return call_text("Pendulum", p,
+                         ", weight=" + to_text(p.weight()) + ", arm=" + array_text(from_vector3(p.arm())));
       });
+  bind_start(cls, "The InertiaTensor about the pivot.");
   cls.def(py::pickle(
       [](const Pendulum& p) {
         return py::make_tuple(p.inertia(), p.weight(), from_vector3(p.arm()), from_vector3(p.omega()),
                               from_quat(p.attitude()));
       },
-      [](const py::tuple& s) { return make_pendulum(s[0], s[1], s[2], s[3], s[4]); }));
+      [](const py::tuple& state) {
+        return from_state("Pendulum", state, 5, [](const py::tuple& s) {
+          const auto& inertia = s[0].cast<const InertiaTensor&>();
+          return Pendulum(inertia, to_real(s[1], "weight"), to_vector3(s[2], "arm"), to_vector3(s[3], "omega"),
+                          stored_attitude(s[4]));
+        });
+      }));
 }
 
 }  // namespace polhode::python

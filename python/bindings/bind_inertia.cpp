@@ -17,8 +17,6 @@ void bind_inertia_mesh(py::module_& m, py::class_<MassProperties>& cls);  // bin
 
 namespace {
 
-std::string array_text(const Array& array) { return py::cast<std::string>(py::str(array.attr("tolist")())); }
-
 py::ssize_t hash_numbers(const Array& array) { return py::hash(py::tuple(array.attr("ravel")().attr("tolist")())); }
 
 std::string to_repr(const InertiaTensor& tensor) {

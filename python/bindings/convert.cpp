@@ -215,4 +215,6 @@ Array from_quat(const Quat& q) {
   return array;
 }
 
+std::string array_text(const Array& array) { return py::cast<std::string>(py::str(array.attr("tolist")())); }
+
 }  // namespace polhode::python

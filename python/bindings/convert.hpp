@@ -41,6 +41,8 @@ Array from_vector3(const Vector3d& v);
 Array from_matrix3(const Matrix3d& m);
 Array from_quat(const Quat& q);
 
+std::string array_text(const Array& array);  ///< as nested lists, each number in full
+
 [[noreturn]] void refuse_state(const char* name);
 
 /// The entries of a state of pickle as make(state) reads them. InvalidInput for a state of another kind.

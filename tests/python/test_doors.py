@@ -298,6 +298,17 @@ def test_an_attitude_that_was_taken_gives_no_second_warning():
     ph.solve_many(scene, omega=[OMEGA])
 
 
+@pytest.mark.parametrize("motion", [
+    ph.FreeMotion(BLOCK, OMEGA, ph.Rotation(HALF)), ph.Gyrostat(BLOCK, omega=OMEGA, attitude=ph.Rotation(HALF)),
+    ph.DampedFree(BLOCK, 0.1, OMEGA, ph.Rotation(HALF)), ph.HeavyTop(TOP, 2.0, OMEGA, ph.Rotation(HALF)),
+    ph.Pendulum(BLOCK, 2.0, (0.0, 1.0, 0.0), (1.0, 0.0, 0.0), ph.Rotation(HALF))], ids=lambda m: type(m).__name__)
+def test_a_pickled_motion_is_taken_as_it_was(motion):
+    again = pickle.loads(pickle.dumps(motion))
+    assert again == motion and hash(again) == hash(motion) and repr(again) == repr(motion)
+    with pytest.raises(ph.InvalidInput, match="given what pickle saved, got another state"):
+        type(motion).__new__(type(motion)).__setstate__((1, 2))
+
+
 class Child(ph.FreeMotion):
     pass
 
