@@ -29,7 +29,7 @@ BUILD = ROOT / "build/mutants"
 TREE = BUILD / "tree"
 STATE = BUILD / "state.json"
 LIMIT = 180   # [s] of a processor for a mutant; a test that hangs has seen it
-WAIT = 4 * LIMIT   # [s], on a machine that has others to serve
+WAIT = 20 * LIMIT   # [s], on a machine that has others to serve
 SEED = 13
 # The tests of a changed package: not the one that is installed.
 SITE = '''import sys
