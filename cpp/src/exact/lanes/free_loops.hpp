@@ -13,13 +13,14 @@ struct Rows {
   T omega[3], attitude[4];
 };
 
-/// A state in the caller's frames, from one in the working frames.
-template <class T, class Frame>
+/// A state in the caller's frames, from one in the working frames. A zero of omega is +0. `along`: omega is there.
+template <bool along = false, class T, class Frame>
 POLHODE_INLINE Rows<T> in_caller_frames(const Frame& frame, const exact::FreeState<T>& s) {
   Rows<T> rows;
   for (int c = 0; c < 3; ++c) {
     const auto* m = frame.omega + 3 * c;
-    rows.omega[c] = madd(T(m[0]), s.omega[0], madd(T(m[1]), s.omega[1], T(m[2]) * s.omega[2]));
+    rows.omega[c] = along ? s.omega[c]
+                          : madd(T(m[0]), s.omega[0], madd(T(m[1]), s.omega[1], madd(T(m[2]), s.omega[2], T(0.0))));
   }
   for (int c = 0; c < 4; ++c) {
     const auto* m = frame.attitude + 4 * c;
@@ -59,12 +60,34 @@ void loop(const Body& body_in, const FreeFrame& frame_in, const double* t, std::
     write_at<want_omega, want_attitude, One>(body_in, frame_in, t + i, omega + 3 * i, attitude + 4 * i);
 }
 
-template <bool want_omega, bool want_attitude>
-void trig_loop(const exact::FreeTrig<double>& body_in, const FreeFrame& frame_in, const TimeGrid& grid, double* omega,
+/// A body whose omega comes out along the body axes: where those are the working axes in another order, up to signs.
+struct AlongBodyAxes {
+  exact::FreeTrig<double> body;
+  int order[3] = {0, 1, 2};   ///< the working axis of each body axis
+  bool found = false;         ///< false: omega is along the working axes
+};
+
+/// The entries of the frame are then powers of two, so the change is exact.
+inline AlongBodyAxes along_body_axes(const exact::FreeTrig<double>& body, const FreeFrame& frame) {
+  AlongBodyAxes along{.body = body};
+  if (!(frame.time_scale > 0x1p-900 && frame.time_scale < 0x1p900)) return along;   // no number becomes subnormal
+  for (int c = 0; c < 3; ++c) {
+    const double* row = frame.omega + 3 * c;
+    const int axis = row[0] != 0.0 ? 0 : row[1] != 0.0 ? 1 : 2;
+    if (math::abs(row[axis]) != frame.time_scale || row[(axis + 1) % 3] != 0.0 || row[(axis + 2) % 3] != 0.0)
+      return {.body = body};
+    along.order[c] = axis;
+    for (int i = 0; i < 5; ++i) along.body.omega[c][i] = row[axis] * body.omega[axis][i];
+  }
+  along.found = true;
+  return along;
+}
+
+template <bool want_omega, bool want_attitude, bool along>
+void trig_loop(const AlongBodyAxes& axes, const FreeFrame& frame_in, const TimeGrid& grid, double* omega,
                double* attitude) {
-  if (grid.n < TimeGrid::row)
-    return loop<want_omega, want_attitude>(body_in, frame_in, grid.t, grid.n, omega, attitude);
-  const exact::FreeTrig<double> body = body_in;  // a copy, as above
+  const exact::FreeTrig<double> body = axes.body;  // a copy, as above
+  const int order[3] = {axes.order[0], axes.order[1], axes.order[2]};
   const FreeFrame frame = frame_in;
   const Rates<2> rates{frame.time_scale, {body.nu_hi, body.kappa_hi}, {body.nu_lo, body.kappa_lo}, {body.phi0, 0.0}};
   const auto pair = [&]<class T>(const Angle<T>(&now)[2], T(&kept)[5]) __attribute__((always_inline)) {
@@ -75,10 +98,19 @@ void trig_loop(const exact::FreeTrig<double>& body_in, const FreeFrame& frame_in
                           __attribute__((always_inline)) {
     const exact::FreePair<T> found{p[0], p[1], p[2], p[3], p[4]};
     const auto state = exact::evaluate(body, found, now[0].sine, now[0].cosine,
-                                       now[1].sine, now[1].cosine);
-    write<want_omega, want_attitude>(in_caller_frames(frame, state), omega + 3 * k, attitude + 4 * k);
+                                       now[1].sine, now[1].cosine, order);
+    write<want_omega, want_attitude>(in_caller_frames<along>(frame, state), omega + 3 * k, attitude + 4 * k);
   };
   at_phases<5>(rates, grid, pair, finish);
+}
+
+template <bool want_omega, bool want_attitude>
+void trig_loop(const exact::FreeTrig<double>& body, const FreeFrame& frame, const TimeGrid& grid, double* omega,
+               double* attitude) {
+  if (grid.n < TimeGrid::row) return loop<want_omega, want_attitude>(body, frame, grid.t, grid.n, omega, attitude);
+  const AlongBodyAxes axes = along_body_axes(body, frame);
+  if (axes.found) return trig_loop<want_omega, want_attitude, true>(axes, frame, grid, omega, attitude);
+  trig_loop<want_omega, want_attitude, false>(axes, frame, grid, omega, attitude);
 }
 
 inline void on_times(const exact::FreeTrig<double>& body, const FreeFrame& frame, const TimeGrid& grid, double* omega,
@@ -96,18 +128,18 @@ void hyper_loop(const exact::FreeHyper<double>& body_in, const FreeFrame& frame_
   if (whole > 0) {
     const exact::FreeHyper<double> body = body_in;  // a copy, as above
     const FreeFrame frame = frame_in;
-    alignas(64) double middle[5][TimeGrid::block];
+    alignas(64) double middle[6][TimeGrid::block];
     for (std::size_t first = 0; first < whole; first += TimeGrid::block) {
       const std::size_t n = in_block(whole, first);
       for (std::size_t k = 0; k < n; k += Wide::width) {
         const auto p = exact::evaluate_passage(body, Wide::load(grid.t + first + k) * Wide(frame.time_scale));
         p.v.store(middle[0] + k), p.flip.store(middle[1] + k), p.E.store(middle[2] + k);
-        p.sine.store(middle[3] + k), p.cosine.store(middle[4] + k);
+        p.sine.store(middle[3] + k), p.cosine.store(middle[4] + k), p.grown.store(middle[5] + k);
       }
       for (std::size_t k = 0; k < n; k += Wide::width) {
         const exact::FreePassage<Wide> p{Wide::load(middle[0] + k), Wide::load(middle[1] + k),
                                          Wide::load(middle[2] + k), Wide::load(middle[3] + k),
-                                         Wide::load(middle[4] + k)};
+                                         Wide::load(middle[4] + k), Wide::load(middle[5] + k)};
         write<want_omega, want_attitude>(in_caller_frames(frame, exact::evaluate(body, p)), omega + 3 * (first + k),
                                          attitude + 4 * (first + k));
       }

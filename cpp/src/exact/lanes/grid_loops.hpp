@@ -11,7 +11,7 @@
 namespace polhode::POLHODE_ISA {
 
 using exact::TimeGrid;
-using math::cycle_fraction, math::sincos_cycles;
+using math::few_cycles, math::sincos_cycles;
 
 /// The number of times, out of n, in the block that starts at `first`.
 POLHODE_INLINE std::size_t in_block(std::size_t n, std::size_t first) {
@@ -99,8 +99,7 @@ struct Angles {
 template <class T, int count>
 POLHODE_INLINE Angle<T> angle_at(const Rates<count>& rates, int c, T t) {
   Angle<T> a;
-  sincos_cycles(cycle_fraction(t * T(rates.scale), T(rates.hi[c]), T(rates.lo[c]), T(rates.start[c])), a.sine,
-                a.cosine);
+  sincos_cycles(few_cycles(t * T(rates.scale), T(rates.hi[c]), T(rates.lo[c]), T(rates.start[c])), a.sine, a.cosine);
   return a;
 }
 

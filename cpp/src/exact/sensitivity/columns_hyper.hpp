@@ -70,7 +70,7 @@ POLHODE_INLINE Integrals<T> integrate_hyper(const FreeColumns<C>& c, const FreeH
                 (now.passages - T(c.passage_start)) * T(c.period);
   if (c.kc2 == C(0.0)) {
     // Exactly on the separatrix C = sinh(w) cn cn0.
-    const T size = abs(w), E = exp_minus(size);
+    const T size = abs(w), E = math::exp_minus(size);
     const T sinh_w = copysign(T(0.5), w) * (T(1.0) / E - E);
     return {w, sd2, sinh_w * cn * T(c.cn0) * T(c.p_inverse)};
   }

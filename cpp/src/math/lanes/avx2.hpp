@@ -59,6 +59,17 @@ POLHODE_INLINE Wide exponent_of_power(Wide a) {
   const __m256d shifted = _mm256_castsi256_pd(_mm256_or_si256(field, _mm256_set1_epi64x(0x4330000000000000)));
   return _mm256_sub_pd(shifted, _mm256_set1_pd(0x1p52 + 1023.0));
 }
+POLHODE_INLINE Wide guess_inverse_sqrt(Wide a) {
+  const __m256i half = _mm256_srli_epi64(_mm256_castpd_si256(a.v), 1);
+  return _mm256_castsi256_pd(_mm256_sub_epi64(_mm256_set1_epi64x(0x5fe6eb50c7b537a9), half));
+}
+POLHODE_INLINE void add_quarters(Wide turns, Wide sin_r, Wide cos_r, Wide& sine, Wide& cosine) {
+  const __m256i bits = _mm256_castpd_si256(turns.v), second = _mm256_slli_epi64(bits, 62);
+  const __m256d first = _mm256_castsi256_pd(_mm256_slli_epi64(bits, 63)), sign = _mm256_set1_pd(-0.0);
+  const __m256d sine_sign = _mm256_and_pd(_mm256_castsi256_pd(second), sign);
+  sine = _mm256_xor_pd(_mm256_blendv_pd(sin_r.v, cos_r.v, first), sine_sign);
+  cosine = _mm256_xor_pd(_mm256_blendv_pd(cos_r.v, sin_r.v, first), _mm256_xor_pd(sine_sign, first));
+}
 
 /// Rows x0 y0 z0 w0 x1 ... of four numbers.
 POLHODE_INLINE void store4(double* p, Wide x, Wide y, Wide z, Wide w) {

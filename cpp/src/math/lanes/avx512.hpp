@@ -59,6 +59,19 @@ POLHODE_INLINE Wide exponent_of_power(Wide a) {
   const __m512d shifted = _mm512_castsi512_pd(_mm512_or_si512(field, _mm512_set1_epi64(0x4330000000000000)));
   return _mm512_sub_pd(shifted, _mm512_set1_pd(0x1p52 + 1023.0));
 }
+POLHODE_INLINE Wide guess_inverse_sqrt(Wide a) {
+  const __m512i half = _mm512_srli_epi64(_mm512_castpd_si512(a.v), 1);
+  return _mm512_castsi512_pd(_mm512_sub_epi64(_mm512_set1_epi64(0x5fe6eb50c7b537a9), half));
+}
+POLHODE_INLINE void add_quarters(Wide turns, Wide sin_r, Wide cos_r, Wide& sine, Wide& cosine) {
+  const __m512i bits = _mm512_castpd_si512(turns.v), sign = _mm512_set1_epi64(INT64_MIN);
+  const __mmask8 odd = _mm512_test_epi64_mask(bits, _mm512_set1_epi64(1));
+  const __m512i second = _mm512_slli_epi64(bits, 62), either = _mm512_xor_si512(second, _mm512_slli_epi64(bits, 63));
+  const __m512i s = _mm512_castpd_si512(_mm512_mask_blend_pd(odd, sin_r.v, cos_r.v));
+  const __m512i c = _mm512_castpd_si512(_mm512_mask_blend_pd(odd, cos_r.v, sin_r.v));
+  sine = _mm512_castsi512_pd(_mm512_xor_si512(s, _mm512_and_si512(second, sign)));
+  cosine = _mm512_castsi512_pd(_mm512_xor_si512(c, _mm512_and_si512(either, sign)));
+}
 
 /// Rows x0 y0 z0 w0 x1 ... of four numbers.
 POLHODE_INLINE void store4(double* p, Wide x, Wide y, Wide z, Wide w) {

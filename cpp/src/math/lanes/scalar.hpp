@@ -33,6 +33,10 @@ POLHODE_INLINE One copysign(One a, One b) { return __builtin_copysign(a.v, b.v);
 POLHODE_INLINE One power_of_two(One n) { return math::power_of_two(n.v); }
 POLHODE_INLINE One power_of_two_below(One a) { return math::power_of_two_below(a.v); }
 POLHODE_INLINE One exponent_of_power(One a) { return math::exponent_of_power(a.v); }
+POLHODE_INLINE One guess_inverse_sqrt(One a) { return math::guess_inverse_sqrt(a.v); }
+POLHODE_INLINE void add_quarters(One turns, One sin_r, One cos_r, One& sine, One& cosine) {
+  math::add_quarters(turns.v, sin_r.v, cos_r.v, sine.v, cosine.v);
+}
 POLHODE_INLINE One madd(One a, One b, One c) { return math::madd(a.v, b.v, c.v); }
 #ifdef __FMA__
 POLHODE_INLINE One fma(One a, One b, One c) { return __builtin_fma(a.v, b.v, c.v); }

@@ -12,7 +12,8 @@ namespace polhode::exact {
 // Named here, so that the C library's functions in the global namespace are never chosen.
 using math::DoubleDouble;
 using math::abs, math::copysign, math::madd, math::max, math::min, math::rint, math::select, math::sqrt;
-using math::cycle_fraction, math::polynomial, math::sincos_cycles, math::exp_minus, math::two_prod, math::two_sum;
+using math::cycle_fraction, math::few_cycles, math::sincos_cycles, math::two_prod, math::two_sum;
+using math::exp_both, math::inverse_sqrt, math::polynomial;
 
 /// A state: the unit quaternion from working axes to the working space frame, and omega in working axes.
 template <class T>
@@ -28,7 +29,7 @@ template <class T>
 struct FreeTrig {
   T nu_hi, nu_lo, phi0, kappa_hi, kappa_lo;
   T even_cos[4], even_sin[3], odd_cos[4], odd_sin[4];
-  T omega1[5], omega2[5], omega3[5];  ///< theta_1, theta_2, theta_4 with the factors of omega, over sin, cos, 1
+  T omega[3][5];  ///< theta_1, theta_2, theta_4 with the factors of omega, over sin, cos, 1
 };
 
 /// k^2 > 0.97: the same sums after Poisson's transformation, in e^-|v|, with v in one half period.
@@ -41,7 +42,7 @@ struct FreeHyper {
   T parity0;                               ///< half cycles to add (0 or 1)
   T q;                                     ///< the complementary nome
   T C[4], S[4];                            ///< cos, sin((2n + 1) eta / 2)
-  T omega1, omega2, omega3;
+  T omega[3];                              ///< the factors of omega
   T homoclinic;                            ///< 1 exactly on the separatrix, else 0
 };
 
@@ -69,26 +70,30 @@ POLHODE_INLINE FreePair<T> evaluate_pair(const FreeTrig<C>& body, T s, T c) {
   const T re_a = polynomial(body.even_cos, X), im_a = sin2 * polynomial(body.even_sin, X);
   const T re_b = c * polynomial(body.odd_cos, X), im_b = s * polynomial(body.odd_sin, X);
   const T size2 = madd(re_a, re_a, im_a * im_a) + madd(re_b, re_b, im_b * im_b);
-  return {re_a, im_a, re_b, im_b, T(1.0) / sqrt(size2)};
+  return {re_a, im_a, re_b, im_b, inverse_sqrt(size2)};
 }
 
-/// The state from the pair and the sines and cosines of phi (s, c) and of kappa t (ks, kc).
+/// The working axes in their own order.
+inline constexpr int in_order[3] = {0, 1, 2};
+
+/// The state from the pair and the sines and cosines of phi (s, c) and of kappa t (ks, kc). Row i of body.omega belongs
+/// to the working axis order[i]: omega may come in another order of the axes. A zero of omega is +0.
 template <class T, class C>
-POLHODE_INLINE FreeState<T> evaluate(const FreeTrig<C>& body, const FreePair<T>& pair, T s, T c, T ks, T kc) {
+POLHODE_INLINE FreeState<T> evaluate(const FreeTrig<C>& body, const FreePair<T>& pair, T s, T c, T ks, T kc,
+                                     const int (&order)[3] = in_order) {
   FreeState<T> out;
   rotate_and_normalise(pair.re_a, pair.im_a, pair.re_b, pair.im_b, pair.scale, ks, kc, out);
   const T X = (c - s) * (c + s), inverse = pair.scale * pair.scale;
-  out.omega[0] = s * polynomial(body.omega1, X) * inverse;
-  out.omega[1] = c * polynomial(body.omega2, X) * inverse;
-  out.omega[2] = polynomial(body.omega3, X) * inverse;
+  const T factor[3] = {s, c, T(1.0)};
+  for (int i = 0; i < 3; ++i) out.omega[i] = madd(factor[order[i]] * polynomial(body.omega[i], X), inverse, T(0.0));
   return out;
 }
 
 template <class T, class C>
 POLHODE_INLINE FreeState<T> evaluate(const FreeTrig<C>& body, T t) {
   T s, c, ks, kc;
-  sincos_cycles(cycle_fraction(t, T(body.nu_hi), T(body.nu_lo), T(body.phi0)), s, c);
-  sincos_cycles(cycle_fraction(t, T(body.kappa_hi), T(body.kappa_lo), T(0.0)), ks, kc);
+  sincos_cycles(few_cycles(t, T(body.nu_hi), T(body.nu_lo), T(body.phi0)), s, c);
+  sincos_cycles(few_cycles(t, T(body.kappa_hi), T(body.kappa_lo), T(0.0)), ks, kc);
   return evaluate(body, evaluate_pair(body, s, c), s, c, ks, kc);
 }
 
@@ -103,15 +108,15 @@ template <class T, class C>
 POLHODE_INLINE FreeState<T> evaluate(const FreeTrig<C>& body, T t, T t_low) {
   T s, c, ks, kc;
   const T nu(body.nu_hi), kappa(body.kappa_hi);
-  sincos_cycles(cycle_fraction(t, nu, T(body.nu_lo), T(body.phi0) + low_cycles(t_low, nu)), s, c);
-  sincos_cycles(cycle_fraction(t, kappa, T(body.kappa_lo), low_cycles(t_low, kappa)), ks, kc);
+  sincos_cycles(few_cycles(t, nu, T(body.nu_lo), T(body.phi0) + low_cycles(t_low, nu)), s, c);
+  sincos_cycles(few_cycles(t, kappa, T(body.kappa_lo), low_cycles(t_low, kappa)), ks, kc);
   return evaluate(body, evaluate_pair(body, s, c), s, c, ks, kc);
 }
 
-/// The phase between two flips: v, (-1)^N, e^-|v|, and the rotation of alpha and beta.
+/// The phase between two flips: v, (-1)^N, e^-|v|, the rotation of alpha and beta, and q e^|v|.
 template <class T>
 struct FreePassage {
-  T v, flip, E, sine, cosine;
+  T v, flip, E, sine, cosine, grown;
 };
 
 /// At the time t, or t + t_low if `low` holds the number t_low.
@@ -141,17 +146,18 @@ POLHODE_INLINE FreePassage<T> evaluate_passage(const FreeHyper<C>& body, T t, Lo
   FreePassage<T> out;
   T start(0.0);
   if constexpr (sizeof...(low) == 1) start = (low_cycles(low, T(body.kappa_hi)) + ...);
-  const T cycles = madd(T(body.eta), f, cycle_fraction(t, T(body.kappa_hi), T(body.kappa_lo), start));
-  sincos_cycles(cycles - rint(cycles), out.sine, out.cosine);
-  out.v = v, out.flip = flip, out.E = exp_minus(abs(v));
+  const T cycles = madd(T(body.eta), f, few_cycles(t, T(body.kappa_hi), T(body.kappa_lo), start));
+  sincos_cycles(cycles, out.sine, out.cosine);
+  T inverse;
+  exp_both(abs(v), out.E, inverse);
+  out.v = v, out.flip = flip, out.grown = select(T(body.q) < T(1e-290), T(0.0), T(body.q) * inverse);
   return out;
 }
 
 template <class T, class C>
 POLHODE_INLINE FreeState<T> evaluate(const FreeHyper<C>& body, const FreePassage<T>& passage) {
   const T sign = copysign(T(1.0), passage.v), E = passage.E, flip = passage.flip;
-  const T g = select(T(body.q) < T(1e-290), T(0.0), T(body.q) / E);
-  const T q = T(body.q);
+  const T g = passage.grown, q = T(body.q);
   T u[4], d[4];
   u[0] = T(1.0);
   d[0] = E;
@@ -172,20 +178,18 @@ POLHODE_INLINE FreeState<T> evaluate(const FreeHyper<C>& body, const FreePassage
   }
   const T size2 = madd(re_a, re_a, im_a * im_a) + madd(re_b, re_b, im_b * im_b);
   FreeState<T> out;
-  rotate_and_normalise(re_a, im_a, re_b, im_b, T(1.0) / sqrt(size2), passage.sine, passage.cosine, out);
+  const T scale = inverse_sqrt(size2), inverse = scale * scale;
+  rotate_and_normalise(re_a, im_a, re_b, im_b, scale, passage.sine, passage.cosine, out);
 
-  T D = T(0.0), V = T(0.0), Wp = E, Wm = E;
+  T V = T(0.0), Wp = E, Wm = E;
   for (int i = 2; i >= 0; --i) {
     const T uu = u[i] * u[i], dd = d[i] * d[i], cross = madd(u[i + 1], u[i], d[i + 1] * d[i]);
-    D = D + (uu + dd);
     V = i % 2 ? V - (uu - dd) : V + (uu - dd);
     Wp = Wp + cross;
     Wm = i % 2 ? Wm + cross : Wm - cross;  // (-1)^n of n = i + 1
   }
-  const T inverse = T(1.0) / D;
-  out.omega[0] = flip * T(body.omega1) * Wm * inverse;
-  out.omega[1] = flip * sign * T(body.omega2) * V * inverse;
-  out.omega[2] = T(body.omega3) * Wp * inverse;
+  const T factor[3] = {flip * Wm, flip * sign * V, Wp};
+  for (int i = 0; i < 3; ++i) out.omega[i] = T(body.omega[i]) * factor[i] * inverse;
   return out;
 }
 

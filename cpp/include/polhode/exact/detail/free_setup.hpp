@@ -139,7 +139,7 @@ POLHODE_INLINE void expand(const double (&family)[width][width], const T (&weigh
   for (int i = 0; i < n; ++i) {
     T sum(0.0);
     for (int m = n - 1; m >= i; --m) sum = madd(T(family[m][i]), weight[m], sum);
-    monomials[i] = sum;
+    monomials[i] = select(abs(sum) < T(1e-290), T(0.0), sum);   // operations with subnormal numbers are slow
   }
 }
 
@@ -226,9 +226,9 @@ POLHODE_INLINE FreeTrig<T> set_up_trig(const FreeConstants<T>& f) {
   const T w3[5] = {c3, -(T(2.0) * t) * c3, T(2.0) * t4 * c3, -(T(2.0) * t9) * c3, T(2.0) * t16 * c3};
   const T w2[5] = {c2, t2 * c2, t6 * c2, t12 * c2, t20 * c2};
   const T w1[5] = {c1, -(t2 * c1), t6 * c1, -(t12 * c1), t20 * c1};
-  expand(chebyshev_T, w3, c.omega3);
-  expand(chebyshev_V, w2, c.omega2);
-  expand(chebyshev_W, w1, c.omega1);
+  expand(chebyshev_W, w1, c.omega[0]);
+  expand(chebyshev_V, w2, c.omega[1]);
+  expand(chebyshev_T, w3, c.omega[2]);
   return c;
 }
 

@@ -41,9 +41,9 @@ inline FreeHyper<T> set_up_hyper(const FreeConstants<T>& f) {
   const N eta = atan2_dd(eta_xy.Y, eta_xy.X);
 
   const N sn = abs(f.m[1]) * root_r / f.La1, cn = abs(f.m[0]) / f.La1, dn = f.m[2] / f.La3;
-  const N size = -log_dd(descend_imaginary(chain, sn, cn, dn).exp_minus());
+  const N distance = -log_dd(descend_imaginary(chain, sn, cn, dn).exp_minus());
   const T side = select(f.m[0].hi < none, -unity, unity) * select(f.m[1].hi < none, -unity, unity);
-  const N v0 = scaled(size, side);
+  const N v0 = scaled(distance, side);
 
   FreeHyper<T> c;
   c.homoclinic = select(homoclinic, unity, none);
@@ -53,11 +53,12 @@ inline FreeHyper<T> set_up_hyper(const FreeConstants<T>& f) {
 
   // kappa = psi0/2 - (eta/pi) nu + (dv/dt / 2) sum h_n (2n+1) sin((2n+1) eta/2) / sum h_n cos((2n+1) eta/2)
   const SinCosOf<T> first = sincos_dd(half(eta)), step = sincos_dd(eta);
-  N s = first.sin, co = first.cos, h(1.0), qn(1.0), above = zero, below = zero;
+  N s = first.sin, co = first.cos, h(1.0), qn(1.0), above = zero, below = zero, beside = zero;
   for (int n = 0; n <= 5; ++n) {
     if (n < 4) c.S[n] = s.hi, c.C[n] = co.hi;
     above = above + h * s * T(2.0 * n + 1.0);
     below = below + h * co;
+    beside = n % 2 ? beside - h * s : beside + h * s;
     const N next = s * step.cos + co * step.sin;
     co = co * step.cos - s * step.sin;
     s = next;
@@ -84,9 +85,11 @@ inline FreeHyper<T> set_up_hyper(const FreeConstants<T>& f) {
   // omega: theta functions of q at 0 (t2 without its 2 q^(1/4))
   const N q2 = q * q, q4 = q2 * q2, q9 = q4 * q4 * q;
   const N t2 = one + (q2 + q2 * q4), t3 = one + twice(q + q4 + q9), t4 = one + twice(q4 - q - q9);
-  c.omega3 = (twice(f.La3) * t2 / (t3 * f.start.I[2])).hi;
-  c.omega1 = (twice(f.La1) * t2 / (t4 * f.start.I[0])).hi;
-  c.omega2 = (f.La1 * t3 / (root_r * t4 * f.start.I[1])).hi;
+  // Their divisor is |alpha|^2 + |beta|^2 up to a constant of the body, from both at v = 0: 2 (below^2 + beside^2) / t2.
+  const N size = twice(below * below + beside * beside);
+  c.omega[2] = (twice(f.La3) * size / (t3 * f.start.I[2])).hi;
+  c.omega[0] = (twice(f.La1) * size / (t4 * f.start.I[0])).hi;
+  c.omega[1] = (f.La1 * t3 * size / (root_r * t4 * t2 * f.start.I[1])).hi;
   return c;
 }
 

@@ -54,7 +54,7 @@ POLHODE_INLINE FreePair<T> gyrostat_trig_pair(const GyrostatSeries& body, T s, T
   T part[4];
   for (int i = 0; i < 4; ++i) part[i] = evaluate(body.spinor[i], X, sin2, s, c);
   const T size2 = madd(part[0], part[0], part[1] * part[1]) + madd(part[2], part[2], part[3] * part[3]);
-  return {part[0], part[1], part[2], part[3], T(1.0) / sqrt(size2)};
+  return {part[0], part[1], part[2], part[3], inverse_sqrt(size2)};
 }
 
 /// The state from the pair and the sines and cosines of phi (s, c) and of the common phase (ks, kc).
@@ -78,7 +78,7 @@ template <class T>
 POLHODE_INLINE GyrostatPowers<T> gyrostat_powers(const GyrostatSeries& body, T v, T v_low, T passages) {
   GyrostatPowers<T> p;
   const T sign = copysign(T(1.0), v), Q = T(body.nome);
-  const T E = exp_minus(abs(v)), half = T(0.5) * passages;
+  const T E = math::exp_minus(abs(v)), half = T(0.5) * passages;
   p.E = madd(-(sign * v_low), E, E);
   p.flip = T(1.0) - T(4.0 * body.alternates) * abs(half - rint(half));
   const T grown = Q / p.E, fallen = p.E * Q, E2 = p.E * p.E;
@@ -108,7 +108,7 @@ POLHODE_INLINE FreeState<T> gyrostat_hyper_state(const GyrostatSeries& body, con
     part[i] = madd(up, p.up_first, madd(down, p.down_first, middle * p.E));
   }
   const T size2 = madd(part[0], part[0], part[1] * part[1]) + madd(part[2], part[2], part[3] * part[3]);
-  const T scale = T(1.0) / sqrt(size2), inverse = scale * scale;
+  const T scale = inverse_sqrt(size2), inverse = scale * scale;
   FreeState<T> out;
   rotate_and_normalise(part[0], part[1], part[2], part[3], scale, ks, kc, out);
   // The rates: powers n = 0, +-1 by themselves, then those from +-2 on, which are squares of the first powers.
@@ -144,7 +144,7 @@ POLHODE_INLINE GyrostatPassage<T> gyrostat_passage(const GyrostatSeries& body, T
   const auto v = two_sum(sum.hi, tail);
   const T turned = cycle_fraction(passages, T(body.turn_hi), T(body.turn_lo), T(0.0));
   GyrostatPassage<T> out{v.hi, v.lo, passages, T(0.0), T(0.0)};
-  sincos_cycles(cycle_fraction(t, T(body.kappa_hi), T(body.kappa_lo), turned), out.sine, out.cosine);
+  sincos_cycles(few_cycles(t, T(body.kappa_hi), T(body.kappa_lo), turned), out.sine, out.cosine);
   return out;
 }
 
@@ -155,8 +155,8 @@ POLHODE_INLINE FreeState<T> evaluate_gyrostat(const GyrostatSeries& body, T t) {
     return gyrostat_hyper_state(body, gyrostat_powers(body, now.v, now.v_low, now.passages), now.sine, now.cosine);
   }
   T s, c, ks, kc;
-  sincos_cycles(cycle_fraction(t, T(body.nu_hi), T(body.nu_lo), T(0.0)), s, c);
-  sincos_cycles(cycle_fraction(t, T(body.kappa_hi), T(body.kappa_lo), T(0.0)), ks, kc);
+  sincos_cycles(few_cycles(t, T(body.nu_hi), T(body.nu_lo), T(0.0)), s, c);
+  sincos_cycles(few_cycles(t, T(body.kappa_hi), T(body.kappa_lo), T(0.0)), ks, kc);
   return gyrostat_trig_state(body, gyrostat_trig_pair(body, s, c), s, c, ks, kc);
 }
 

@@ -12,7 +12,7 @@ namespace polhode::exact {
 
 // Named here, so that the C library's functions in the global namespace are never chosen and lanes find their own.
 using math::abs, math::copysign, math::madd, math::rint, math::select, math::sqrt;
-using math::cycle_fraction, math::exp_minus, math::polynomial, math::sincos_cycles;
+using math::cycle_fraction, math::exp_both, math::few_cycles, math::polynomial, math::sincos_cycles;
 using math::two_diff, math::two_prod, math::two_sum;
 
 /// a b + c d and a b - c d.
@@ -115,9 +115,11 @@ POLHODE_INLINE HeavyTopSums<V> heavy_top_hyper(const HeavyTopConstants& c, V s, 
   const auto left = two_diff(travelled.hi, done.hi), sum = two_sum(left.hi, V(c.v_start_hi));
   const V rest = madd(s, V(c.v_rate_lo), travelled.lo) - madd(passages, V(c.v_passage_lo), done.lo);
   const V v = sum.hi + (sum.lo + (left.lo + (rest + V(c.v_start_lo))));
-  const V E = exp_minus(abs(v)), nome = V(c.nome);
+  V E, inverse;
+  exp_both(abs(v), E, inverse);
+  const V nome = V(c.nome);
   // If q' is nearly 0, e^{-|v|} may be far smaller still, and the growing terms are absent.
-  const V g = select(nome > V(1e-290), nome / (E * E), V(0.0));
+  const V g = select(nome > V(1e-290), nome * inverse * inverse, V(0.0));
   V ca[4], sa[4], cb[4], sb[4];
   for (int n = 0; n < 4; ++n) {
     ca[n] = V(c.cos_a[n]), sa[n] = V(c.sin_a[n]);
@@ -137,8 +139,8 @@ POLHODE_INLINE HeavyTopPair<V> heavy_top_pair(const HeavyTopConstants& c, V n1_r
   const V ca_re = V(c.ca_re), ca_im = V(c.ca_im), cb_re = V(c.cb_re), cb_im = V(c.cb_im);
   const V a_re = less(ca_re, n1_re, ca_im, n1_im), a_im = plus(ca_re, n1_im, ca_im, n1_re);
   const V b_re = less(cb_re, n2_re, cb_im, n2_im), b_im = plus(cb_re, n2_im, cb_im, n2_re);
-  const V inverse2 = V(1.0) / (plus(a_re, a_re, a_im, a_im) + plus(b_re, b_re, b_im, b_im));
-  return {a_re, a_im, b_re, b_im, inverse2, sqrt(inverse2)};
+  const V inverse = math::inverse_sqrt(plus(a_re, a_re, a_im, a_im) + plus(b_re, b_re, b_im, b_im));
+  return {a_re, a_im, b_re, b_im, inverse * inverse, inverse};
 }
 
 /// The trigonometric series, for k^2 <= 0.97, from the sine and cosine of z.
@@ -213,13 +215,13 @@ POLHODE_INLINE HeavyTopState<V> evaluate_heavy_top(const HeavyTopConstants& c, V
     phase_b = cycle_fraction(passages, V(c.passage_b.hi), V(c.passage_b.lo), V(0.0));
   } else {
     V sz, cz;
-    sincos_cycles(cycle_fraction(s, V(c.rate_z.hi), V(c.rate_z.lo), V(c.start_z)), sz, cz);
+    sincos_cycles(few_cycles(s, V(c.rate_z.hi), V(c.rate_z.lo), V(c.start_z)), sz, cz);
     f = heavy_top_trig(c, sz, cz);
     turning = heavy_top_trig_turning(c, sz, cz);
   }
   V ea_re, ea_im, eb_re, eb_im;
-  sincos_cycles(cycle_fraction(s, V(c.rate_a.hi), V(c.rate_a.lo), phase_a), ea_im, ea_re);
-  sincos_cycles(cycle_fraction(s, V(c.rate_b.hi), V(c.rate_b.lo), phase_b), eb_im, eb_re);
+  sincos_cycles(few_cycles(s, V(c.rate_a.hi), V(c.rate_a.lo), phase_a), ea_im, ea_re);
+  sincos_cycles(few_cycles(s, V(c.rate_b.hi), V(c.rate_b.lo), phase_b), eb_im, eb_re);
   return heavy_top_state<framed>(c, f, turning, ea_re, ea_im, eb_re, eb_im);
 }
 

@@ -91,7 +91,7 @@ POLHODE_INLINE void moment_columns(const BodyColumns& b, const Place<T>& at, con
                     T(c.La1 * c.root_r_inverse / c.J[1]) * madd(cd, Y, -(at.sn * (T(m.mu) * cn02))),
                     T(c.La3 / c.J[2]) * madd(bracket, at.idn, -madd(k_sc, Y, T(m.rho_G) * at.dn))};
     const double* own = b.is_own[k];
-    const T now = madd(T(own[0]), at.omega[0], madd(T(own[1]), at.omega[1], T(own[2]) * at.omega[2]));
+    const T now = madd(T(own[0]), at.omega[0], madd(T(own[1]), at.omega[1], madd(T(own[2]), at.omega[2], T(0.0))));
     const T dm[3] = {madd(T(c.J[0]), w[0], T(own[0]) * now), madd(T(c.J[1]), w[1], T(own[1]) * now),
                      madd(T(c.J[2]), w[2], T(own[2]) * now)};
     T turn[3];
@@ -159,8 +159,8 @@ POLHODE_INLINE void columns_at(const exact::FreeTrig<double>& body, const BodyCo
                                const ColumnTarget& to, std::size_t first) {
   const T t = T::load(times + first) * T(b.time_scale);
   T s, c, ks, kc;
-  sincos_cycles(cycle_fraction(t, T(body.nu_hi), T(body.nu_lo), T(body.phi0)), s, c);
-  sincos_cycles(cycle_fraction(t, T(body.kappa_hi), T(body.kappa_lo), T(0.0)), ks, kc);
+  sincos_cycles(few_cycles(t, T(body.nu_hi), T(body.nu_lo), T(body.phi0)), s, c);
+  sincos_cycles(few_cycles(t, T(body.kappa_hi), T(body.kappa_lo), T(0.0)), ks, kc);
   const auto state = exact::evaluate(body, exact::evaluate_pair(body, s, c), s, c, ks, kc);
   const Place<T> at(b.c, state, c, -s);
   write_columns(b, at, exact::integrate_trig(b.c, t, s, c), t, to, first);
