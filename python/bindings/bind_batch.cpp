@@ -1,3 +1,8 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "bind_exact.hpp"
 #include "convert.hpp"
 #include "gil.hpp"
 #include "polhode/batch/free_motion.hpp"
@@ -67,10 +72,62 @@ std::size_t batch_heavy_top(const py::object& inertia, const Array& weight_arm, 
   return heavy_top(batch, w, q, threads);
 }
 
+/// Whether the value is n finite numbers: a plain float64 array, or a tuple or list of Python's numbers. Fills `numbers`.
+template <std::size_t n>
+bool read_numbers(py::handle value, std::array<double, n>& numbers) {
+  PyObject* const object = value.ptr();
+  if (Py_TYPE(object) == py::detail::npy_api::get().PyArray_Type_) {
+    if (!Array::check_(value)) return false;
+    const auto array = py::reinterpret_borrow<Array>(value);
+    if (array.ndim() != 1 || array.shape(0) != py::ssize_t{n}) return false;
+    std::copy_n(array.data(), n, numbers.begin());
+  } else if ((PyTuple_CheckExact(object) || PyList_CheckExact(object)) && PySequence_Fast_GET_SIZE(object) == py::ssize_t{n}) {
+    for (std::size_t i = 0; i < n; ++i) {
+      PyObject* const item = PySequence_Fast_GET_ITEM(object, static_cast<py::ssize_t>(i));
+      if (!PyFloat_CheckExact(item) && !PyLong_CheckExact(item)) return false;
+      numbers[i] = PyFloat_AsDouble(item);
+      if (numbers[i] == -1.0 && PyErr_Occurred()) {   // an integer beyond float64
+        PyErr_Clear();
+        return false;
+      }
+    }
+  } else {
+    return false;
+  }
+  for (const double x : numbers)   // where the processor drops denormal numbers, they are refused elsewhere
+    if (!std::isfinite(x) || std::fpclassify(x) == FP_SUBNORMAL) return false;
+  return true;
+}
+
+/// omega and attitude of one body at a few times, without the cost of broadcasting; None for all that needs a second
+/// look: other kinds of arguments, and what a closed form refuses.
+py::object free_motion_of_one(py::handle inertia, py::handle omega, py::handle attitude, py::handle t) {
+  constexpr py::ssize_t most_times = 16384;   // from here on the motion costs far more than the call
+  std::array<double, 3> I{}, w{};
+  std::array<double, 4> q{};
+  if (Py_TYPE(t.ptr()) != py::detail::npy_api::get().PyArray_Type_ || !Array::check_(t)) return py::none();
+  const auto times = py::reinterpret_borrow<Array>(t);
+  if (times.size() == 0 || times.size() > most_times || !read_numbers(inertia, I) || !read_numbers(omega, w) ||
+      !read_numbers(attitude, q) || q == std::array{1.0, 0.0, 0.0, 0.0}) {
+    return py::none();
+  }
+  FreeMotionBatch batch;
+  batch.bodies = 1, batch.times = static_cast<std::size_t>(times.size());
+  batch.moments = I.data(), batch.omega = w.data(), batch.attitude = q.data(), batch.t = times.data();
+  Array omegas = result_for(times, 3), attitudes = result_for(times, 4);
+  try {
+    if (free_motion(batch, omegas.mutable_data(), attitudes.mutable_data(), 1) > 0) return py::none();
+    return py::make_tuple(omegas, attitudes);
+  } catch (const InvalidInput&) {
+    return py::none();
+  }
+}
+
 }  // namespace
 
 void bind_batch(py::module_& m) {
   m.def("_free_motion", &batch_free_motion);
+  m.def("_free_motion_of_one", &free_motion_of_one);
   m.def("_gyrostat", &batch_gyrostat);
   m.def("_heavy_top", &batch_heavy_top);
 }

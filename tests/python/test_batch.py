@@ -121,6 +121,36 @@ def test_want_and_out():
     np.testing.assert_array_equal(ph.free_motion(tensor, omega[0], attitude[0], times)[0], w[0])
 
 
+def test_one_body_has_a_quick_way_with_the_same_bits():
+    """Plain arguments of one body skip the broadcasting; `threads` asks for the usual way."""
+    moments, omega, attitude = (array[0] for array in bodies(1))
+    wheel = ((2.0, 2.0, 1.0), (0, 0, 3), (0, 0, 0, 1))
+    for t in (np.linspace(-3, 50, 1001), RNG.uniform(0, 1e6, (7, 3)), np.zeros(1)):
+        for one in ((moments, omega, attitude), (tuple(moments), list(omega), attitude), wheel):
+            for got, usual in zip(ph.free_motion(*one, t), ph.free_motion(*one, t, threads=1), strict=True):
+                assert got.shape == usual.shape and got.tobytes() == usual.tobytes()
+
+
+@pytest.mark.parametrize("change", [
+    {"inertia": ("1", 2.0, 2.5)}, {"inertia": (10**400, 2, 2)}, {"inertia": (1.0, 2.0, 4.0)}, {"omega": (1.0, 2.0)},
+    {"omega": (np.nan, 0.0, 1.0)}, {"omega": (1e-320, 0.0, 1.0)}, {"attitude": (0, 0, 0, 1.1)}, {"t": [np.inf, 1.0]},
+    {"attitude": (1, 0, 0, 0)}, {"t": [1e300]}, {"t": []}, {"inertia": (1e-160, 1.0, 1.0)}])
+def test_what_the_quick_way_does_not_take_is_told_as_usual(change):
+    call = {"inertia": (1.0, 2.0, 2.5), "omega": (1.0, 2.0, 3.0), "attitude": (0.0, 0.0, 0.0, 1.0), "t": [0.5]} | change
+    call["t"] = np.array(call["t"])
+
+    def outcome(**more):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            try:
+                answer = [a.tobytes() for a in ph.free_motion(*call.values(), **more)]
+            except ValueError as refused:
+                answer = str(refused)
+        return answer, [(w.category, str(w.message), w.filename) for w in caught]
+
+    assert outcome() == outcome(threads=1)
+
+
 def test_a_full_tensor_has_the_bits_of_the_object():
     moments, omega, attitude = bodies(4)
     q = np.array([0.1, 0.7, -0.3, 0.6]) / np.linalg.norm([0.1, 0.7, -0.3, 0.6])

@@ -11,6 +11,8 @@ from .. import _core
 from .._core import InertiaTensor
 from .broadcast import Array, check_threads, evaluate, to_attitudes, to_rows
 
+BOTH = ("omega", "attitude")
+
 
 def _split(inertia: InertiaTensor | npt.ArrayLike) -> tuple[tuple[InertiaTensor, ...], list[tuple[Array, int]]]:
     """Return what all bodies share, a tensor, and what each has of its own, moments; one of the two is empty."""
@@ -26,7 +28,7 @@ def free_motion(
     t: npt.ArrayLike,
     *,
     out: Any = None,
-    want: str | Sequence[str] = ("omega", "attitude"),
+    want: str | Sequence[str] = BOTH,
     threads: int | None = None,
 ) -> Any:
     """Compute the torque-free motion of many bodies at many times; all arguments broadcast.
@@ -73,6 +75,10 @@ def free_motion(
     -----
     The formulas of :class:`FreeMotion`; see docs/exact.md.
     """
+    if out is None and want is BOTH and threads is None:
+        motion = _core._free_motion_of_one(inertia, omega, attitude, t)
+        if motion is not None:
+            return motion
     workers = check_threads(threads)
     speeds, attitudes = to_rows(omega, "omega", 3), to_attitudes(attitude, 3)
     times = to_rows(t, "t", None)
