@@ -17,7 +17,7 @@ inputs := build/.names $(shell find CMakeLists.txt pyproject.toml cpp python/CMa
             tests/cpp/CMakeLists.txt scenes -type f 2>/dev/null)
 
 .PHONY: help demo test same-bits check-long install module clang sanitize valgrind fuzz mutants \
-        aarch64 debian13 free-threaded wheels stubs clean
+        aarch64 debian13 free-threaded wheels stubs docs docs-pictures clean
 .NOTPARALLEL:
 # An environment whose Python has gone is made anew.
 ifneq ($(shell $(VENV)/bin/python -c 'import pip; print("there")' 2>/dev/null),there)
@@ -31,7 +31,7 @@ $(VENV)/.demo: pyproject.toml .ci/prepare
 	@.ci/prepare $(VENV) cli plot scipy
 	@touch $@
 $(VENV)/.ready: $(VENV)/.demo
-	@.ci/prepare $(VENV) cli plot mesh test
+	@.ci/prepare $(VENV) cli plot mesh test docs
 	@touch $@
 
 # One editable build serves the Python module and the C++ tests; ninja rebuilds only what changed.
@@ -119,8 +119,16 @@ free-threaded:
 wheels:
 	@.ci/wheels
 
+# The site, with its notebooks and its gallery run: build/site/index.html.
+docs: install
+	@$(PYTHON) -m sphinx -W --keep-going -n -q docs build/site 2> >(grep -v IPKernelApp >&2)
+
+# Screenshots of four pages, light and dark, wide and narrow, by a headless Chromium.
+docs-pictures: docs
+	@$(PYTHON) tests/support/site_pictures.py build/site build/site-pictures
+
 stubs: install
 	@$(PYTHON) tests/support/make_stubs.py
 
 clean:
-	@rm -rf build demo
+	@rm -rf build demo docs/auto_gallery

@@ -127,7 +127,8 @@ def texts():
     names = [p for p in (*ROOT.glob("*"), *ROOT.glob(".ci/*")) if p.name != ".git"]
     for folder in ("cpp", "python", "tests", "benchmarks", "examples", "scenes", "docs"):
         names += (ROOT / folder).rglob("*")
-    return [p for p in sorted(names) if p.is_file() and p.suffix in kinds and "__pycache__" not in p.parts]
+    return [p for p in sorted(names) if p.is_file() and p.suffix in kinds
+            and not {"__pycache__", "auto_gallery"} & set(p.parts)]
 
 
 def test_a_file_is_one_that_a_reader_can_hold():

@@ -17,6 +17,9 @@ PAGES = sorted(page for places in ("*.md", "docs/**/*.md", "scenes/**/*.md", "te
 
 def anchors(text):
     headings = re.findall(r"^#+ (.+)$", text, flags=re.M)
+    keys = re.findall(r"^@\w+\{(\w+),", (ROOT / "docs/references.bib").read_text(), flags=re.M)
+    if text.startswith("# Bibliography"):
+        return set(keys)
     slugs = {re.sub(r"[^\w\- ]", "", h.lower()).strip().replace(" ", "-") for h in headings}
     return slugs | set(re.findall(r'<a id="([^"]+)">', text))
 
@@ -33,27 +36,57 @@ def test_local_links_lead_somewhere(page):
 
 
 def test_the_bibliography_names_each_work_once():
-    keys = re.findall(r'<a id="(\w+)"></a>\*\*(\w+)\*\*', (ROOT / "docs/bibliography.md").read_text())
-    assert len(keys) > 30 and all(a == b for a, b in keys)
-    assert len({a for a, _ in keys}) == len(keys)
-
-
-def test_the_examples_of_the_homework_run():
-    for block in re.findall(r"```python\n(.*?)```", (ROOT / "docs/seed.md").read_text(), flags=re.S):
-        exec(compile(block, "docs/seed.md", "exec"), {})
+    works = (ROOT / "docs/references.bib").read_text()
+    keys = re.findall(r"^@\w+\{(\w+),$", works, flags=re.M)
+    assert len(keys) > 30 and len(set(keys)) == len(keys) == works.count("\n@") + works.startswith("@")
+    fields = re.findall(r"^  keywords  = \{([\w-]+)\},$", works, flags=re.M)
+    shown = re.findall(r'keywords % "([\w-]+)"', (ROOT / "docs/bibliography.md").read_text())
+    assert len(fields) == len(keys) and set(fields) == set(shown), "each work stands under one heading"
 
 
 def blocks(page, language):
     return re.findall(rf"```{language}\n(.*?)```", (ROOT / page).read_text(), flags=re.S)
 
 
-@pytest.mark.parametrize("page", ["plan", "batch", "solve", "ode", "exact", "gyrostat", "damped_free", "heavy_top",
-                                  "math", "pendulum", "torque", "sensitivity", "fit"])
-def test_the_python_examples_of_a_page_run_in_their_order(page):
-    found, names = blocks(f"docs/{page}.md", "python"), {}
-    assert found
-    for block in found:
-        exec(compile(block, f"docs/{page}.md", "exec"), names)
+def has_python(page):
+    return re.search(r"^```(?:\{code-cell\} )?python$", page.read_text(), flags=re.M)
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if "docs" in page.parts and has_python(page)],
+                         ids=lambda p: str(p.relative_to(ROOT / "docs")))
+def test_the_python_examples_of_a_page_run_in_their_order(page, monkeypatch):
+    text, names = page.read_text(), {}
+    if "matplotlib" in text:
+        pytest.importorskip("matplotlib").use("agg")
+        import matplotlib.pyplot
+
+        monkeypatch.setattr(matplotlib.pyplot, "show", lambda: matplotlib.pyplot.close("all"))
+    monkeypatch.chdir(ROOT)
+    for block in re.findall(r"^```(?:\{code-cell\} )?python\n(.*?)^```", text, flags=re.S | re.M):
+        exec(compile(block, str(page), "exec"), names)
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "docs/gallery").glob("*.py")), ids=lambda path: path.stem)
+def test_a_program_of_the_gallery_draws(path):
+    plt = pytest.importorskip("matplotlib.pyplot")
+    plt.switch_backend("agg")
+    names = {"__name__": "gallery"}
+    exec(compile(path.read_text().replace("plt.show()", ""), str(path), "exec"), names)
+    assert len(plt.get_fignums()) == 1 and plt.gcf().axes
+    plt.close("all")
+
+
+USER_PAGES = [page for page in PAGES if page.name == "README.md" or "docs" in page.parts
+              and not {"results", "codes"} & set(page.parts)]
+
+
+@pytest.mark.parametrize("page", USER_PAGES, ids=lambda p: str(p.relative_to(ROOT)))
+def test_code_fits_on_the_page(page):
+    """80 columns of code, and one formula a line, so that nothing is cut on a screen of usual width."""
+    text = page.read_text()
+    code = re.findall(r"^```(?:\{code-cell\} )?(?:python|cpp|c|toml)\n(.*?)^```", text, flags=re.S | re.M)
+    assert not [line for block in code for line in block.splitlines() if len(line) > 80]
+    assert not [formula for formula in re.findall(r"\$\$(.*?)\$\$", text, flags=re.S) if "quad" in formula]
 
 
 @pytest.mark.parametrize("page", ["docs/scene.md", "docs/reference_scenes.md"])

@@ -6,7 +6,8 @@ import prose
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PAGES = sorted((ROOT / "docs").glob("*.md")) + sorted((ROOT / "docs/notes").glob("*.md")) + [ROOT / "README.md"]
+FOLDERS = ("", "notes", "start", "tutorials", "howto", "reference", "reference/python", "evidence", "about")
+PAGES = [page for folder in FOLDERS for page in sorted((ROOT / "docs" / folder).glob("*.md"))] + [ROOT / "README.md"]
 
 PAGE = """# A heading is no sentence
 
@@ -56,5 +57,7 @@ def test_the_command_prints_each_page_and_fails_above_the_mean(tmp_path, capsys)
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_the_sentences_of_a_page_are_short(page):
     counted = prose.count(page.read_text(encoding="utf-8"))
+    if not counted.sentences:
+        return   # a page that includes a file, or lists pages
     words, longest = counted.sentences[0]
     assert counted.mean <= prose.LIMIT, f"{counted.mean:.1f} words a sentence; the longest has {words}: {longest}"

@@ -12,7 +12,8 @@ import tomllib
 import pytest
 
 ROOT = pathlib.Path(__file__).parents[2]
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [ROOT / "README.md", *(page for folder in ("", "start", "tutorials", "howto", "about")
+                               for page in sorted((ROOT / "docs" / folder).glob("*.md")))]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 
 # Runs the blocks of standard input, one after another, without the modules that the first argument names.

@@ -93,7 +93,7 @@ class Rotation:
 
     @staticmethod
     def from_rotvec(rotvec: ArrayLike, degrees: bool = False) -> Rotation:
-        """From rotation vectors: the rotation by the angle |v| about v.
+        """From rotation vectors: the rotation by the angle abs(v) about v.
 
         Parameters
         ----------
@@ -130,13 +130,13 @@ class Rotation:
     def from_mrp(mrp: ArrayLike) -> Rotation:
         """From modified Rodrigues parameters e tan(angle / 4), shape (..., 3), of any length.
 
-        p and its shadow -p / |p|^2 are the same rotation. InvalidInput for NaN, inf, or another shape.
+        p and its shadow -p / abs(p)^2 are the same rotation. InvalidInput for NaN, inf, or another shape.
         """
         return Rotation(arrays.from_mrp(mrp))
 
     @staticmethod
     def align_vectors(a: ArrayLike, b: ArrayLike, weights: ArrayLike | None = None) -> tuple[Rotation, float]:
-        """The rotation that takes vectors b to vectors a with the least sum of weight |a - R b|^2.
+        """The rotation that takes vectors b to vectors a with the least sum of weight abs(a - R b)^2.
 
         Parameters
         ----------
