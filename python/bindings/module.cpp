@@ -39,6 +39,7 @@ PYBIND11_MODULE(_core, m, pybind11::mod_gil_not_used()) {
   bind_scene(m);
   bind_solve(m);
   bind_batch(m);
+  bind_batch_draw(m);
   bind_batch_step(m);
   bind_batch_solve_many(m);
   const std::vector<py::type> classes = list_classes(m);
