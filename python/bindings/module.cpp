@@ -40,6 +40,7 @@ PYBIND11_MODULE(_core, m, pybind11::mod_gil_not_used()) {
   bind_solve(m);
   bind_batch(m);
   bind_batch_draw(m);
+  bind_batch_summary(m);
   bind_batch_step(m);
   bind_batch_solve_many(m);
   const std::vector<py::type> classes = list_classes(m);

@@ -15,6 +15,7 @@ struct FreeMotionBatch {
   const double* t = nullptr;         ///< (times) for all bodies, or (bodies, times) with own_times [s]
   bool own_times = false;
   const InertiaTensor* tensor = nullptr;  ///< of all bodies, in any body axes; then `moments` is null
+  bool refuse = true;  ///< otherwise the rows of a body that is refused become NaN
 };
 
 /// Writes omega (bodies, times, 3) and attitude (bodies, times, 4); either may be null. The bits of the result do not
@@ -22,7 +23,8 @@ struct FreeMotionBatch {
 /// diagonal, they are those of FreeMotion.
 ///
 /// A row with an input that is not finite becomes NaN; returns the number of such rows. Throws InvalidInput, with the
-/// number of the body, for impossible moments, attitudes that are not unit and |omega t| > 1e25 rad.
+/// number of the body, for impossible moments, attitudes that are not unit and |omega t| > 1e25 rad, unless `refuse` is
+/// false: the rows of such a body become NaN, too.
 std::size_t free_motion(const FreeMotionBatch& batch, double* omega, double* attitude, int threads = 0);
 
 }  // namespace polhode
