@@ -1,17 +1,20 @@
 """Which tests belong to a word: files of Python tests, and folders of C++ tests."""
 
 SOLVE = ["solve", "plan", "plan_exact", "plan_limits", "plan_custom", "handover", "pieces", "certificates", "events",
-         "taylor_invariants", "torque_windows", "methods", "doors", "proof"]
+         "taylor_invariants", "torque_windows", "methods", "doors", "proof", "proof_rotors", "rotors", "rotors_windows",
+         "gyrostat_plan", "far_times"]
 
 # By the first parts of a path below python/polhode; the longest that fits holds.
 PYTHON = {
     "_attitude": ["attitude", "attitude_euler", "attitude_fits", "attitude_refusals", "doors"],
     "_batch/closed_forms": ["batch", "batch_top", "doors", "minimal"],
     "_batch/broadcast": ["batch", "batch_top", "solve_many", "doors"],
+    "_batch/step": ["step"],
     "_batch/solve_many": ["solve_many", "solve_many_rk45", "solve_many_lanes", "doors", "interrupts"],
     "_files": ["outputs", "hostile_files", "schema", "mesh_files"],
     "_harness": ["workers", "charts", "atlas", "charts_limits"],
     "_plot": ["plot", "charts"],
+    "_sensitivity": ["free_sensitivity", "fit", "fit_cli"],
     "_scene": ["schema", "hostile_files", "cli_mesh", "minimal", "composites", "homework", "family", "doors",
                "scenes_reference", "torque_windows", "solve", "fuzz"],
     "_solve/costs": ["plan", "plan_limits", "hostile_files", "cli"],
@@ -20,10 +23,11 @@ PYTHON = {
                "certificates", "minimal", "cli", "scenes_reference"],
     "atlas": ["atlas_verdicts", "atlas_claims", "atlas"],
     "charts": ["charts_limits", "charts_peers", "charts"],
-    "cli": ["cli", "cli_mesh", "outputs", "robots", "atlas", "report"],
+    "cli": ["cli", "cli_mesh", "outputs", "robots", "robots_ci", "atlas", "report", "fit_cli"],
     "elliptic": ["elliptic", "doors"],
     "inertia/robots": ["robots", "hostile_files", "fuzz"],
     "inertia": ["diagnosis", "inertia", "robots", "principal_axes", "shapes", "mesh", "doors"],
+    "measured": ["fit"],
     "mesh": ["mesh_files", "mesh", "hostile_files", "cli_mesh", "fuzz"],
     "report": ["report"],
     "shapes": ["shapes", "composites", "doors"],
@@ -33,14 +37,16 @@ PYTHON = {
 # By the folder of a source in cpp/src.
 CPP = {
     "attitude": ["attitude", "attitude_euler", "attitude_fits", "attitude_refusals"],
-    "batch": ["batch", "batch_top", "solve_many", "solve_many_rk45", "solve_many_lanes", "interrupts"],
+    "batch": ["batch", "batch_top", "solve_many", "solve_many_rk45", "solve_many_lanes", "interrupts", "step",
+              "gyrostat", "free_sensitivity"],
     "core": ["minimal", "interrupts", "attitude_refusals"],
-    "exact": ["free_motion", "heavy_top", "time_grid", "batch", "batch_top", "plan_exact"],
+    "exact": ["free_motion", "heavy_top", "time_grid", "batch", "batch_top", "plan_exact", "gyrostat", "heavy_gyrostat",
+              "damped_free", "pendulum", "free_sensitivity"],
     "inertia": ["inertia", "principal_axes", "shapes", "mesh", "mesh_files", "diagnosis"],
     "math": ["elliptic", "free_motion"],
-    "method": ["methods", "taylor", "taylor_invariants", "solve", "events"],
+    "method": ["methods", "taylor", "taylor_invariants", "solve", "events", "rotors", "step"],
     "ode": ["methods", "events", "solve"],
-    "scene": ["solve", "schema", "minimal"],
+    "scene": ["solve", "schema", "minimal", "rotors", "rotors_windows"],
     "solve": SOLVE,
     "torque": ["torque", "torque_windows", "methods"],
 }

@@ -160,3 +160,16 @@ def test_a_wheel_along_the_pivots_axis_leaves_the_pendulum():
     assert [piece.model for piece in motion.plan.pieces] == ["pendulum"] * 4 and motion.success
     truth = _core.reference(chain, 30, 1e-20, 10**6)
     assert rates_error(motion.omega, truth[0]) < motion.error
+
+
+@pytest.mark.parametrize("torques, rotors, start", [
+    ([ph.torques.Gravity(weight=3.0, arm=(0.1, 0.2, 0.3))], [], "Gravity acts, but no closed form is known"),
+    ([ph.torques.Gravity(weight=3.0, arm=(0.1, 0.2, 0.3))], [ph.Rotor((1, 2, 2), momentum=0.4)], "Gravity acts, but"),
+    ([ph.torques.Damping((0.1, 0.2, 0.3))], [], "Damping acts, but no closed form is known"),
+    ([ph.torques.Damping((0.1, 0.2, 0.3))], [ph.Rotor((1, 2, 2), momentum=0.4)], "Damping acts, but"),
+    ([ph.torques.Damping((0.1, 0.2, 0.3)), ph.torques.Gravity(weight=3.0, arm=(0.1, 0.2, 0.3))], [],
+     "No closed form is known with these torques"),
+])
+def test_the_plan_says_which_torque_has_no_closed_form(torques, rotors, start):
+    scene = ph.Scene(inertia=(1.0, 2.0, 2.5), omega=(1.0, 2.0, 3.0), times=[1.0], torques=torques, rotors=rotors)
+    assert ph.plan(scene, accuracy=1e-9).reasons[0].startswith(start)

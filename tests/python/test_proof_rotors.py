@@ -105,13 +105,13 @@ def test_held_and_free_rotors(series, kind):
 def test_windows_where_the_rates_jump(series):
     """Forward over two commands and their end; a sample at a jump has the rates after it."""
     steps = [ph.Rotor((0, 1, 0), momentum=0.3, during=(0.5, 1.25)), ph.Rotor((0, 1, 0), momentum=0.7, during=(1.25, 2)),
-             ph.Rotor((0, 0, 1), momentum=-0.2, during=(1, 9))]
+             ph.Rotor((0, 0, 1), momentum=-0.2, during=(1, 9)), ph.Rotor((1, 0, 0), momentum=0.1, during=(1, 9))]
     times = [0.0, 0.25, 0.5, 1.0, 1.25, 1.75, 2.0, 2.5]
     scene = ph.Scene(inertia=BLOCK, omega=OMEGA, times=times, rotors=steps)
     motion = ph.solve(scene, 1e-10, certify="proof")
     with mp.workdps(30):
-        zero, y, z = mpf(0), [mpf(0.3), mpf(0.7)], mpf(-0.2)
-        momenta = [[zero, zero, zero], [zero, y[0], zero], [zero, y[0], z], [zero, y[1], z], [zero, zero, z]]
+        zero, x, y, z = mpf(0), mpf(0.1), [mpf(0.3), mpf(0.7)], mpf(-0.2)
+        momenta = [[zero, zero, zero], [zero, y[0], zero], [x, y[0], z], [x, y[1], z], [x, zero, z]]
         rows = follow(series, (0, 0.5, 1, 1.25, 2, 2.5), momenta, times)
         assert motion.error_kind == "proved" and count_outside(motion, rows) == 0
     assert (motion.omega_upper - motion.omega_lower).max() < 1e-12
