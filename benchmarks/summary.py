@@ -2,8 +2,8 @@
 
     python benchmarks/summary.py [--bodies 16384] [--times 500] [--rounds 9]
 
-The states alone are written into arrays that are used again, in blocks that fit the cache best. Each figure is the least
-of all rounds: processor time in nanoseconds a state.
+The states alone are written into arrays that are used again, in blocks that fit the cache best. Each figure is the
+least of all rounds: processor time in nanoseconds a state.
 """
 
 import argparse

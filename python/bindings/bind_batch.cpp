@@ -9,6 +9,7 @@
 #include "polhode/batch/gyrostat.hpp"
 #include "polhode/batch/heavy_top.hpp"
 #include "polhode/core/error.hpp"
+#include "polhode/core/float_state.hpp"
 
 namespace polhode::python {
 namespace {
@@ -94,20 +95,18 @@ bool read_numbers(py::handle value, std::array<double, n>& numbers) {
   } else {
     return false;
   }
-  for (const double x : numbers)   // where the processor drops denormal numbers, they are refused elsewhere
-    if (!std::isfinite(x) || std::fpclassify(x) == FP_SUBNORMAL) return false;
-  return true;
+  return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
 }
 
 /// omega and attitude of one body at a few times, without the cost of broadcasting; None for all that needs a second
-/// look: other kinds of arguments, and what a closed form refuses.
+/// look: other kinds of arguments, a processor that drops denormal numbers, and what a closed form refuses.
 py::object free_motion_of_one(py::handle inertia, py::handle omega, py::handle attitude, py::handle t) {
   constexpr py::ssize_t most_times = 16384;   // from here on the motion costs far more than the call
   std::array<double, 3> I{}, w{};
   std::array<double, 4> q{};
   if (Py_TYPE(t.ptr()) != py::detail::npy_api::get().PyArray_Type_ || !Array::check_(t)) return py::none();
   const auto times = py::reinterpret_borrow<Array>(t);
-  if (times.size() == 0 || times.size() > most_times || !read_numbers(inertia, I) || !read_numbers(omega, w) ||
+  if (flushes_to_zero() || times.size() == 0 || times.size() > most_times || !read_numbers(inertia, I) || !read_numbers(omega, w) ||
       !read_numbers(attitude, q) || q == std::array{1.0, 0.0, 0.0, 0.0}) {
     return py::none();
   }
