@@ -10,6 +10,7 @@
 #include "polhode/batch/heavy_top.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/core/float_state.hpp"
+#include "progress.hpp"
 
 namespace polhode::python {
 namespace {
@@ -43,34 +44,44 @@ Batch make_batch(const py::object& inertia, Array& moments, const Array& omega, 
   return batch;
 }
 
+template <class Batch>
+std::size_t run(Batch& batch, double* omega, double* attitude, int threads, bool refuse, const py::object& progress,
+                std::size_t (*motion)(const Batch&, double*, double*, int)) {
+  ReportedWork work(progress, batch.bodies * batch.times);
+  batch.refuse = refuse, batch.done = work.done();
+  const std::size_t poisoned = motion(batch, omega, attitude, threads);
+  work.finish();
+  return poisoned;
+}
+
 std::size_t batch_free_motion(const py::object& inertia, const Array& omega, const Array& attitude, const Array& t,
-                              const py::object& omega_out, const py::object& attitude_out, int threads) {
+                              const py::object& omega_out, const py::object& attitude_out, int threads,
+                           bool refuse, const py::object& progress) {
   Array moments;
-  const auto batch = make_batch<FreeMotionBatch>(inertia, moments, omega, attitude, t);
+  auto batch = make_batch<FreeMotionBatch>(inertia, moments, omega, attitude, t);
   double *w = target(batch, omega_out, 3), *q = target(batch, attitude_out, 4);
-  const WithoutGil nogil;
-  return free_motion(batch, w, q, threads);
+  return run(batch, w, q, threads, refuse, progress, &free_motion);
 }
 
 std::size_t batch_gyrostat(const py::object& inertia, const Array& momentum, const Array& omega, const Array& attitude,
-                           const Array& t, const py::object& omega_out, const py::object& attitude_out, int threads) {
+                           const Array& t, const py::object& omega_out, const py::object& attitude_out, int threads,
+                           bool refuse, const py::object& progress) {
   Array moments;
   auto batch = make_batch<GyrostatBatch>(inertia, moments, omega, attitude, t);
   batch.momentum = momentum.data();
   double *w = target(batch, omega_out, 3), *q = target(batch, attitude_out, 4);
-  const WithoutGil nogil;
-  return gyrostat(batch, w, q, threads);
+  return run(batch, w, q, threads, refuse, progress, &gyrostat);
 }
 
 std::size_t batch_heavy_top(const py::object& inertia, const Array& weight_arm, const Array& omega,
                             const Array& attitude, const Array& t, const py::object& omega_out,
-                            const py::object& attitude_out, int threads) {
+                            const py::object& attitude_out, int threads,
+                           bool refuse, const py::object& progress) {
   Array moments;
   auto batch = make_batch<HeavyTopBatch>(inertia, moments, omega, attitude, t);
   batch.weight_arm = weight_arm.data();
   double *w = target(batch, omega_out, 3), *q = target(batch, attitude_out, 4);
-  const WithoutGil nogil;
-  return heavy_top(batch, w, q, threads);
+  return run(batch, w, q, threads, refuse, progress, &heavy_top);
 }
 
 /// Whether the value is n finite numbers: a plain float64 array, or a tuple or list of Python's numbers. Fills `numbers`.
@@ -82,7 +93,8 @@ bool read_numbers(py::handle value, std::array<double, n>& numbers) {
     const auto array = py::reinterpret_borrow<Array>(value);
     if (array.ndim() != 1 || array.shape(0) != py::ssize_t{n}) return false;
     std::copy_n(array.data(), n, numbers.begin());
-  } else if ((PyTuple_CheckExact(object) || PyList_CheckExact(object)) && PySequence_Fast_GET_SIZE(object) == py::ssize_t{n}) {
+  } else if ((PyTuple_CheckExact(object) || PyList_CheckExact(object)) &&
+             PySequence_Fast_GET_SIZE(object) == py::ssize_t{n}) {
     for (std::size_t i = 0; i < n; ++i) {
       PyObject* const item = PySequence_Fast_GET_ITEM(object, static_cast<py::ssize_t>(i));
       if (!PyFloat_CheckExact(item) && !PyLong_CheckExact(item)) return false;
@@ -106,8 +118,8 @@ py::object free_motion_of_one(py::handle inertia, py::handle omega, py::handle a
   std::array<double, 4> q{};
   if (Py_TYPE(t.ptr()) != py::detail::npy_api::get().PyArray_Type_ || !Array::check_(t)) return py::none();
   const auto times = py::reinterpret_borrow<Array>(t);
-  if (flushes_to_zero() || times.size() == 0 || times.size() > most_times || !read_numbers(inertia, I) || !read_numbers(omega, w) ||
-      !read_numbers(attitude, q) || q == std::array{1.0, 0.0, 0.0, 0.0}) {
+  if (flushes_to_zero() || times.size() == 0 || times.size() > most_times || !read_numbers(inertia, I) ||
+      !read_numbers(omega, w) || !read_numbers(attitude, q) || q == std::array{1.0, 0.0, 0.0, 0.0}) {
     return py::none();
   }
   FreeMotionBatch batch;

@@ -11,7 +11,8 @@ namespace polhode::python {
 namespace {
 
 Distribution to_distribution(const std::string& name) {
-  constexpr const char* names[] = {"uniform", "normal", "log_uniform", "truncated_normal", "sphere", "attitude", "turn"};
+  constexpr const char* names[] = {"uniform", "normal",   "log_uniform", "truncated_normal",
+                                   "sphere",  "attitude", "turn"};
   int found = 0;
   for (const char* known : names) {
     if (name == known) return static_cast<Distribution>(found);

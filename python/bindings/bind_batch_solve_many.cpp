@@ -3,7 +3,6 @@
 #include "bind_solve_options.hpp"
 #include "convert.hpp"
 #include "gil.hpp"
-#include "gil.hpp"
 #include "polhode/batch/solve_many.hpp"
 #include "polhode/core/error.hpp"
 
@@ -12,7 +11,7 @@ namespace {
 
 py::dict solve_batch(const py::list& scenes, const py::object& moments, const py::object& omega,
                      const py::object& attitude, std::size_t bodies, std::size_t times, const py::object& omega_out,
-                     const py::object& attitude_out, const py::dict& given, int threads) {
+                     const py::object& attitude_out, const py::dict& given, int threads, bool refuse) {
   const SolveOptions options = to_solve_options(given);
 
   // One scene for all with starts of its own for each body, or a scene for each.
@@ -39,13 +38,13 @@ py::dict solve_batch(const py::list& scenes, const py::object& moments, const py
   std::vector<ManyResult> results;
   {
     const WithoutGil nogil;
-    results = solve_many(bodies, times, make_scene, options, out_w, out_q, threads);
+    results = solve_many(bodies, times, make_scene, options, out_w, out_q, threads, refuse);
   }
   py::list status, message, methods;
   const auto n = static_cast<py::ssize_t>(bodies);
   Array reached(n), errors(n);
   py::array_t<long> steps(n);
-  py::array_t<bool> success(n), lanes(n);
+  py::array_t<bool> success(n), lanes(n), refused(n);
   for (py::ssize_t i = 0; i < n; ++i) {
     const ManyResult& result = results[static_cast<std::size_t>(i)];
     status.append(std::string(to_text(result.status)));
@@ -56,6 +55,7 @@ py::dict solve_batch(const py::list& scenes, const py::object& moments, const py
     steps.mutable_data()[i] = result.steps;
     success.mutable_data()[i] = result.success;
     lanes.mutable_data()[i] = result.lanes;
+    refused.mutable_data()[i] = result.refused;
   }
   py::dict all;
   all["status"] = py::tuple(status);
@@ -66,6 +66,7 @@ py::dict solve_batch(const py::list& scenes, const py::object& moments, const py
   all["steps"] = steps;
   all["success"] = success;
   all["lanes"] = lanes;
+  all["refused"] = refused;
   return all;
 }
 
@@ -74,7 +75,7 @@ py::dict solve_batch(const py::list& scenes, const py::object& moments, const py
 void bind_batch_solve_many(py::module_& m) {
   m.def("_solve_many", &solve_batch, py::arg("scenes"), py::arg("moments"), py::arg("omega"), py::arg("attitude"),
         py::arg("bodies"), py::arg("times"), py::arg("omega_out"), py::arg("attitude_out"), py::arg("options"),
-        py::arg("threads"));
+        py::arg("threads"), py::arg("refuse"));
 }
 
 }  // namespace polhode::python

@@ -216,7 +216,7 @@ py::tuple mean_attitudes(const py::object& given) {
 
 void bind_batch_summary(py::module_& m) {
   py::class_<Summary>(m, "_Summary")
-      .def(py::init([](const py::list& quantities, std::size_t times) { return Summary(to_quantities(quantities), times); }),
+      .def(py::init([](const py::list& given, std::size_t times) { return Summary(to_quantities(given), times); }),
            py::arg("quantities"), py::arg("times"))
       .def("add_free", &add_free, py::arg("first"), py::arg("inertia"), py::arg("omega"), py::arg("attitude"),
            py::arg("times"), py::arg("threads") = 0)

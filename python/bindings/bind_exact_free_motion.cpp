@@ -5,6 +5,7 @@
 #include "gil.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/exact/free_motion.hpp"
+#include "progress.hpp"
 
 namespace polhode::python {
 namespace {
@@ -14,6 +15,30 @@ FreeMotion make_free_motion(py::handle inertia, py::handle omega, py::handle att
   const Quat q = to_attitude(attitude, "attitude");
   if (py::isinstance<InertiaTensor>(inertia)) return {inertia.cast<const InertiaTensor&>(), w, q};
   return {to_moments(inertia, "inertia"), w, q};
+}
+
+/// As at(), in parts of whole blocks of the grid, which leave the bits as they are.
+py::typing::Tuple<Array, Array> states_at(const FreeMotion& motion, py::handle t, py::handle progress) {
+  if (progress.is_none()) return at(motion, t);
+  const py::object report = py::module_::import("polhode._batch.progress").attr("reporter")(progress);
+  if (report.is_none()) return at(motion, t);
+  const Array times = to_array(t, "t");
+  Array omega = result_for(times, 3), attitude = result_for(times, 4);
+  const auto n = static_cast<std::size_t>(times.size());
+  const exact::TimeGrid grid(times.data(), n);
+  double *w = omega.mutable_data(), *q = attitude.mutable_data();
+  {
+    constexpr std::size_t most = 128 * exact::TimeGrid::block;
+    ReportedWork work(report, n);
+    for (std::size_t begin = 0; begin < n; begin += most) {
+      check_interrupt();
+      const std::size_t count = std::min(most, n - begin);
+      motion.at(grid.piece(begin, count), w + 3 * begin, q + 4 * begin);
+      *work.done() += count;
+    }
+    work.finish();
+  }
+  return py::make_tuple(omega, attitude);
 }
 
 }  // namespace
@@ -45,12 +70,16 @@ Jacobi (1850), "Sur la rotation d'un corps", J. reine angew. Math. 39, in the Ca
   cls.attr("__module__") = "polhode";
   cls.def(py::init(&make_free_motion), py::arg("inertia"), py::arg("omega"),
           py::arg("attitude") = py::make_tuple(0, 0, 0, 1))
-      .def("at", &at<FreeMotion>, py::arg("t"), R"(Angular velocity and attitude at the given times.
+      .def("at", &states_at, py::arg("t"), py::kw_only(), py::arg("progress") = py::none(),
+           R"(Angular velocity and attitude at the given times.
 
 Parameters
 ----------
 t : array_like, any shape
     Times [s], negative ones too, up to abs(omega t) = 1e25 rad.
+progress : True or callable, optional
+    ``progress(times done, all times)`` is called about fifty times a second. What it raises ends the call. True writes
+    a line with the time left to stderr.
 
 Returns
 -------

@@ -122,6 +122,25 @@ def test_a_small_spread_keeps_its_digits():
     assert found.magnitude() < 1e-14
 
 
+def test_spread_of_rotations():
+    transform = pytest.importorskip("scipy.spatial.transform")
+    rng = np.random.default_rng(6)
+    for size, rel in ((1e-9, 1e-6), (0.3, 1e-12), (3.0, 1e-12)):
+        rotations = ph.Rotation.from_euler("x", 1.0) * ph.Rotation.from_rotvec(size * rng.normal(size=(4, 100, 3)))
+        weights = rng.random((4, 100))
+        theirs = transform.Rotation.from_quat(rotations.as_quat().reshape(-1, 4))
+        for given in (None, weights):
+            mean = theirs.mean(None if given is None else given.reshape(-1))
+            half = (mean.inv() * theirs).magnitude() / 2
+            expected = 2 * math.asin(math.sqrt(np.average(np.sin(half)**2, weights=None if given is None
+                                                          else given.reshape(-1))))
+            assert rotations.spread(given) == pytest.approx(expected, rel=rel)
+            assert (ph.Rotation(mean.as_quat()).inv() * rotations.mean(given)).magnitude() < 1e-13
+    assert ph.Rotation.from_euler("x", [[1.0], [1.0]]).spread() < 1e-15
+    with pytest.raises(ph.InvalidInput, match="one or more"):
+        ph.Rotation(np.empty((0, 4))).spread()
+
+
 def test_no_spread_and_full_spread():
     one = np.array([0.5, -0.5, 0.5, 0.5])
     mean, spread = _core._mean_attitude(np.outer(one, one)[np.triu_indices(4)])

@@ -51,7 +51,8 @@ void draw_direction(const std::array<std::uint64_t, DrawStream::words>& words, d
 /// Shoemake 1992, Graphics Gems III, 124.
 void draw_attitude(const std::array<std::uint64_t, DrawStream::words>& words, double* q) {
   const double u = fraction_of(words[0]), a = std::sqrt(1.0 - u), b = std::sqrt(u);
-  const math::SinCosPair first = sincos_of_turns(fraction_of(words[1])), second = sincos_of_turns(fraction_of(words[2]));
+  const math::SinCosPair first = sincos_of_turns(fraction_of(words[1]));
+  const math::SinCosPair second = sincos_of_turns(fraction_of(words[2]));
   q[0] = a * first.sin, q[1] = a * first.cos, q[2] = b * second.sin, q[3] = b * second.cos;
 }
 

@@ -52,9 +52,9 @@ class PrincipalStarts {
   int exponents_[free_block];
 };
 
-/// Up to `free_block` bodies of a batch, checked and set up; each is then evaluated at any times, also in parts that are
-/// whole blocks of a grid. A body that is not finite, or beyond float64, is poor: its states are NaN. So is one that is
-/// refused, if the batch does not ask for the exception.
+/// Up to `free_block` bodies of a batch, checked and set up. Each is then evaluated at any times, also in parts that
+/// are whole blocks of a grid. A body that is not finite, or beyond float64, is poor: its states are NaN. So is a
+/// refused one, if the batch does not ask for the exception.
 class FreeBlock {
  public:
   explicit FreeBlock(const FreeMotionBatch& batch);

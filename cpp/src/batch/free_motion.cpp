@@ -51,6 +51,7 @@ class Run {
         });
       }
     }
+    if (b_.done) *b_.done += (end - begin) * b_.times;
     return poisoned;
   }
 

@@ -24,16 +24,17 @@ std::size_t evaluate_motions(const Batch& given, const exact::TimeKernels& kerne
       check_interrupt();
       if (!is_finite(body)) {
         poisoned += rows.poison(body, 0, rows.times);
+        if (batch.done) *batch.done += rows.times;
         continue;
       }
-      const auto motion = [&] {
-        try {
-          return make(body);
-        } catch (const InvalidInput& error) {
-          throw InvalidInput(row_name("body", body) + ": " + error.what());
-        }
-      }();
-      poisoned += rows.each_run(body, [&](const exact::TimeGrid& t, double* w, double* q) { motion.at(t, w, q); });
+      try {
+        const auto motion = make(body);
+        poisoned += rows.each_run(body, [&](const exact::TimeGrid& t, double* w, double* q) { motion.at(t, w, q); });
+      } catch (const InvalidInput& error) {
+        if (batch.refuse) throw InvalidInput(row_name("body", body) + ": " + error.what());
+        poisoned += rows.poison(body, 0, rows.times);
+      }
+      if (batch.done) *batch.done += rows.times;
     }
   };
   const std::size_t common = batch.own_times ? 0 : batch.times;

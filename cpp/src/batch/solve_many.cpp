@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "batch/lane_scheduler.hpp"
@@ -46,7 +47,8 @@ const LaneMethod* find_lane_method(const SolveOptions& options) {
 }  // namespace
 
 std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeScene& make_scene,
-                                   const SolveOptions& options, double* omega, double* attitude, int threads) {
+                                   const SolveOptions& options, double* omega, double* attitude, int threads,
+                                   bool refuse) {
   std::vector<ManyResult> results(n);
   if (options.dense || !options.events.empty()) {
     throw InvalidInput("solve_many", "used without dense output and events", "one of them", "solve() has them");
@@ -75,6 +77,16 @@ std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeS
     stored[body] = 1;
     ++done;
   };
+  // What is no body fails alone, if it may: its rows are NaN.
+  const auto leave_out = [&](std::size_t body, const char* why) {
+    if (omega != nullptr) std::fill_n(omega + 3 * times * body, 3 * times, not_reached);
+    if (attitude != nullptr) std::fill_n(attitude + 4 * times * body, 4 * times, not_reached);
+    ManyResult& result = results[body];
+    result.status = Status::failed, result.message = why, result.refused = true;
+    result.t_reached = result.error = not_reached;
+    stored[body] = 1;
+    ++done;
+  };
   const auto guarded = [&](std::size_t body, const auto& work) {
     try {
       work();
@@ -86,16 +98,25 @@ std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeS
       throw;
     }
   };
+  const auto make_one = [&](std::size_t body) -> std::optional<Scene> {
+    if (refuse) return make_scene(body);
+    try {
+      return make_scene(body);
+    } catch (const InvalidInput& error) {
+      leave_out(body, error.what());
+      return std::nullopt;
+    }
+  };
   const LaneMethod* lanes = find_lane_method(options);
   std::vector<unsigned char> in_lanes(n, 0);
   const auto solve_singly = [&](std::size_t, std::size_t) {
     // Each free thread takes the next body, so a long run delays no other. No result depends on the order.
     for (std::size_t body = next++; body < n && !stopped; body = next++) {
-      if (in_lanes[body] != 0) continue;
+      if (in_lanes[body] != 0 || stored[body] != 0) continue;
       guarded(body, [&] {
         if (!go_on(0.0, 0.0)) return;   // a closed form ends before it asks
-        const Scene scene = make_scene(body);
-        store(body, scene, solve(scene, single), false);
+        const std::optional<Scene> scene = make_one(body);
+        if (scene) store(body, *scene, solve(*scene, single), false);
       });
     }
   };
@@ -110,7 +131,9 @@ std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeS
       for (std::size_t body = begin; body < end; ++body) {
         guarded(body, [&] {
           check_interrupt();
-          Scene scene = make_scene(body);
+          std::optional<Scene> made = make_one(body);
+          if (!made) return;
+          Scene& scene = *made;
           check_options(scene, options);
           if (has_windows(scene) || !lanes->accepts(scene)) return;
           if (scene.torque_sum().acting > 0) require_finite_start(scene);

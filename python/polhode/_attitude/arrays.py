@@ -88,6 +88,17 @@ def mean(quat: FloatArray, weights: ArrayLike | None) -> FloatArray:
     return found
 
 
+def spread(quat: FloatArray, weights: ArrayLike | None) -> float:
+    """Return 2 asin of the root of the weighted mean of sin^2(angle / 2), of the angles from the mean rotation."""
+    x, y, z, w = mean(quat, weights)
+    scale = to_weights(weights, quat.shape[:-1]).reshape(-1)
+    # The vector part of conj(mean) q, which keeps the digits of small angles.
+    rows = np.array([[w, z, -y, -x], [-z, w, x, -y], [y, -x, w, -z]])
+    square = ((quat.reshape(-1, 4) @ rows.T) ** 2).sum(axis=1)
+    scale = scale / scale.max()
+    return float(2 * np.arcsin(min(1.0, np.sqrt((scale * square).sum() / scale.sum()))))
+
+
 def shortest(u: FloatArray, v: FloatArray) -> FloatArray:
     """Return the quaternion of the smallest rotation that takes unit vector u to v, or of some half turn."""
     apart, together = v - u, v + u

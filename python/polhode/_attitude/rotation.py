@@ -320,6 +320,10 @@ class Rotation:
         """
         return Rotation(arrays.mean(self._quat, weights))
 
+    def spread(self, weights: ArrayLike | None = None) -> float:
+        """2 asin of the root of the mean of sin^2(angle from `mean` / 2) [rad]: of small angles, their rms."""
+        return arrays.spread(self._quat, weights)
+
     def approx_equal(self, other: Any, atol: float | None = None, degrees: bool = False) -> NDArray[np.bool_] | bool:
         """Whether the angle between the two rotations is below `atol`, 1e-8 rad unless given."""
         limit = 1e-8 if atol is None else float(np.deg2rad(atol)) if degrees else atol

@@ -97,10 +97,10 @@ def in_place(target: Any, others: Iterable[Any]) -> bool:
     return not any(other is not target and np.may_share_memory(target, other) for other in others)
 
 
-def warn_poisoned(poisoned: int, level: int) -> None:
+def warn_poisoned(poisoned: int, level: int, refuse: bool = True) -> None:
     """Warn that so many rows are NaN."""
-    warnings.warn(f"{poisoned} rows are NaN because their input is not finite or beyond float64", RuntimeWarning,
-                  stacklevel=level)
+    why = "not finite or beyond float64" if refuse else "not finite, beyond float64, or of no possible body"
+    warnings.warn(f"{poisoned} rows are NaN because their input is {why}", RuntimeWarning, stacklevel=level)
 
 
 def _evaluate_one(
@@ -110,6 +110,7 @@ def _evaluate_one(
     names: tuple[str, ...],
     want: str | Sequence[str],
     kernel: Callable[..., int],
+    refuse: bool,
 ) -> Any:
     """Evaluate one body at all times, without the cost of broadcasting."""
     _require_memory(t.shape, names)
@@ -121,7 +122,7 @@ def _evaluate_one(
     flat = [array[None] for array in parameters]
     poisoned = kernel(*flat, t.reshape(-1), results.get("omega"), results.get("attitude"))
     if poisoned:
-        warn_poisoned(poisoned, 5)
+        warn_poisoned(poisoned, 5, refuse)
     for name, target in targets.items():
         if results[name] is not target:
             target[...] = results[name]
@@ -160,6 +161,7 @@ def evaluate(
     out: Any,
     want: str | Sequence[str],
     kernel: Callable[..., int],
+    refuse: bool = True,
 ) -> Any:
     """Broadcast, call kernel(*flat parameters, t, omega, attitude), and return results in the caller's shape.
 
@@ -168,7 +170,8 @@ def evaluate(
     names = check_want(want)
     loops = [array.shape[: array.ndim - core] for array, core in parameters]
     if all(loop == () for loop in loops) and t.size:
-        return _evaluate_one([array for array, _ in parameters], t, check_out(out, names, t.shape), names, want, kernel)
+        arrays = [array for array, _ in parameters]
+        return _evaluate_one(arrays, t, check_out(out, names, t.shape), names, want, kernel, refuse)
     try:
         shape = np.broadcast_shapes(*loops, t.shape)
     except ValueError:
@@ -192,7 +195,7 @@ def evaluate(
             results[name] = np.empty((*body_shape, *time_shape, WIDTHS[name]))
     poisoned = kernel(*flat, flat_t, results.get("omega"), results.get("attitude")) if n_bodies and n_times else 0
     if poisoned:
-        warn_poisoned(poisoned, 4)
+        warn_poisoned(poisoned, 4, refuse)
 
     inverse = [*np.argsort(order), len(shape)]
     for name in names:
@@ -204,6 +207,13 @@ def evaluate(
             results[name] = target
     answer = tuple(results[name] for name in names)
     return answer[0] if isinstance(want, str) else answer
+
+
+def check_errors(errors: str) -> bool:
+    """Return True if an impossible body is to be refused."""
+    if not isinstance(errors, str) or errors not in ("raise", "nan"):
+        raise InvalidInput(f"errors: must be 'raise' or 'nan', got {errors!r}")
+    return errors == "raise"
 
 
 def check_threads(threads: int | None) -> int:

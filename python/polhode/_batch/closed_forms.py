@@ -9,7 +9,8 @@ import numpy.typing as npt
 
 from .. import _core
 from .._core import InertiaTensor
-from .broadcast import Array, check_threads, evaluate, to_attitudes, to_rows
+from .broadcast import Array, check_errors, check_threads, evaluate, to_attitudes, to_rows
+from .progress import Report, reporter
 
 BOTH = ("omega", "attitude")
 
@@ -30,6 +31,8 @@ def free_motion(
     out: Any = None,
     want: str | Sequence[str] = BOTH,
     threads: int | None = None,
+    errors: str = "raise",
+    progress: bool | Report | None = None,
 ) -> Any:
     """Compute the torque-free motion of many bodies at many times; all arguments broadcast.
 
@@ -50,6 +53,11 @@ def free_motion(
         What is computed: 'omega', 'attitude' or both. A single name gives a single array.
     threads : int, optional
         At most this many; by default as many as the machine has. The bits of the result do not depend on it.
+    errors : {"raise", "nan"}
+        With "nan" the rows of an impossible body become NaN, and a warning gives their count. By default it is refused.
+    progress : True or callable, optional
+        ``progress(states done, all states)`` is called about fifty times a second. What it raises ends the call. True
+        writes a line with the time left to stderr.
 
     Returns
     -------
@@ -69,25 +77,25 @@ def free_motion(
     -----
     RuntimeWarning
         Once, with their count, when rows came out NaN because their input is not finite, or because the least moment is
-        below 1.5e-154 of the largest.
+        below 1.5e-154 of the largest, or with errors="nan" because no body is like that.
 
     Notes
     -----
     The formulas of :class:`FreeMotion`; see docs/exact.md.
     """
-    if out is None and want is BOTH and threads is None:
+    if out is None and want is BOTH and threads is None and errors == "raise" and not progress:
         motion = _core._free_motion_of_one(inertia, omega, attitude, t)
         if motion is not None:
             return motion
-    workers = check_threads(threads)
+    workers, refuse, report = check_threads(threads), check_errors(errors), reporter(progress)
     speeds, attitudes = to_rows(omega, "omega", 3), to_attitudes(attitude, 3)
     times = to_rows(t, "t", None)
     common, own = _split(inertia)
 
     def kernel(*arguments: Any) -> int:
-        return _core._free_motion(*(*common, *arguments, workers))
+        return _core._free_motion(*(*common, *arguments, workers, refuse, report))
 
-    return evaluate([*own, (speeds, 1), (attitudes, 1)], times, out, want, kernel)
+    return evaluate([*own, (speeds, 1), (attitudes, 1)], times, out, want, kernel, refuse)
 
 
 def gyrostat(
@@ -100,6 +108,8 @@ def gyrostat(
     out: Any = None,
     want: str | Sequence[str] = ("omega", "attitude"),
     threads: int | None = None,
+    errors: str = "raise",
+    progress: bool | Report | None = None,
 ) -> Any:
     """Compute the torque-free motion of many gyrostats at many times; all arguments broadcast.
 
@@ -115,7 +125,7 @@ def gyrostat(
         Attitude at t = 0, body to space, unit, (x, y, z, w).
     t : array_like, shape (...)
         Times [s]. Bodies (B, 1) and times (T,) give the full grid (B, T), each body set up once.
-    out, want, threads
+    out, want, threads, errors, progress
         As for :func:`free_motion`.
 
     Returns
@@ -135,22 +145,23 @@ def gyrostat(
     Warns
     -----
     RuntimeWarning
-        Once, with their count, when rows came out NaN because their input is not finite.
+        Once, with their count, when rows came out NaN because their input is not finite, or with errors="nan" because
+        the motion is refused.
 
     Notes
     -----
     The formulas of :class:`Gyrostat`; see docs/gyrostat.md.
     """
-    workers = check_threads(threads)
+    workers, refuse, report = check_threads(threads), check_errors(errors), reporter(progress)
     speeds, attitudes = to_rows(omega, "omega", 3), to_attitudes(attitude, 3)
     times = to_rows(t, "t", None)
     rotors = to_rows(momentum, "momentum", 3)
     common, own = _split(inertia)
 
     def kernel(*arguments: Any) -> int:
-        return _core._gyrostat(*(*common, *arguments, workers))
+        return _core._gyrostat(*(*common, *arguments, workers, refuse, report))
 
-    return evaluate([*own, (rotors, 1), (speeds, 1), (attitudes, 1)], times, out, want, kernel)
+    return evaluate([*own, (rotors, 1), (speeds, 1), (attitudes, 1)], times, out, want, kernel, refuse)
 
 
 def heavy_top(
@@ -163,6 +174,8 @@ def heavy_top(
     out: Any = None,
     want: str | Sequence[str] = ("omega", "attitude"),
     threads: int | None = None,
+    errors: str = "raise",
+    progress: bool | Report | None = None,
 ) -> Any:
     """Compute the motion of many of Lagrange's tops at many times; all arguments broadcast.
 
@@ -179,7 +192,7 @@ def heavy_top(
         Attitude at t = 0, body to space, unit, (x, y, z, w).
     t : array_like, shape (...)
         Times [s]. Tops (B, 1) and times (T,) give the full grid (B, T), each top set up once.
-    out, want, threads
+    out, want, threads, errors, progress
         As for :func:`free_motion`.
 
     Returns
@@ -199,13 +212,14 @@ def heavy_top(
     Warns
     -----
     RuntimeWarning
-        Once, with their count, when rows came out NaN because their input is not finite.
+        Once, with their count, when rows came out NaN because their input is not finite, or with errors="nan" because
+        the motion is refused.
 
     Notes
     -----
     The formulas of :class:`HeavyTop`; see docs/heavy_top.md.
     """
-    workers = check_threads(threads)
+    workers, refuse, report = check_threads(threads), check_errors(errors), reporter(progress)
     speeds, attitudes = to_rows(omega, "omega", 3), to_attitudes(attitude, 3)
     times = to_rows(t, "t", None)
     arms = to_rows(weight_arm, "weight_arm", None)
@@ -213,6 +227,6 @@ def heavy_top(
     common, own = _split(inertia)
 
     def kernel(*arguments: Any) -> int:
-        return _core._heavy_top(*(*common, *arguments, workers))
+        return _core._heavy_top(*(*common, *arguments, workers, refuse, report))
 
-    return evaluate([*own, (arms, 0), (speeds, 1), (attitudes, 1)], times, out, want, kernel)
+    return evaluate([*own, (arms, 0), (speeds, 1), (attitudes, 1)], times, out, want, kernel, refuse)

@@ -14,7 +14,7 @@ from .._keywords import checked
 from .._scene.scene import Scene
 from .._solve.motion import Floats
 from .._solve.solve import check_max_steps
-from .broadcast import WIDTHS, check_threads, to_attitudes, to_rows
+from .broadcast import WIDTHS, check_errors, check_threads, to_attitudes, to_rows
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +39,8 @@ class Motions:
         True if a body reached its end with the requested accuracy, as in `Motion.success`.
     lanes : ndarray of bool, shape (bodies,)
         True if a body was integrated in SIMD lanes together with others, False if by `solve`.
+    refused : ndarray of bool, shape (bodies,)
+        With errors="nan": True for a start that no body can have. Its samples are NaN, and its message says why.
     """
 
     omega: Floats | None
@@ -51,6 +53,7 @@ class Motions:
     steps: npt.NDArray[np.int64]
     success: npt.NDArray[np.bool_]
     lanes: npt.NDArray[np.bool_]
+    refused: npt.NDArray[np.bool_]
 
     def __repr__(self) -> str:
         return (f"Motions({len(self.status)} bodies, {int(self.success.sum())} with success, "
@@ -78,6 +81,7 @@ def solve_many(
     step: float | None = None,
     max_steps: int = 10_000_000,
     threads: int | None = None,
+    errors: str = "raise",
 ) -> Motions:
     """Solve many scenes, or one scene from many starts.
 
@@ -101,6 +105,8 @@ def solve_many(
     threads : int, optional
         The number of threads; by default all of the machine. The result of a body has the same bits for any number of
         threads and with any other bodies.
+    errors : {"raise", "nan"}
+        With "nan" a start that no body can have fails alone: see `Motions.refused`. Options are refused all the same.
 
     Returns
     -------
@@ -110,7 +116,7 @@ def solve_many(
     Raises
     ------
     InvalidInput
-        For everything that `solve` refuses, with the number of the body.
+        For everything that `solve` refuses, with the number of the body. See `errors` for impossible starts.
     """
     starts: tuple[Floats | None, Floats | None, Floats | None] = (None, None, None)
     if isinstance(scenes, Scene):
@@ -140,11 +146,12 @@ def solve_many(
                 raise _core.InvalidInput(f"scenes[{i}]: must be a polhode.Scene, got {type(scene).__name__}")
             if scene.times.size != listed[0].times.size or scene.want != listed[0].want:
                 raise _core.InvalidInput(f"scenes[{i}]: must have as many times as scenes[0] and the same want")
-    workers = check_threads(threads)
+    workers, refuse = check_threads(threads), check_errors(errors)
     times = listed[0].times.size if listed else 0
     want = listed[0].want if listed else ("omega", "attitude")
     out = {name: np.empty((bodies, times, width)) if name in want else None for name, width in WIDTHS.items()}
     options = {"accuracy": accuracy, "method": method, "rtol": rtol, "atol": atol, "step": step,
                "max_steps": check_max_steps(max_steps)}
-    found = _core._solve_many(listed, *starts, bodies, times, out["omega"], out["attitude"], options, workers)
+    found = _core._solve_many(listed, *starts, bodies, times, out["omega"], out["attitude"], options, workers,
+                               refuse)
     return Motions(omega=out["omega"], attitude=out["attitude"], **found)

@@ -29,7 +29,7 @@ enum class Distribution {
   uniform,           ///< (low, high)
   normal,            ///< (mean, standard deviation)
   log_uniform,       ///< (low, high), both positive: the logarithm is uniform
-  truncated_normal,  ///< (mean, standard deviation, low, high): the normal distribution between bounds, which may be inf
+  truncated_normal,  ///< (mean, standard deviation, low, high): between bounds, which may be inf
   sphere,            ///< no parameters: a unit vector
   attitude,          ///< no parameters: a unit quaternion (x, y, z, w), uniform on the rotations
   turn,              ///< one row of three standard deviations [rad]: the quaternion of a rotation vector drawn normal

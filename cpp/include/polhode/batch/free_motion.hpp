@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 
 #include "polhode/inertia/inertia_tensor.hpp"
@@ -15,7 +16,8 @@ struct FreeMotionBatch {
   const double* t = nullptr;         ///< (times) for all bodies, or (bodies, times) with own_times [s]
   bool own_times = false;
   const InertiaTensor* tensor = nullptr;  ///< of all bodies, in any body axes; then `moments` is null
-  bool refuse = true;  ///< otherwise the rows of a body that is refused become NaN
+  bool refuse = true;   ///< otherwise the rows of a body that is refused become NaN
+  std::atomic<std::size_t>* done = nullptr;  ///< grows by the number of states that are done; may be null
 };
 
 /// Writes omega (bodies, times, 3) and attitude (bodies, times, 4); either may be null. The bits of the result do not

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 
 #include "polhode/inertia/inertia_tensor.hpp"
@@ -16,13 +17,15 @@ struct HeavyTopBatch {
   const double* t = nullptr;           ///< (times) for all bodies, or (bodies, times) with own_times [s]
   bool own_times = false;
   const InertiaTensor* tensor = nullptr;  ///< of all tops, about the pivot, in any body axes; then `moments` is null
+  bool refuse = true;   ///< otherwise the rows of a body that is refused become NaN
+  std::atomic<std::size_t>* done = nullptr;  ///< grows by the number of states that are done; may be null
 };
 
 /// Writes omega (bodies, times, 3) and attitude (bodies, times, 4); either may be null. The bits of the result do not
 /// depend on the number of threads (0: chosen by the machine and the amount of work).
 ///
 /// A row with an input that is not finite becomes NaN; returns the number of such rows. Throws InvalidInput, with the
-/// number of the body, for what HeavyTop refuses.
+/// number of the body, for what HeavyTop refuses, unless `refuse` is false.
 std::size_t heavy_top(const HeavyTopBatch& batch, double* omega, double* attitude, int threads = 0);
 
 }  // namespace polhode

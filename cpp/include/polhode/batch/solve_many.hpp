@@ -19,6 +19,7 @@ struct ManyResult {
   long steps = 0;
   bool success = false;
   bool lanes = false;         ///< stepped in a lane beside other bodies, not alone
+  bool refused = false;       ///< no motion, as the body is not one; `message` says why
 };
 
 /// Makes the scene of a body. It is called from several threads at once.
@@ -34,8 +35,10 @@ using MakeScene = std::function<Scene(std::size_t body)>;
 /// Writes omega (n, times, 3) and attitude (n, times, 4); either may be null. Rows that were not reached are NaN. A run
 /// that fails does not affect the other bodies. `options.progress` gets the number of bodies done and n; it stops the
 /// batch by returning false.
+/// @param refuse  false: where make_scene throws InvalidInput, the rows of the body become NaN; its status is "failed"
 /// @throws InvalidInput, with the number of the body, for what solve() refuses
 std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeScene& make_scene,
-                                   const SolveOptions& options, double* omega, double* attitude, int threads = 0);
+                                   const SolveOptions& options, double* omega, double* attitude, int threads = 0,
+                                   bool refuse = true);
 
 }  // namespace polhode

@@ -28,8 +28,9 @@ struct SummaryQuantity {
 };
 
 /// Sums over the bodies of an ensemble at `times` times. Bodies are numbered. 4096 of them are a block, added up in the
-/// order of their numbers; blocks are combined by a binary tree on the number of the block. So the bits depend neither on
-/// the number of threads, nor on the cut of the ensemble, nor on the order of merging.
+/// order of their numbers; blocks are combined by a binary tree on the number of the block. So the bits depend neither
+/// on the number of threads, nor on the cut of the ensemble, nor on the order of merging. After an exception of
+/// `add_free` or `add_states` a summary is of no use.
 class Summary {
  public:
   static constexpr std::size_t block = 4096;
@@ -38,13 +39,13 @@ class Summary {
   /// Throws InvalidInput for references that are not unit, or not one a time.
   Summary(std::vector<SummaryQuantity> quantities, std::size_t times);
 
-  /// Bodies first, first + 1, ... in free motion. Their states are computed and used in the cache. `batch.times` must be
-  /// those of the summary, finite, and the same for all bodies. A body that has no motion is counted as failed.
+  /// Bodies first, first + 1, ... in free motion. Their states are computed and used in the cache. There must be as
+  /// many times as the summary has, finite, and the same for all bodies. A body without a motion is counted as failed.
   void add_free(std::uint64_t first, const FreeMotionBatch& batch, int threads = 0);
 
-  /// States of n bodies: omega (n, times, 3), attitude (n, times, 4), tensors (n, 6) as xx, yy, zz, xy, xz, yz, or (6) of
-  /// all with `one_tensor`, values (n, times, number of value quantities). What no quantity needs may be null. Rows that
-  /// are not finite are left out, and their bodies counted as failed.
+  /// States of n bodies: omega (n, times, 3), attitude (n, times, 4), tensors (n, 6) as xx, yy, zz, xy, xz, yz, or (6)
+  /// of all with `one_tensor`, values (n, times, number of value quantities). What no quantity needs may be null. Rows
+  /// that are not finite are left out, and their bodies counted as failed.
   struct States {
     std::size_t bodies = 0;
     const double *omega = nullptr, *attitude = nullptr, *tensors = nullptr, *values = nullptr;
@@ -55,7 +56,7 @@ class Summary {
   /// Adds the bodies of another summary of the same quantities. Throws InvalidInput if both have one of the blocks.
   void merge(const Summary& other);
 
-  /// The sums at each time; sums and sum2 of `value`s that are left out are those of the others.
+  /// The sums at each time.
   struct Scalar {
     std::vector<double> count, sum, sum2, least, largest;   ///< (times)
     std::vector<std::uint32_t> histogram;                   ///< (times, bins)
@@ -106,10 +107,10 @@ class Summary {
   bool started_ = false;
 };
 
-/// The mean attitude (x, y, z, w) and the spread [rad] of second moments xx xy xz xw yy yz yw zz zw ww of quaternions: the
-/// eigenvector of the largest eigenvalue (Markley, Cheng, Crassidis & Oshman 2007, J. Guidance 30, 1193), and
-/// 2 asin sqrt(1 - that eigenvalue / trace), which for small angles is their rms about the mean. The sign of the
-/// quaternion is that of a positive last component that is not 0.
+/// The mean attitude (x, y, z, w) and the spread [rad] of second moments xx xy xz xw yy yz yw zz zw ww of quaternions:
+/// the eigenvector of the largest eigenvalue (Markley, Cheng, Crassidis & Oshman 2007, J. Guidance 30, 1193), and
+/// 2 asin sqrt(1 - that eigenvalue / trace), which for small angles is their rms about the mean. The quaternion's last
+/// component that is not 0 is positive.
 struct MeanAttitude {
   std::array<double, 4> attitude;
   double spread;

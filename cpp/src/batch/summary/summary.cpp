@@ -24,7 +24,8 @@ using summary::Layout, summary::Reducer;
 void complete(SummaryQuantity& q, std::size_t times, std::size_t index) {
   const std::string name = "quantities[" + std::to_string(index) + "]";
   constexpr int ranges[][2] = {{-58, 2}, {-58, 2}, {-40, 20}, {-60, 40}, {-40, 20}, {0, 0}};
-  if (q.first == 0 && q.last == 0) q.first = ranges[static_cast<int>(q.of)][0], q.last = ranges[static_cast<int>(q.of)][1];
+  const int* range = ranges[static_cast<int>(q.of)];
+  if (q.first == 0 && q.last == 0) q.first = range[0], q.last = range[1];
   if (q.of != Of::attitude && !(q.first < q.last && q.first >= -1000 && q.last <= 1000))
     throw InvalidInput(name, "least < largest for its histogram, within 2^-1000 and 2^1000",
                        "2^" + std::to_string(q.first) + ", 2^" + std::to_string(q.last));
@@ -40,7 +41,8 @@ void complete(SummaryQuantity& q, std::size_t times, std::size_t index) {
     if (!(std::abs(square - 1.0) <= 2e-6)) throw InvalidInput(name, what, "norm " + to_text(std::sqrt(square)));
   };
   for (std::size_t i = 0; i < q.reference.size(); i += width)
-    require_unit(q.reference.data() + i, width, width == 4 ? "a unit quaternion as nominal" : "a unit vector as target");
+    require_unit(q.reference.data() + i, width,
+                 width == 4 ? "a unit quaternion as nominal" : "a unit vector as target");
   if (q.of == Of::axis_angle) require_unit(q.axis.data(), 3, "a unit vector as axis");
 }
 

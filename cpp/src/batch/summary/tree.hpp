@@ -8,9 +8,9 @@
 
 #include "polhode/core/error.hpp"
 
-// A binary tree on the numbers of blocks: node (level, start) holds the sums of 2^level blocks from `start` on, a multiple
-// of 2^level. Two complete siblings become their parent, the left one added first. So the sums of a set of blocks have the
-// same bits in whatever order the blocks came.
+// A binary tree on the numbers of blocks: node (level, start) holds the sums of 2^level blocks from `start` on, a
+// multiple of 2^level. Two complete siblings become their parent. So the sums of a set of blocks have the same bits in
+// whatever order the blocks came.
 namespace polhode::summary {
 
 inline std::uint64_t length_of(int level) { return std::uint64_t{1} << level; }
