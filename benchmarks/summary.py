@@ -58,6 +58,11 @@ def main():
         for k in range(times.size):
             np.bincount(bins[:, k], minlength=258)
 
+    def whole(**options):
+        whole_out = (np.empty((4096, times.size, 3)), np.empty((4096, times.size, 4)))
+        arrays = [a[:4096, None] for a in (moments, omega, attitude)]
+        return lambda: ph.free_motion(*arrays, times, out=whole_out, threads=1, **options)
+
     angle = {"of": "angle", "nominal": nominal}
     axis = {"of": "axis_angle", "axis": (0, 0, 1), "target": (0, 0, 1)}
     found = measure({
@@ -68,10 +73,18 @@ def main():
         "angle, axis_angle, omega, energy": summary(angle, axis, {"of": "omega"}, {"of": "energy"}),
         "angle in NumPy": lambda: blocks(numpy_angle)}, given.rounds)
     alone = found["states alone, into arrays"]
+    calls = measure({"free_motion": whole(), "with progress": whole(progress=lambda *_: None)}, given.rounds)
     print(f"{n} bodies at {times.size} times, one thread, level {_core.build_info()['simd']}\n")
     print("| what | ns a state | times the states alone |\n|---|---|---|")
     for name, seconds in found.items():
         print(f"| {name} | {seconds / (n * times.size) * 1e9:.1f} | {seconds / alone:.2f} |")
+    plain, reported = calls.values()
+    print(f"\nfree_motion of 4096 bodies: {plain * 1e3:.1f} ms, with progress {reported * 1e3:.1f} ms "
+          f"({reported / plain:.3f})")
+    for kind, parameters in (("uniform", [[0, 1]]), ("normal", [[0, 1]]), ("truncated_normal", [[0, 1, -2, 2]]),
+                             ("log_uniform", [[1, 2]]), ("sphere", np.empty((0, 0))), ("attitude", np.empty((0, 0)))):
+        cost = measure({kind: lambda kind=kind, rows=parameters: _core._draw(kind, 1, "x", 0, n, rows)}, given.rounds)
+        print(f"draw {kind}: {cost[kind] / n * 1e9:.0f} ns a body")
 
 
 if __name__ == "__main__":
