@@ -38,6 +38,7 @@ PYBIND11_MODULE(_core, m, pybind11::mod_gil_not_used()) {
   bind_ode(m);
   bind_scene(m);
   bind_solve(m);
+  bind_solve_sensitivity(m);
   bind_batch(m);
   bind_batch_draw(m);
   bind_batch_summary(m);

@@ -1278,6 +1278,10 @@ def require_kept(array: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     """
 def rotor_speed(arg0: Scene, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
     ...
+def sensitivity(scene: Scene, groups: collections.abc.Sequence[str], accuracy: typing.SupportsFloat | typing.SupportsIndex, side: str, max_steps: typing.SupportsInt | typing.SupportsIndex) -> tuple[typing.Any, ...]:
+    """
+    omega, attitude, their derivatives, the names of the columns, their errors, the steps and the runs.
+    """
 def shape_records() -> list[typing.Any]:
     """
     (name, doc, ((parameter, size, doc), ...)) of every shape.

@@ -47,7 +47,8 @@ class Sensitivity:
 
     Notes
     -----
-    The size of a column is the larger of abs(d omega) / abs(omega(0)) and the angle of the small rotation.
+    The size of a column is the larger of abs(d omega) / abs(omega(0)) and the angle of the small rotation. Where the
+    motion was integrated, the largest abs(omega) of start and samples stands in the place of abs(omega(0)).
     """
 
     omega: Array

@@ -17,6 +17,8 @@ from .plan import Plan
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from .._sensitivity.sensitivity import Sensitivity
+
 Floats = npt.NDArray[np.float64]
 
 
@@ -73,6 +75,8 @@ class Motion:
         Of a proof: the same for the unit quaternion, of the sign of `attitude`.
     proved_span : tuple of float, or None
         Of a proof: the times between which every sample has the accuracy [s].
+    sensitivity : Sensitivity, or None
+        The derivatives of the motion at the scene's times, where `solve` was asked for them. See docs/sensitivity.md.
     """
 
     t: Floats
@@ -90,6 +94,7 @@ class Motion:
     attitude_upper: Floats | None
     proved_span: tuple[float, float] | None
     events: tuple[EventHit, ...]
+    sensitivity: Sensitivity | None = None
 
     def __init__(self, scene: Scene, answer: _core.Answer, options: dict[str, Any] | None = None) -> None:
         self.scene = scene

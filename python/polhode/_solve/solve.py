@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -12,6 +12,7 @@ import numpy.typing as npt
 from .. import _core
 from .._keywords import checked
 from .._scene.scene import Scene
+from .._sensitivity.driven import differentiate
 from .costs import factors
 from .motion import Floats, Motion
 from .plan import Plan
@@ -95,6 +96,8 @@ def solve(
     formulation: str = "euler",
     events: Iterable[Any] = (),
     progress: Callable[[float, float], object] | None = None,
+    sensitivity: str | Sequence[str] | None = None,
+    side: str = "space",
 ) -> Motion:
     """Compute the rotational motion of a scene at its sample times.
 
@@ -136,6 +139,13 @@ def solve(
     progress : callable, optional
         ``progress(reached, last)`` is called about twenty times a second. False ends the run, and the samples so far
         are returned.
+    sensitivity : str or sequence of str, optional
+        What to differentiate the motion by, for `motion.sensitivity`: "omega" and "attitude" (the start), "inertia"
+        (principal moments), "axes" (a small rotation of the principal axes in the body), numbers of torques and rotors
+        such as "torques.0.weight", "torques.1.matrix", "torques.0.windows" (the ends of windows), "rotors.0.momentum",
+        or "gravity.weight" where only one is there. Its error is relative to the size of each column.
+    side : {"space", "body"}
+        The axes of small rotations in `motion.sensitivity`.
 
     Returns
     -------
@@ -160,7 +170,14 @@ def solve(
         "max_steps": check_max_steps(max_steps), "dense": bool(dense), "formulation": str(formulation),
         "events": [_event(item) for item in events], "progress": progress, "cost_factors": factors()})
     asked = None if method is None and formulation == "euler" else {"method": method, "formulation": formulation}
-    return Motion(scene, answer, asked)
+    motion = Motion(scene, answer, asked)
+    if sensitivity is not None:
+        for name, given in (("events", events), ("rtol", rtol), ("atol", atol), ("step", step)):
+            if given is not None and given != ():
+                raise _core.InvalidInput(f"{name}: must be left out with sensitivity=, which has an accuracy and all "
+                                         f"times, got {given!r}")
+        motion.sensitivity = differentiate(scene, sensitivity, 1e-9 if accuracy is None else accuracy, side, max_steps)
+    return motion
 
 
 def methods() -> list[dict[str, Any]]:

@@ -77,3 +77,26 @@ TEST_CASE("names of columns are checked") {
   CHECK_THROWS_AS(FreeSensitivity(motion, {}), InvalidInput);
   CHECK_THROWS_AS(FreeSensitivity(motion, {SensitivityTo::time, SensitivityTo::time}), InvalidInput);
 }
+
+TEST_CASE("columns of a free body are differences of the motion") {
+  const Vector3d moments{0.30, 0.40, 0.52}, omega{1, 2, 3};
+  const double t = 2.5, d = 1e-5;
+  const auto at = [&](const Vector3d& J, const Vector3d& w) {
+    return FreeMotion(J, w, sensitive_start).at(t);
+  };
+  double w[3], q[4], d_w[18], d_q[18];
+  const FreeSensitivity columns(FreeMotion(moments, omega, sensitive_start),
+                                {SensitivityTo::omega, SensitivityTo::inertia});
+  columns.at(&t, 1, w, q, d_w, d_q);
+  for (int c = 0; c < 6; ++c) {
+    const Vector3d step = d * Vector3d::Unit(c % 3), none = Vector3d::Zero();
+    const State plus = at(moments + (c < 3 ? none : step), omega + (c < 3 ? step : none));
+    const State minus = at(moments - (c < 3 ? none : step), omega - (c < 3 ? step : none));
+    Quat turned = plus.attitude * conjugate(minus.attitude);
+    const double sign = turned.w < 0 ? -1 : 1, turn[3] = {turned.x, turned.y, turned.z};
+    for (int r = 0; r < 3; ++r) {
+      CHECK(d_w[6 * r + c] == doctest::Approx((plus.omega[r] - minus.omega[r]) / (2 * d)).epsilon(1e-6));
+      CHECK(d_q[6 * r + c] == doctest::Approx(sign * turn[r] / d).epsilon(1e-6));
+    }
+  }
+}

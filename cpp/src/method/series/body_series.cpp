@@ -270,6 +270,15 @@ void BodySeries::measure_error(const double* y, const double* error, double* out
   out[2] = attitude_ ? 2 * std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]) : 0.0;
 }
 
+std::array<Vector3d, 2> BodySeries::see_orbit(DD t, const double* y) const {
+  // n t in double-double, because the error of a rounded angle would grow with the number of orbits.
+  const DD product = math::two_prod(orbit_rate_, t.hi), angle = math::two_sum(product.hi, orbit_phase_);
+  const double low = angle.lo + product.lo + orbit_rate_ * t.lo;
+  const auto [s0, c0] = math::sincos(angle.hi);
+  const double s = s0 + c0 * low, c = c0 - s0 * low;
+  return {to_body(y + 4, {c, s, 0}), to_body(y + 4, {-s, c, 0})};
+}
+
 void BodySeries::compute_series(DD t, double unit, const double* y, const double*, int order, double* rows) const {
   alignas(64) double vectors[16] = {};
   int n = 0;
@@ -282,12 +291,7 @@ void BodySeries::compute_series(DD t, double unit, const double* y, const double
     }
   }
   if (terms_.gradient) {
-    // n t in double-double, because the error of a rounded angle would grow with the number of orbits.
-    const DD product = math::two_prod(orbit_rate_, t.hi), angle = math::two_sum(product.hi, orbit_phase_);
-    const double low = angle.lo + product.lo + orbit_rate_ * t.lo;
-    const auto [s0, c0] = math::sincos(angle.hi);
-    const double s = s0 + c0 * low, c = c0 - s0 * low;
-    const Vector3d radius = to_body(y + 4, {c, s, 0}), tangent = to_body(y + 4, {-s, c, 0});
+    const auto [radius, tangent] = see_orbit(t, y);
     std::copy_n(radius.data(), 3, vectors + 4 * n);
     std::copy_n(tangent.data(), 3, vectors + 4 * (n + 1));
   }
@@ -357,6 +361,14 @@ SeriesKernel find_series_kernel(const SeriesTerms& terms, bool attitude) {
   if (level == SimdLevel::avx512) found = avx512_series_kernel(terms, attitude);
   if (found == nullptr && level != SimdLevel::baseline) found = avx2_series_kernel(terms, attitude);
   return found != nullptr ? found : baseline_series_kernel(terms, attitude);
+}
+
+const ColumnKernels& find_column_kernels() {
+  const ColumnKernels* found = nullptr;
+  const SimdLevel level = simd_level();
+  if (level == SimdLevel::avx512) found = avx512_column_kernels();
+  if (found == nullptr && level != SimdLevel::baseline) found = avx2_column_kernels();
+  return found != nullptr ? *found : *baseline_column_kernels();
 }
 
 }  // namespace polhode

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -34,6 +35,9 @@ class BodySeries {
   /// A fixed vector in space axes, numbered as in terms().
   const Vector3d& fixed_vector(int i) const { return space_[i]; }
   double orbit_phase() const { return orbit_phase_; }
+  const Matrix3d& axes() const { return R_BP_; }
+  bool is_rotated() const { return rotated_; }     ///< axes() is not the identity
+  const Vector3d& moments() const { return I_; }   ///< about the axes P
   /// True for a free body in separatrix variables, which conserves u v and balance (u^2 + v^2) + w2^2.
   bool keeps_balance() const { return free_; }
   double balance() const { return balance_; }
@@ -56,6 +60,15 @@ class BodySeries {
   /// For a state and its small error: |w|, the error of w, and the error of the attitude as an angle.
   void measure_error(const double* y, const double* error, double* out) const;
 
+  /// The rates in P of a state, or their part in one row of a series.
+  void compute_rates(const double* r, double* omega_P) const {
+    const bool plain = terms_.variables == RateVariables::plain;
+    const double w1 = plain ? r[0] : (r[1] - r[0]) * terms_.to_rates[0], w2 = plain ? r[1] : r[2];
+    omega_P[2] = plain ? r[2] : (r[0] + r[1]) * 0.5;
+    omega_P[0] = w1, omega_P[1] = w2;
+  }
+  /// The radial direction of the orbit and its tangent in P, for a state with the quaternion.
+  std::array<Vector3d, 2> see_orbit(math::DD t, const double* y) const;
   void compute_series(math::DD t, double unit, const double* y, const double* carry, int order, double* rows) const;
   void compute_sizes(const double* row, double* sizes) const {
     double w[3];
@@ -80,12 +93,6 @@ class BodySeries {
   void add_acceleration(double* column, const Vector3d& a) const;
   void correct_rates(double* y, double* carry) const;
   static void keep_unit(double* y, double* carry);
-  void compute_rates(const double* r, double* omega_P) const {
-    const bool plain = terms_.variables == RateVariables::plain;
-    const double w1 = plain ? r[0] : (r[1] - r[0]) * terms_.to_rates[0], w2 = plain ? r[1] : r[2];
-    omega_P[2] = plain ? r[2] : (r[0] + r[1]) * 0.5;
-    omega_P[0] = w1, omega_P[1] = w2;
-  }
 
   Matrix3d R_BP_ = Matrix3d::Identity();
   Quat q_PB_ = {};

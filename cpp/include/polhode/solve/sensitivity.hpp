@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "polhode/exact/free_sensitivity.hpp"
+#include "polhode/scene/scene.hpp"
+
+namespace polhode {
+
+struct SensitivityOptions {
+  double accuracy = 1e-9;             ///< of each column relative to its size, 0 < accuracy <= 1
+  TurnSide side = TurnSide::space;    ///< of the small rotations, those of the start included
+  long max_steps = 10'000'000;        ///< of one run
+};
+
+/// The motion of a scene and its derivatives at the scene's times, row by row in their order.
+struct MotionSensitivity {
+  std::vector<std::string> columns;   ///< their names
+  std::vector<double> omega, attitude;        ///< (n, 3) in body axes and (n, 4)
+  std::vector<double> d_omega, d_attitude;    ///< (n, 3, columns)
+  /// The error of each column relative to its size, the largest of all samples: four times the difference of the last
+  /// two runs, and 4e-15 for each turn, of what both round alike.
+  /// The size of a column in a sample is the larger of |d omega| / (largest |omega|) and the angle of the rotation.
+  std::vector<double> error;
+  long steps = 0;                     ///< of all runs
+  int runs = 0;
+};
+
+/// Differentiates a motion with respect to numbers of its scene, by its variational equations in Taylor series.
+///
+/// The columns are integrated beside the state, with the state's series and steps. Windows of torques and rotors cut
+/// the span, and the columns of a window's ends start with the jump of the derivative there. A second run, with a
+/// smaller tolerance, gives the result and measures the error. It is repeated until the error is below the accuracy, or
+/// until float64 allows no smaller one.
+/// @param groups  names as for find_parameters (polhode/scene/parameter.hpp), each once
+/// @throws InvalidInput for unknown names, a torque without a formula, gravity gradients of two orbits, or an accuracy
+///         out of range
+/// @throws IntegrationFailure if a run does not reach its end
+MotionSensitivity compute_sensitivity(const Scene& scene, const std::vector<std::string>& groups,
+                                      const SensitivityOptions& options = {});
+
+}  // namespace polhode

@@ -1,0 +1,264 @@
+#include "method/series/column_series.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "method/series/lanes/levels.hpp"
+
+namespace polhode {
+namespace {
+
+using math::DD;
+using Source = ForceSource;
+
+/// Row by row (v2, v3, v1), or (v3, v1, v2).
+void turn_rows(const VectorRows& v, int by, int order, VectorRows& out) {
+  for (int k = 0; k <= order; ++k) {
+    for (int i = 0; i < 3; ++i) out[k][i] = v[k][(i + by) % 3];
+    out[k][3] = 0.0;
+  }
+}
+
+}  // namespace
+
+ColumnSeries::ColumnSeries(const Scene& piece, const std::vector<ColumnCause>& causes,
+                           const std::vector<double>& columns)
+    : body_(piece, true),
+      terms_(make_column_terms(piece, body_.axes(), body_.moments(), causes)),
+      kernels_(find_column_kernels()),
+      count_(causes.size()) {
+  const Source axes[3] = {Source::space_x, Source::space_y, Source::space_z};
+  for (int c = 0; c < 3; ++c) sees_space_[c] = terms_.space[c] != 0.0 || terms_.uses(axes[c]);
+  sees_space_[2] = sees_space_[2] || !terms_.moment.isZero(0.0);
+  sees_orbit_ = terms_.orbit_rate != 0.0;
+  const std::size_t groups = (count_ + 7) / 8;
+  arrived_.resize(groups), start_.resize(groups), series_.resize(groups), forces_.resize(groups);
+  const Matrix3d R_PB = body_.axes().transpose();
+  for (std::size_t c = 0; c < count_; ++c) {
+    for (std::size_t half = 0; half < 6; half += 3) {
+      const Vector3d v = R_PB * Vector3d(columns[half * count_ + c], columns[(half + 1) * count_ + c],
+                                         columns[(half + 2) * count_ + c]);
+      for (int i = 0; i < 3; ++i) arrived_[c / 8].high[half + static_cast<std::size_t>(i)][c % 8] = v[i];
+    }
+  }
+  for (const ColumnTerms::Force& force : terms_.forces) {
+    auto& own = forces_[static_cast<std::size_t>(force.column) / 8];
+    const double* first = &source(force.source)[0][force.part];
+    auto found = std::find_if(own.begin(), own.end(), [&](const ColumnForce& other) {
+      return other.first == first && other.component == force.component;
+    });
+    if (found == own.end()) found = own.insert(own.end(), ColumnForce{{}, first, force.component});
+    found->parts[force.column % 8] += force.factor;
+  }
+}
+
+void ColumnSeries::compute_series(DD t, double unit, const double* y, const double* carry, int order,
+                                  double* rows) const {
+  body_.compute_series(t, unit, y, carry, order, rows);
+  rows_ = rows, order_ = order;
+  VectorRows& w = source(Source::rates);
+  for (int k = 0; k <= order; ++k) body_.compute_rates(rows + dimension * k, w[k]);
+  rate_ = std::max({std::abs(w[0][0]), std::abs(w[0][1]), std::abs(w[0][2]), 1.0 / unit});
+  see_vectors(t, unit, y, order);
+  find_products(t, unit, order);
+  fill_matrix(order);
+  start_ = arrived_;
+  for (std::size_t g = 0; g < series_.size(); ++g) {
+    for (int i = 0; i < 6; ++i) std::copy_n(start_[g].high[i], 8, series_[g].of[i][0]);
+    kernels_.expand_columns(matrix_, terms_.linear, terms_.pulled, forces_[g].data(),
+                            static_cast<int>(forces_[g].size()), order, unit, series_[g]);
+  }
+}
+
+/// The axes of space that torques need, and the radial direction and the tangent of an orbit.
+void ColumnSeries::see_vectors(DD t, double unit, const double* y, int order) const {
+  VectorRows seen[5];
+  int n = 0;
+  const Quat back{-y[4], -y[5], -y[6], y[7]};
+  for (int c = 0; c < 3; ++c)
+    if (sees_space_[c]) std::copy_n(rotate(back, Vector3d(Vector3d::Unit(c))).data(), 3, seen[n++][0]);
+  if (sees_orbit_) {
+    const std::array<Vector3d, 2> orbit = body_.see_orbit(t, y);
+    for (const Vector3d& v : orbit) std::copy_n(v.data(), 3, seen[n++][0]);
+  }
+  if (n == 0) return;
+  for (int i = 0; i < n; ++i) seen[i][0][3] = 0.0;
+  kernels_.expand_vectors(source(Source::rates), order, unit, sees_orbit_ ? terms_.orbit_rate : 0.0, n, seen);
+  n = 0;
+  const auto copy = [&](VectorRows& to) { std::copy_n(seen[n++][0], 4 * (order + 1), to[0]); };
+  const Source axes[3] = {Source::space_x, Source::space_y, Source::space_z};
+  for (int c = 0; c < 3; ++c)
+    if (sees_space_[c]) copy(source(axes[c]));
+  if (sees_orbit_) copy(radius_), copy(tangent_);
+}
+
+/// The other series that force columns, each only where it is needed.
+void ColumnSeries::find_products(DD t, double unit, int order) const {
+  VectorRows first, second, third, fourth;
+  const VectorRows& w = source(Source::rates);
+  source(Source::one)[0][0] = 1.0;
+  if (sees_orbit_) {
+    const VectorRows& u = radius_;
+    turn_rows(u, 1, order, first), turn_rows(u, 2, order, second);
+    kernels_.multiply(first, second, order, source(Source::radius_pairs));
+    kernels_.multiply(u, u, order, source(Source::radius_squares));
+    if (terms_.uses(Source::turned_pairs) || terms_.uses(Source::timed_pairs)) {
+      turn_rows(tangent_, 1, order, third), turn_rows(tangent_, 2, order, fourth);
+      VectorRows& turned = source(Source::turned_pairs);
+      VectorRows other;
+      kernels_.multiply(first, fourth, order, turned), kernels_.multiply(second, third, order, other);
+      VectorRows& timed = source(Source::timed_pairs);
+      for (int k = 0; k <= order; ++k) {
+        for (int i = 0; i < 3; ++i) {
+          turned[k][i] += other[k][i];
+          timed[k][i] = t.hi * turned[k][i] + (k > 0 ? unit * turned[k - 1][i] : 0.0);
+        }
+      }
+    }
+  }
+  if (!terms_.uses(Source::derivatives) && !terms_.uses(Source::rate_pairs)) return;
+  turn_rows(w, 1, order, first), turn_rows(w, 2, order, second);
+  kernels_.multiply(first, second, order, source(Source::rate_pairs));
+  kernels_.multiply(w, w, order, source(Source::rate_squares));
+  VectorRows& derivatives = source(Source::derivatives);
+  for (int k = 0; k < order; ++k)
+    for (int i = 0; i < 3; ++i) derivatives[k][i] = (k + 1) * w[k + 1][i] / unit;
+}
+
+/// The matrix of the equations. The small rotation turns a vector v that is fixed in space by v x turn. So the torque
+/// -m x g gives (m.g) turn - g (m.turn), a torque f that is constant in space gives f x turn, and a gradient with the
+/// torque c1 u2 u3 gives c1 ((u3^2 - u2^2) turn1 + u1 u2 turn2 - u1 u3 turn3), and so on.
+void ColumnSeries::fill_matrix(int order) const {
+  const double* p = terms_.product;
+  const VectorRows& w = source(Source::rates);
+  for (int n = 0; n <= order; ++n) {
+    const double a = w[n][0], b = w[n][1], c = w[n][2];
+    matrix_[n] = {{p[0] * c, p[0] * b, p[1] * a, p[1] * c, p[2] * b, p[2] * a}, {c, -b, a, -c, b, -a}, {}};
+    if (!terms_.pulled) continue;
+    double M[3][3] = {};
+    if (!terms_.moment.isZero(0.0)) {
+      const double* g = source(Source::space_z)[n];
+      const Vector3d& m = terms_.moment;
+      const double along = m[0] * g[0] + m[1] * g[1] + m[2] * g[2];
+      for (int i = 0; i < 3; ++i) {
+        M[i][i] += along;
+        for (int j = 0; j < 3; ++j) M[i][j] -= g[i] * m[j];
+      }
+    }
+    const Source axes[3] = {Source::space_x, Source::space_y, Source::space_z};
+    for (int s = 0; s < 3; ++s) {
+      if (terms_.space[s] == 0.0) continue;
+      for (int i = 0; i < 3; ++i) {
+        const double f = terms_.space[s] * source(axes[s])[n][i];
+        const int j = next_axis(i), k = next_axis(j);
+        M[k][j] += f, M[j][k] -= f;
+      }
+    }
+    if (sees_orbit_) {
+      const double *squares = source(Source::radius_squares)[n], *pairs = source(Source::radius_pairs)[n];
+      for (int i = 0; i < 3; ++i) {
+        const int j = next_axis(i), k = next_axis(j);
+        M[i][i] += terms_.tidal[i] * (squares[k] - squares[j]);
+        M[i][j] += terms_.tidal[i] * pairs[k], M[i][k] -= terms_.tidal[i] * pairs[j];
+      }
+    }
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) matrix_[n].pull[3 * i + j] = M[i][j] * terms_.inverse[i];
+  }
+}
+
+void ColumnSeries::compute_sizes(const double* row, double* sizes) const {
+  body_.compute_sizes(row, sizes);
+  const auto k = static_cast<int>((row - rows_) / dimension);
+  sizes[2] = k < 3 ? 1.0 : measure(k);
+}
+
+/// The largest size of a row of a column relative to that of its first three rows.
+double ColumnSeries::measure(int row) const {
+  double largest = 0.0;
+  const auto size = [&](const ColumnRows& rows, int k, std::size_t lane) {
+    double parts[6];
+    for (int i = 0; i < 6; ++i) parts[i] = std::abs(rows.of[i][k][lane]);
+    return std::max(std::max({parts[0], parts[1], parts[2]}) / rate_, std::max({parts[3], parts[4], parts[5]})) +
+           0.0 * (parts[0] + parts[1] + parts[2] + parts[3] + parts[4] + parts[5]);   // NaN if one is
+  };
+  for (std::size_t c = 0; c < count_; ++c) {
+    const ColumnRows& rows = series_[c / 8];
+    const double first = std::max({size(rows, 0, c % 8), size(rows, 1, c % 8), size(rows, 2, c % 8)});
+    const double ratio = size(rows, row, c % 8) / (first > 0.0 ? first : 1.0);
+    if (!(ratio <= largest)) largest = ratio;
+  }
+  return largest;
+}
+
+void ColumnSeries::advance(double s) {
+  for (std::size_t g = 0; g < series_.size(); ++g) {
+    for (int i = 0; i < 6; ++i) {
+      static constexpr double zero[8] = {};
+      alignas(64) double increment[8];
+      ode::series_kernels().evaluate(series_[g].of[i][0], order_, zero, start_[g].low[i], &s, 1, increment);
+      for (int lane = 0; lane < 8; ++lane) {
+        const DD sum = math::two_sum(start_[g].high[i][lane], increment[lane]);
+        arrived_[g].high[i][lane] = sum.hi, arrived_[g].low[i][lane] = sum.lo;
+      }
+    }
+  }
+}
+
+/// Six numbers of the columns of one group from P to body axes; `out` has a row of `count_` for each number.
+void ColumnSeries::to_body(std::size_t group, const double (*column)[8], double* out) const {
+  const Matrix3d& R = body_.axes();
+  const std::size_t lanes = std::min<std::size_t>(8, count_ - 8 * group);
+  if (!body_.is_rotated()) {
+    for (std::size_t i = 0; i < 6; ++i) std::copy_n(column[i], lanes, out + i * count_ + 8 * group);
+    return;
+  }
+  for (int i = 0; i < 6; ++i) {
+    const double(*v)[8] = column + (i < 3 ? 0 : 3);
+    for (std::size_t c = 0; c < lanes; ++c)
+      out[static_cast<std::size_t>(i) * count_ + 8 * group + c] =
+          R(i % 3, 0) * v[0][c] + R(i % 3, 1) * v[1][c] + R(i % 3, 2) * v[2][c];
+  }
+}
+
+void ColumnSeries::evaluate(const double* s, std::size_t n, double* out) const {
+  constexpr std::size_t most = 16;   // at once
+  alignas(64) double values[6][most][8], column[6][8];
+  for (std::size_t begin = 0; begin < n; begin += most) {
+    const std::size_t count = std::min(most, n - begin);
+    for (std::size_t g = 0; g < series_.size(); ++g) {
+      for (int i = 0; i < 6; ++i)
+        ode::series_kernels().evaluate(series_[g].of[i][0], order_, start_[g].high[i], start_[g].low[i], s + begin,
+                                       count, values[i][0]);
+      for (std::size_t k = 0; k < count; ++k) {
+        for (int i = 0; i < 6; ++i) std::copy_n(values[i][k], 8, column[i]);
+        to_body(g, column, out + 6 * count_ * (begin + k));
+      }
+    }
+  }
+}
+
+std::vector<double> ColumnSeries::columns() const {
+  std::vector<double> out(6 * count_);
+  for (std::size_t g = 0; g < arrived_.size(); ++g) to_body(g, arrived_[g].high, out.data());
+  return out;
+}
+
+ode::StepResult ColumnStepper::advance(double t_end) {
+  const ode::StepResult result = Base::advance(t_end);
+  if (result == ode::StepResult::accepted)
+    series_.advance(((time_.hi - time_old_.hi) + (time_.lo - time_old_.lo)) / unit_old_);
+  return result;
+}
+
+void ColumnStepper::columns_at(const double* times, std::size_t n, double* out) const {
+  constexpr std::size_t most = 64;
+  double s[most];
+  for (std::size_t begin = 0; begin < n; begin += most) {
+    const std::size_t count = std::min(most, n - begin);
+    for (std::size_t i = 0; i < count; ++i) s[i] = ((times[begin + i] - time_old_.hi) - time_old_.lo) / unit_old_;
+    series_.evaluate(s, count, out + begin * series_.numbers());
+  }
+}
+
+}  // namespace polhode

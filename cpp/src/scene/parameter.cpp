@@ -1,0 +1,151 @@
+#include "polhode/scene/parameter.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "polhode/core/error.hpp"
+
+namespace polhode {
+namespace {
+
+using Of = SceneParameter::Of;
+using torques::Window;
+
+/// "torques.0.weight" or "gravity.weight" in its parts; `index` is none where the text has no number.
+struct GroupName {
+  std::string_view what, field;
+  std::optional<std::size_t> index;
+};
+
+GroupName split(std::string_view group) {
+  const std::size_t first = group.find('.'), last = group.rfind('.');
+  if (first == std::string_view::npos) return {group, {}, {}};
+  GroupName name{group.substr(0, first), group.substr(last + 1), {}};
+  if (last == first) return name;
+  const std::string_view number = group.substr(first + 1, last - first - 1);
+  std::size_t index = 0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), index);
+  if (error == std::errc() && end == number.data() + number.size()) name.index = index;
+  return name;
+}
+
+[[noreturn]] void refuse(std::string_view group, const std::string& requirement) {
+  throw InvalidInput("sensitivity", requirement, "'" + std::string(group) + "'");
+}
+
+const TorqueRecord& find_record(const AnyTorque& torque) {
+  return std::visit([](const auto& one) -> const TorqueRecord& { return one.record(); }, drop_windows(torque));
+}
+
+std::size_t find_torque(const Scene& scene, std::string_view group, const GroupName& name) {
+  const auto& torques = scene.torques();
+  if (name.what == "torques") {
+    if (!name.index || *name.index >= torques.size())
+      refuse(group, "of a torque from 'torques.0' on, of which the scene has " + std::to_string(torques.size()));
+    return *name.index;
+  }
+  std::optional<std::size_t> found;
+  for (std::size_t i = 0; i < torques.size(); ++i) {
+    if (find_record(torques[i]).key != name.what) continue;
+    if (found) refuse(group, "'torques.0', 'torques.1' and so on where the scene has two of a kind");
+    found = i;
+  }
+  if (!found)
+    refuse(group, "'omega', 'attitude', 'inertia', 'axes', or a number of a torque or a rotor of the scene, as "
+                  "'torques.0.weight' or 'rotors.0.momentum'");
+  return *found;
+}
+
+void add_windows(const std::vector<Window>& windows, Of of, std::size_t index, const std::string& prefix,
+                 std::vector<SceneParameter>& found) {
+  for (std::size_t i = 0; i < windows.size(); ++i) {
+    for (const int end : {0, 1}) {
+      if (!std::isfinite(end == 0 ? windows[i].begin : windows[i].end)) continue;
+      found.push_back({of, index, static_cast<int>(i), end,
+                       prefix + "_" + std::to_string(i) + (end == 0 ? "_begin" : "_end")});
+    }
+  }
+}
+
+std::vector<SceneParameter> find_torque_parameters(const Scene& scene, std::string_view group, const GroupName& name) {
+  using Kind = TorqueParameter::Kind;
+  const std::size_t index = find_torque(scene, group, name);
+  const AnyTorque& torque = scene.torques()[index];
+  const TorqueRecord& record = find_record(torque);
+  const std::string prefix = "torques." + std::to_string(index) + "." + std::string(name.field);
+  std::vector<SceneParameter> found;
+  if (const auto* during = std::get_if<torques::During>(&torque); during != nullptr && name.field == "windows") {
+    add_windows(during->windows(), Of::torque_windows, index, prefix, found);
+    return found;
+  }
+  std::string known;
+  for (std::size_t field = 0; field < record.parameters.size(); ++field) {
+    const TorqueParameter& parameter = record.parameters[field];
+    if (parameter.kind == Kind::choice) continue;
+    known += (known.empty() ? "'" : ", '") + std::string(parameter.name) + "'";
+    if (parameter.name != name.field) continue;
+    const int count = parameter.kind == Kind::real ? 1 : parameter.kind == Kind::vector ? 3 : 9;
+    for (int c = 0; c < count; ++c) {
+      std::string column = prefix;
+      if (count == 3) column += std::string("_") + "xyz"[c];
+      if (count == 9) column += std::string("_") + "xyz"[c / 3] + "xyz"[c % 3];
+      found.push_back({Of::torque, index, static_cast<int>(field), c, std::move(column)});
+    }
+  }
+  if (found.empty()) {
+    refuse(group, "a number of " + std::string(record.name) + ", which has " + (known.empty() ? "none" : known) +
+                      (std::holds_alternative<torques::During>(torque) ? " and 'windows'" : ""));
+  }
+  return found;
+}
+
+std::vector<SceneParameter> find_rotor_parameters(const Scene& scene, std::string_view group, const GroupName& name) {
+  const std::vector<Rotor>& rotors = scene.rotors();
+  const std::optional<std::size_t> index = name.what == "rotor" && rotors.size() == 1 ? 0 : name.index;
+  if (!index || *index >= rotors.size())
+    refuse(group, "of a rotor from 'rotors.0' on, of which the scene has " + std::to_string(rotors.size()));
+  const Rotor& rotor = rotors[*index];
+  const std::string prefix = "rotors." + std::to_string(*index) + "." + std::string(name.field);
+  std::vector<SceneParameter> found;
+  const auto add = [&](std::string_view field, bool given, int number) {
+    if (name.field == field && given) found.push_back({Of::rotor, *index, number, 0, prefix});
+  };
+  add("momentum", rotor.momentum().has_value(), SceneParameter::momentum);
+  add("inertia", rotor.inertia().has_value(), SceneParameter::inertia);
+  add("speed", rotor.speed().has_value(), SceneParameter::speed);
+  if (name.field == "during") add_windows(rotor.windows(), Of::rotor_windows, *index, prefix, found);
+  if (found.empty()) refuse(group, "'momentum', 'inertia', 'speed' or 'during' of a rotor that was given it");
+  return found;
+}
+
+}  // namespace
+
+LastingTorque drop_windows(const AnyTorque& torque) {
+  return std::visit(
+      []<class T>(const T& one) -> LastingTorque {
+        if constexpr (std::is_same_v<T, torques::During>) {
+          return one.torque();
+        } else {
+          return one;
+        }
+      },
+      torque);
+}
+
+std::vector<SceneParameter> find_parameters(const Scene& scene, std::string_view group) {
+  constexpr std::pair<std::string_view, Of> triples[] = {
+      {"omega", Of::omega}, {"attitude", Of::attitude}, {"inertia", Of::inertia}, {"axes", Of::axes}};
+  for (const auto& [name, of] : triples) {
+    if (group != name) continue;
+    std::vector<SceneParameter> found;
+    for (int c = 0; c < 3; ++c)
+      found.push_back({of, 0, 0, c, std::string(name) + "_" + (of == Of::inertia ? "123" : "xyz")[c]});
+    return found;
+  }
+  const GroupName name = split(group);
+  if (name.what == "rotors" || name.what == "rotor") return find_rotor_parameters(scene, group, name);
+  return find_torque_parameters(scene, group, name);
+}
+
+}  // namespace polhode

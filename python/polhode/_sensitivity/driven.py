@@ -1,0 +1,31 @@
+"""Derivatives of the motion of a scene, with torques and rotors."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from .. import _core
+from .._core import InvalidInput
+from .._scene.scene import Scene
+from .sensitivity import Sensitivity, to_names
+
+CLOSED = {"omega", "attitude", "inertia", "axes"}
+
+
+def differentiate(scene: Scene, names: str | Sequence[str], accuracy: float, side: str = "space",
+                  max_steps: int = 10_000_000) -> Sensitivity:
+    """Return the motion of a scene and its derivatives at the scene's times.
+
+    A free body has closed forms. Any other body has its variational equations integrated.
+    """
+    groups = to_names(names) if isinstance(names, (str, Sequence)) else ()
+    if not groups or not all(isinstance(name, str) for name in groups):
+        raise InvalidInput("sensitivity: must be names such as 'omega', 'inertia' or 'torques.0.weight', "
+                           f"got {names!r}")
+    if not scene.torques and not scene.rotors and set(groups) <= CLOSED:
+        body = _core.FreeMotion(scene.inertia, scene.omega, scene.attitude)
+        found: Sensitivity = body.sensitivity(scene.times - scene.t0, groups, side)
+        return found
+    omega, attitude, d_omega, d_attitude, columns, error, _, _ = _core.sensitivity(
+        scene, list(groups), accuracy, side, max_steps)
+    return Sensitivity(omega, attitude, d_omega, d_attitude, tuple(columns), side, error)
