@@ -33,6 +33,8 @@ from ._core import __version__ as __version__
 from ._scene.scene import Scene as Scene
 from ._sensitivity.fit import fit as fit
 from ._sensitivity.free import free_sensitivity as free_sensitivity
+from ._sensitivity.lyapunov import Lyapunov as Lyapunov
+from ._sensitivity.lyapunov import lyapunov as lyapunov
 from ._sensitivity.result import FitResult as FitResult
 from ._sensitivity.sensitivity import Sensitivity as Sensitivity
 from ._solve.motion import Motion as Motion

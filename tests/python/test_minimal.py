@@ -64,6 +64,11 @@ def smoke_step():
     assert L.shape == (3,) and abs(np.linalg.norm(attitude) - 1) < 1e-15
 
 
+def smoke_lyapunov():
+    found = ph.lyapunov(scene(times=[20.0]))
+    assert isinstance(found, ph.Lyapunov) and abs(found.exponent) < 0.5
+
+
 def smoke_free_sensitivity():
     s = ph.free_sensitivity(BLOCK, OMEGA, (0, 0, 0, 1), TIMES)
     assert s.d_omega.shape == (5, 3, 6) and np.allclose(s.d_omega[..., 3:] @ BLOCK, 0, atol=1e-13)
@@ -210,6 +215,8 @@ SMOKE = {
     "fit": smoke_fit,
     "free_motion": smoke_free_motion,
     "step": smoke_step,
+    "lyapunov": smoke_lyapunov,
+    "Lyapunov": smoke_lyapunov,
     "free_sensitivity": smoke_free_sensitivity,
     "generalised_forces": smoke_generalised_forces,
     "gyrostat": smoke_gyrostat,
