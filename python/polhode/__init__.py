@@ -30,6 +30,7 @@ from ._core import InvalidInput as InvalidInput
 from ._core import Pendulum as Pendulum
 from ._core import Rotor as Rotor
 from ._core import __version__ as __version__
+from ._plot.closed_forms import attach as _attach
 from ._scene.scene import Scene as Scene
 from ._sensitivity.fit import fit as fit
 from ._sensitivity.free import free_sensitivity as free_sensitivity
@@ -54,6 +55,8 @@ if _TYPE_CHECKING:
     from . import recipe as recipe
     from . import report as report
     from . import schema as schema
+
+_attach()   # the methods of compiled classes that are written in Python
 
 __all__ = sorted(name for name in globals() if not name.startswith("_")) + ["__version__"]
 

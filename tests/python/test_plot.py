@@ -6,9 +6,10 @@ import pytest
 import polhode as ph
 
 pytest.importorskip("matplotlib")
-from polhode._plot.motion import PARTS, _fine, _moves  # noqa: E402
+from polhode._plot.motion import PARTS  # noqa: E402
 from polhode._plot.poinsot import family, herpolhode, in_front, make_view, outline  # noqa: E402
 from polhode._plot.text import to_count, to_error, to_time  # noqa: E402
+from polhode._plot.track import find_curve, find_moves  # noqa: E402
 
 BLOCK = np.array([0.20, 0.40, 0.52])
 
@@ -61,7 +62,7 @@ def test_the_herpolhode_lies_across_the_angular_momentum():
     np.testing.assert_allclose((path**2).sum(axis=1), (motion.omega**2).sum(axis=1) - along**2, rtol=1e-9)
 
 
-@pytest.mark.parametrize(("name", "panels"), [("S1", 6), ("S4", 6), ("S5", 6), ("S6", 6), ("S7", 6), ("S9", 6)])
+@pytest.mark.parametrize(("name", "panels"), [("S1", 8), ("S4", 8), ("S5", 8), ("S6", 8), ("S7", 8), ("S9", 8)])
 def test_every_scene_has_its_picture(name, panels, tmp_path):
     scene = ph.Scene.load(name)
     motion = ph.solve(scene.replace(times=scene.times[:40]), accuracy=1e-6)
@@ -82,20 +83,20 @@ def test_each_part_alone(part):
 
 def test_coarse_samples_are_drawn_as_curves_and_fine_ones_as_they_are():
     scene = ph.Scene(inertia=BLOCK, omega=(1, 2, 3), times=np.linspace(0, 50, 26))
-    curve = _fine(ph.solve(scene, accuracy=1e-6))
+    curve = find_curve(ph.solve(scene, accuracy=1e-6))
     omega, _ = ph.FreeMotion(BLOCK, (1, 2, 3)).at(curve.t)
     assert np.diff(curve.t).max() * 4 < 0.06 and curve.whole
     np.testing.assert_allclose(curve.omega, omega, atol=1e-4)
     fine = ph.solve(scene.replace(times=np.linspace(0, 1, 101)), accuracy=1e-6)
-    assert _fine(fine).omega.shape == (101, 3)
-    assert not _fine(ph.solve(scene.replace(times=np.linspace(0, 5000, 26)), accuracy=1e-3)).whole
+    assert find_curve(fine).omega.shape == (101, 3)
+    assert not find_curve(ph.solve(scene.replace(times=np.linspace(0, 5000, 26)), accuracy=1e-3)).whole
 
 
 def test_what_should_hold_is_what_drift_says():
     for name in ("S1", "S5", "S6"):
         scene = ph.Scene.load(name)
         motion = ph.solve(scene.replace(times=scene.times[:60]), method="rk45", rtol=1e-5)
-        moves = _moves(motion)
+        moves = find_moves(motion)
         assert len(moves) == len(motion.drift)
         for ours, theirs in zip(sorted(v.max() for v in moves.values()), sorted(motion.drift.values()), strict=True):
             assert 0.05 * theirs < ours < 20 * theirs
@@ -103,13 +104,13 @@ def test_what_should_hold_is_what_drift_says():
 
 def test_a_body_at_rest_and_one_without_attitude():
     rest = ph.solve(ph.Scene(inertia=BLOCK, omega=(0, 0, 0), times=[0.0, 1.0]), accuracy=1e-6)
-    assert len(rest.plot().axes) == 6
+    assert len(rest.plot().axes) == 8
     bare = ph.solve(ph.Scene(inertia=BLOCK, omega=(1, 2, 3), times=[0.0, 1.0], want=["omega"]), accuracy=1e-6)
-    assert len(bare.plot().axes) == 2
+    assert len(bare.plot().axes) == 4
     with pytest.raises(ph.InvalidInput, match="attitude"):
         bare.plot("angles")
     with pytest.raises(ph.InvalidInput, match="must be of polhode"):
-        bare.plot("energy")
+        bare.plot("power")
 
 
 def test_run_draws(tmp_path):

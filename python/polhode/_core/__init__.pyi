@@ -3,6 +3,8 @@ The compiled core of polhode. Use the names of the package `polhode`, not these.
 """
 from __future__ import annotations
 import collections.abc
+import matplotlib.axes
+import matplotlib.figure
 import numpy
 import numpy.typing
 import polhode
@@ -419,6 +421,28 @@ class FreeMotion:
         ndarray, shape (..., 3)
             The polhode's point turned by the attitude; it stays in the plane L . v = sqrt(2 T) [kg^-1/2 m^-1].
         """
+    def plot(self, t: typing.Any = None, *parts: str, ax: matplotlib.axes.Axes | None = None, marks: typing.Any = None, dark: bool = False) -> matplotlib.figure.Figure:
+        """
+        Draw the motion.
+
+        Parameters
+        ----------
+        t : array_like, shape (n,), or float, optional
+            The times, or the end of the span that starts at 0 [s]. By default two periods, or ten turns where a period is
+            endless or long. A part's name may stand in its place.
+        *parts, ax, marks, dark
+            As for :meth:`Motion.plot`.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            A notebook shows it.
+
+        Raises
+        ------
+        InvalidInput
+            As :meth:`Motion.plot`.
+        """
     def polhode(self: FreeMotion, t: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
         """
         Poinsot's point of contact in body axes.
@@ -578,6 +602,28 @@ class Gyrostat:
             (phi, theta, psi) [rad], intrinsic z-x-z of the body axes in a space frame whose z axis is the total momentum
             (space z turned there the shortest way): precession, nutation and spin. phi and psi in [-pi, pi].
         """
+    def plot(self, t: typing.Any = None, *parts: str, ax: matplotlib.axes.Axes | None = None, marks: typing.Any = None, dark: bool = False) -> matplotlib.figure.Figure:
+        """
+        Draw the motion.
+
+        Parameters
+        ----------
+        t : array_like, shape (n,), or float, optional
+            The times, or the end of the span that starts at 0 [s]. By default two periods, or ten turns where a period is
+            endless or long. A part's name may stand in its place.
+        *parts, ax, marks, dark
+            As for :meth:`Motion.plot`.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            A notebook shows it.
+
+        Raises
+        ------
+        InvalidInput
+            As :meth:`Motion.plot`.
+        """
     def polhode(self: Gyrostat, t: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
         """
         The total momentum in body axes.
@@ -696,6 +742,28 @@ class DampedFree:
         InvalidInput
             A time that is not finite, or at which a driven body is beyond float64.
         """
+    def plot(self, t: typing.Any = None, *parts: str, ax: matplotlib.axes.Axes | None = None, marks: typing.Any = None, dark: bool = False) -> matplotlib.figure.Figure:
+        """
+        Draw the motion.
+
+        Parameters
+        ----------
+        t : array_like, shape (n,), or float, optional
+            The times, or the end of the span that starts at 0 [s]. By default two periods, or ten turns where a period is
+            endless or long. A part's name may stand in its place.
+        *parts, ax, marks, dark
+            As for :meth:`Motion.plot`.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            A notebook shows it.
+
+        Raises
+        ------
+        InvalidInput
+            As :meth:`Motion.plot`.
+        """
     def slowed_time(self: DampedFree, t: typing.SupportsFloat | typing.SupportsIndex) -> float:
         """
         The time at which the free body has this attitude.
@@ -805,6 +873,28 @@ class HeavyTop:
         ------
         InvalidInput
             A time that is not finite, or too long for its phase to have digits.
+        """
+    def plot(self, t: typing.Any = None, *parts: str, ax: matplotlib.axes.Axes | None = None, marks: typing.Any = None, dark: bool = False) -> matplotlib.figure.Figure:
+        """
+        Draw the motion.
+
+        Parameters
+        ----------
+        t : array_like, shape (n,), or float, optional
+            The times, or the end of the span that starts at 0 [s]. By default two periods, or ten turns where a period is
+            endless or long. A part's name may stand in its place.
+        *parts, ax, marks, dark
+            As for :meth:`Motion.plot`.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            A notebook shows it.
+
+        Raises
+        ------
+        InvalidInput
+            As :meth:`Motion.plot`.
         """
     @property
     def attitude(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -936,6 +1026,28 @@ class Pendulum:
         ------
         InvalidInput
             A time that is not finite, or too long for its phase to have digits.
+        """
+    def plot(self, t: typing.Any = None, *parts: str, ax: matplotlib.axes.Axes | None = None, marks: typing.Any = None, dark: bool = False) -> matplotlib.figure.Figure:
+        """
+        Draw the motion.
+
+        Parameters
+        ----------
+        t : array_like, shape (n,), or float, optional
+            The times, or the end of the span that starts at 0 [s]. By default two periods, or ten turns where a period is
+            endless or long. A part's name may stand in its place.
+        *parts, ax, marks, dark
+            As for :meth:`Motion.plot`.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            A notebook shows it.
+
+        Raises
+        ------
+        InvalidInput
+            As :meth:`Motion.plot`.
         """
     @property
     def arm(self) -> numpy.typing.NDArray[numpy.float64]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pathlib
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .. import _files
 
@@ -15,6 +15,26 @@ if TYPE_CHECKING:
 
 INK, QUIET, GRID, PAPER = "#1d2733", "#66717d", "#e4e8ec", "#ffffff"
 FLOOR = "#9aa4ae"
+
+
+class Palette(NamedTuple):
+    """The colours of a picture of a motion."""
+
+    ink: str
+    quiet: str
+    grid: str
+    paper: str
+    floor: str                # outlines, and curves in the background
+    solid: str                # what ellipsoids and spheres are filled with
+    accent: str               # the curve of a picture that has one
+    path: str                 # that of a path in space
+    lines: tuple[str, ...]    # of x, y, z and w
+
+
+LIGHT = Palette(INK, QUIET, GRID, PAPER, FLOOR, "#f3f6f9", "#d55e00", "#0072b2",
+                ("#0072b2", "#d55e00", "#009e73", "#cc79a7"))
+DARK = Palette("#e3e8ed", "#9aa7b4", "#2c343d", "#131416", "#5d6975", "#1d2329", "#f08a3c", "#56b4e9",
+               ("#56b4e9", "#f08a3c", "#2ec99b", "#e29dc4"))
 
 # Okabe and Ito's colours and a few more, apart with every kind of colour vision; a candidate keeps its own everywhere.
 _COLOURS = {
@@ -51,17 +71,17 @@ def line(name: str, family: str, pale: bool = False) -> dict[str, Any]:
 
 
 @contextmanager
-def settings() -> Iterator[None]:
+def settings(look: Palette = LIGHT) -> Iterator[None]:
     """Use the style."""
     import matplotlib
 
     chosen: Any = {
-        "figure.facecolor": PAPER, "figure.dpi": 100, "savefig.dpi": 160, "font.family": "DejaVu Sans",
-        "font.size": 9.5,
-        "text.color": INK, "axes.labelcolor": QUIET, "axes.edgecolor": FLOOR, "axes.linewidth": 0.8,
+        "figure.facecolor": look.paper, "axes.facecolor": look.paper,
+        "figure.dpi": 100, "savefig.dpi": 160, "font.family": "DejaVu Sans", "font.size": 9.5,
+        "text.color": look.ink, "axes.labelcolor": look.quiet, "axes.edgecolor": look.floor, "axes.linewidth": 0.8,
         "axes.titlesize": 10.5, "axes.titleweight": "bold", "axes.titlelocation": "left", "axes.titlepad": 8,
         "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "axes.axisbelow": True,
-        "grid.color": GRID, "grid.linewidth": 0.8, "xtick.color": QUIET, "ytick.color": QUIET,
+        "grid.color": look.grid, "grid.linewidth": 0.8, "xtick.color": look.quiet, "ytick.color": look.quiet,
         "xtick.major.size": 3, "ytick.major.size": 3, "xtick.minor.size": 0, "ytick.minor.size": 0,
         "svg.fonttype": "none", "svg.hashsalt": "polhode",
     }
@@ -81,12 +101,12 @@ def used() -> Iterator[Any]:
         yield plt
 
 
-def heading(figure: Figure, title: str, under: str, left: float) -> None:
+def heading(figure: Figure, title: str, under: str, left: float, quiet: str = QUIET) -> None:
     """Write the finding on top, and below it what was measured; `left` is where the axes begin."""
     height = figure.get_figheight()
     figure.text(left, 1 - 0.2 / height, title, ha="left", va="top", fontsize=13, fontweight="bold", linespacing=1.25)
     lines = title.count("\n") + 1
-    figure.text(left, 1 - (0.27 + 0.25 * lines) / height, under, ha="left", va="top", fontsize=9, color=QUIET,
+    figure.text(left, 1 - (0.27 + 0.25 * lines) / height, under, ha="left", va="top", fontsize=9, color=quiet,
                 linespacing=1.35)
 
 

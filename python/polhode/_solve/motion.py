@@ -15,6 +15,7 @@ from .._scene.scene import Scene
 from .plan import Plan
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from .._sensitivity.sensitivity import Sensitivity
@@ -213,19 +214,28 @@ class Motion:
         omega, attitude = self._answer(t)
         return omega, attitude
 
-    def plot(self, *parts: str) -> Figure:
-        """Draw the motion: polhode, herpolhode, path of the axis, z-x-z angles, and drift of the invariants.
+    def plot(self, *parts: str, ax: Axes | None = None, marks: npt.ArrayLike | int | None = None,
+             dark: bool = False) -> Figure:
+        """Draw the motion.
 
         Parameters
         ----------
-        *parts : {"polhode", "herpolhode", "axis", "angles", "invariants"}
-            The parts to draw; all parts that suit the scene if none is given. If the samples are too far apart for a
-            line, curves use dense output, or a second solution of the scene.
+        *parts : str
+            The parts to draw; six or four that suit the scene if none is given. "polhode" (Poinsot's ellipsoid),
+            "herpolhode", "momentum" (the sphere of the angular momentum in body axes), "axis" (path of body z in
+            space), "rates", "attitude", "angles" (z-x-z), "energy" and "invariants" (their drift). If the samples are
+            too far apart for a line, curves use dense output, or a second solution of the scene.
+        ax : matplotlib Axes, optional
+            Where to draw a single part.
+        marks : array_like or int, optional
+            Times [s] that get a mark on every curve, or how many of them.
+        dark : bool
+            Draw on a dark background.
 
         Returns
         -------
         matplotlib.figure.Figure
-            Notebooks show it; ``.savefig(path)`` writes it.
+            A notebook shows it; ``.savefig(path)`` writes it.
 
         Raises
         ------
@@ -234,7 +244,7 @@ class Motion:
         """
         from .._plot.motion import plot
 
-        return plot(self, *parts)
+        return plot(self, *parts, ax=ax, marks=marks, dark=dark)
 
     def __len__(self) -> int:
         return int(self.t.size)

@@ -1,0 +1,106 @@
+"""Pictures of closed forms: the scene of each, the times to draw, and the methods `plot` and `animate`."""
+
+from __future__ import annotations
+
+import inspect
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .. import torques
+from .._core import DampedFree, FreeMotion, Gyrostat, HeavyTop, Pendulum, Rotor
+from .._scene.scene import Scene
+from .._solve.motion import Floats
+
+if TYPE_CHECKING:
+    import matplotlib.axes
+    import matplotlib.figure
+
+    from .track import Track
+
+TURNS = 10          # of a motion without a period, or with a long one
+LONGEST = 40        # turns of two periods that are drawn
+
+
+def make_scene(form: Any, times: Floats) -> Scene:
+    """Return the scene that a closed form solves."""
+    parts: dict[str, Any] = {}
+    if isinstance(form, Gyrostat) and form.momentum.any():
+        parts["rotors"] = [Rotor(form.momentum, momentum=float(np.linalg.norm(form.momentum)))]
+    if isinstance(form, HeavyTop):
+        if form.weight_arm:
+            parts["torques"] = [torques.Gravity(1.0, form.axis * form.weight_arm)]
+        if form.rotor:
+            parts["rotors"] = [Rotor(form.axis, momentum=form.rotor)]
+    if isinstance(form, Pendulum):
+        parts["torques"] = [torques.Gravity(form.weight, form.arm)]
+    if isinstance(form, DampedFree):
+        parts["torques"] = [torques.AngularDamping(form.damping)]
+    return Scene(inertia=form.inertia, omega=form.omega, attitude=form.attitude, times=times,
+                 name=type(form).__name__, **parts)
+
+
+def find_span(form: Any) -> float:
+    """Return two periods [s], or ten turns where there is no period of at most twenty turns."""
+    rate = float(np.linalg.norm(form.omega))
+    if isinstance(form, DampedFree):
+        turns = 2 * math.pi * TURNS / rate if rate else 1.0
+        return min(turns, 5 / form.damping) if form.damping > 0 else turns
+    period = form.nutation_period if isinstance(form, HeavyTop) else form.period
+    if 0 < period < math.inf:
+        largest = float(np.linalg.norm(form.at(np.linspace(0, period, 65))[0], axis=1).max())
+        if 2 * period * largest <= 2 * math.pi * LONGEST:
+            return 2.0 * float(period)
+    return 2 * math.pi * TURNS / rate if rate else 1.0
+
+
+def make_track(form: Any, t: Any) -> Track:
+    """Return what is drawn of a closed form: at these times, up to this time, or over the span of `find_span`."""
+    from .track import count_points, of_closed_form, to_times
+
+    if t is None or np.ndim(t) == 0:
+        end = find_span(form) if t is None else float(to_times(t, "t")[0])
+        rate = float(np.linalg.norm(form.omega))
+        times = np.linspace(0.0, end, min(2000, max(101, count_points(rate, abs(end)))))
+    else:
+        times = to_times(t, "t")
+    return of_closed_form(form, make_scene(form, times), times)
+
+
+def plot(self: Any, t: Any = None, *parts: str, ax: matplotlib.axes.Axes | None = None,
+         marks: Any = None, dark: bool = False) -> matplotlib.figure.Figure:
+    """Draw the motion.
+
+    Parameters
+    ----------
+    t : array_like, shape (n,), or float, optional
+        The times, or the end of the span that starts at 0 [s]. By default two periods, or ten turns where a period is
+        endless or long. A part's name may stand in its place.
+    *parts, ax, marks, dark
+        As for :meth:`Motion.plot`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        A notebook shows it.
+
+    Raises
+    ------
+    InvalidInput
+        As :meth:`Motion.plot`.
+    """
+    from .motion import draw, need_matplotlib
+
+    need_matplotlib("plot")
+    if isinstance(t, str):
+        t, parts = None, (t, *parts)
+    return draw(make_track(self, t), parts, ax, marks, dark)
+
+
+def attach() -> None:
+    """Give the compiled classes their methods."""
+    for method in (plot,):
+        method.__doc__ = inspect.getdoc(method)   # without the indent, for the stubs
+        for cls in (FreeMotion, Gyrostat, DampedFree, HeavyTop, Pendulum):
+            setattr(cls, method.__name__, method)
