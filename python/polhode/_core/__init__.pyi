@@ -79,6 +79,11 @@ class InertiaTensor:
         axis, the deficit in per cent and the likely cause.
     """
     @staticmethod
+    def _repr_html_(tensor: typing.Any) -> str:
+        """
+        Return the matrix of an InertiaTensor with its moments and axes.
+        """
+    @staticmethod
     def from_moments(moments: typing.Any, *, physical: bool = True) -> InertiaTensor:
         """
         The tensor with these moments about the given axes, in their order: unsorted is fine.
@@ -346,6 +351,11 @@ class FreeMotion:
     -----
     Jacobi (1850), "Sur la rotation d'un corps", J. reine angew. Math. 39, in the Cayley-Klein form; see docs/exact.md.
     """
+    @staticmethod
+    def _repr_html_(form: typing.Any) -> str:
+        """
+        Return the start and the properties of a closed form.
+        """
     def __eq__(self: FreeMotion, arg0: object) -> bool:
         ...
     def __getstate__(self: FreeMotion) -> tuple[InertiaTensor, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
@@ -559,6 +569,11 @@ class Gyrostat:
     Zhukovsky (1885); Volterra (1899), Acta Math. 22; Wittenburg (1977), Dynamics of Systems of Rigid Bodies; see
     docs/gyrostat.md.
     """
+    @staticmethod
+    def _repr_html_(form: typing.Any) -> str:
+        """
+        Return the start and the properties of a closed form.
+        """
     def __eq__(self: Gyrostat, arg0: object) -> bool:
         ...
     def __getstate__(self: Gyrostat) -> tuple[InertiaTensor, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
@@ -709,6 +724,11 @@ class DampedFree:
     -----
     A change of time in Euler's equations; see docs/damped_free.md.
     """
+    @staticmethod
+    def _repr_html_(form: typing.Any) -> str:
+        """
+        Return the start and the properties of a closed form.
+        """
     def __eq__(self: DampedFree, arg0: object) -> bool:
         ...
     def __getstate__(self: DampedFree) -> tuple[InertiaTensor, float, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
@@ -841,6 +861,11 @@ class HeavyTop:
     -----
     F. Klein and A. Sommerfeld, "Ueber die Theorie des Kreisels" (1897-1910); see docs/heavy_top.md.
     """
+    @staticmethod
+    def _repr_html_(form: typing.Any) -> str:
+        """
+        Return the start and the properties of a closed form.
+        """
     def __eq__(self: HeavyTop, arg0: object) -> bool:
         ...
     def __getstate__(self: HeavyTop) -> tuple[InertiaTensor, float, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], float]:
@@ -994,6 +1019,11 @@ class Pendulum:
     -----
     E. T. Whittaker, "Analytical Dynamics" (1937), section 44; see docs/pendulum.md.
     """
+    @staticmethod
+    def _repr_html_(form: typing.Any) -> str:
+        """
+        Return the start and the properties of a closed form.
+        """
     def __eq__(self: Pendulum, arg0: object) -> bool:
         ...
     def __getstate__(self: Pendulum) -> tuple[InertiaTensor, float, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:

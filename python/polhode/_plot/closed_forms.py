@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .. import torques
-from .._core import DampedFree, FreeMotion, Gyrostat, HeavyTop, Pendulum, Rotor
+from .._core import DampedFree, FreeMotion, Gyrostat, HeavyTop, InertiaTensor, Pendulum, Rotor
 from .._scene.scene import Scene
 from .._solve.motion import Floats
+from . import html
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -100,7 +101,8 @@ def plot(self: Any, t: Any = None, *parts: str, ax: matplotlib.axes.Axes | None 
 
 def attach() -> None:
     """Give the compiled classes their methods."""
-    for method in (plot,):
-        method.__doc__ = inspect.getdoc(method)   # without the indent, for the stubs
-        for cls in (FreeMotion, Gyrostat, DampedFree, HeavyTop, Pendulum):
-            setattr(cls, method.__name__, method)
+    plot.__doc__ = inspect.getdoc(plot)   # without the indent, for the stubs
+    for cls in (FreeMotion, Gyrostat, DampedFree, HeavyTop, Pendulum):
+        setattr(cls, "plot", plot)
+        setattr(cls, "_repr_html_", html.of_closed_form)
+    setattr(InertiaTensor, "_repr_html_", html.of_tensor)

@@ -256,6 +256,11 @@ class Motion:
         return (f"Motion({self.scene.name or 'unnamed'}: {self.t.size} samples by {self.plan.method}, "
                 f"{cost}{self.status}{known}{'; drift: ' + drift if drift else ''})")
 
+    def _repr_html_(self) -> str:
+        from .._plot.html import of_motion
+
+        return of_motion(self)
+
     def __getstate__(self) -> dict[str, Any]:
         for name in (*_PARTS, "message"):
             getattr(self, name)

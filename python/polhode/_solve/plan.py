@@ -133,6 +133,11 @@ class Plan:
     def __str__(self) -> str:
         return "\n".join(_lines(self))
 
+    def _repr_html_(self) -> str:
+        from .._plot.html import of_plan
+
+        return of_plan(self)
+
     def __repr__(self) -> str:
         asked = "" if math.isnan(self.accuracy) else f", accuracy={self.accuracy:g}"
         return (f"Plan({self.scene.name or 'unnamed'}: model={self.model!r}, method={self.method!r}, "

@@ -16,6 +16,7 @@ from .._sensitivity.driven import differentiate
 from .costs import factors
 from .motion import Floats, Motion
 from .plan import Plan
+from .progress import shown
 
 
 class Event:
@@ -95,7 +96,7 @@ def solve(
     dense: bool = False,
     formulation: str = "euler",
     events: Iterable[Any] = (),
-    progress: Callable[[float, float], object] | None = None,
+    progress: Callable[[float, float], object] | bool | None = None,
     sensitivity: str | Sequence[str] | None = None,
     side: str = "space",
 ) -> Motion:
@@ -136,9 +137,9 @@ def solve(
     events : iterable of Event or callables
         Functions whose zeros are located. A callable may have attributes `direction` and `terminal`. The errors of
         their times are not bounded.
-    progress : callable, optional
-        ``progress(reached, last)`` is called about twenty times a second. False ends the run, and the samples so far
-        are returned.
+    progress : callable or bool, optional
+        ``progress(reached, last)`` is called about twenty times a second. If it returns False, the run ends, and the
+        samples so far are returned. True shows a bar on stderr, or lines, of a run that takes more than a second.
     sensitivity : str or sequence of str, optional
         What to differentiate the motion by, for `motion.sensitivity`: "omega" and "attitude" (the start), "inertia"
         (principal moments), "axes" (a small rotation of the principal axes in the body), numbers of torques and rotors
@@ -164,11 +165,12 @@ def solve(
         raise _core.InvalidInput(f"events: must be events or callables, got {events!r}")
     if plan is not None:
         accuracy, method, certify, formulation = _take(plan, accuracy, method, rtol, atol, step, certify, formulation)
-    answer = _core.solve(scene, {
-        "accuracy": accuracy, "method": method, "rtol": rtol, "atol": atol, "step": step,
-        "certify": certify if isinstance(certify, str) else bool(certify),
-        "max_steps": check_max_steps(max_steps), "dense": bool(dense), "formulation": str(formulation),
-        "events": [_event(item) for item in events], "progress": progress, "cost_factors": factors()})
+    with shown(progress, f"solving {scene.name}".strip()) as callback:
+        answer = _core.solve(scene, {
+            "accuracy": accuracy, "method": method, "rtol": rtol, "atol": atol, "step": step,
+            "certify": certify if isinstance(certify, str) else bool(certify),
+            "max_steps": check_max_steps(max_steps), "dense": bool(dense), "formulation": str(formulation),
+            "events": [_event(item) for item in events], "progress": callback, "cost_factors": factors()})
     asked = None if method is None and formulation == "euler" else {"method": method, "formulation": formulation}
     motion = Motion(scene, answer, asked)
     if sensitivity is not None:

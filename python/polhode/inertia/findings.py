@@ -109,5 +109,10 @@ class Diagnosis:
             text += f"; {100 * self.misfit:.2g} % from a uniform body of its geometry"
         return text
 
+    def _repr_html_(self) -> str:
+        from .._plot.html import of_diagnosis
+
+        return of_diagnosis(self)
+
     def __str__(self) -> str:
         return self.verdict
