@@ -242,7 +242,7 @@ def test_wrong_calls_have_messages_of_their_own(message):
 
 def test_docstrings_and_overloads_are_those_of_the_signature():
     assert "Overloaded" not in ph.FreeMotion.__init__.__doc__ and "*args" not in ph.FreeMotion.at.__doc__
-    assert ph.FreeMotion.at.__doc__.startswith("at(self: polhode.FreeMotion, t: object)")
+    assert ph.FreeMotion.at.__doc__.startswith("at(self: polhode.FreeMotion, t: object, *, progress: object = None)")
     assert pickle.loads(pickle.dumps(ph.FreeMotion(BLOCK, OMEGA))) == ph.FreeMotion(BLOCK, OMEGA)
 
 
