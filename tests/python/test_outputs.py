@@ -121,7 +121,7 @@ def test_nothing_else_writes_in_place():
                     text = file.read()
                 assert ".write_text(" not in text and ".write_bytes(" not in text, path
                 written = [line for line in text.splitlines() if re.search(r"\.savefig\(|np\.savez", line)]
-                assert all("draft" in line or "``" in line for line in written), path
+                assert all("draft" in line or "held" in line or "``" in line for line in written), path
 
 
 @pytest.mark.parametrize("width", [30, 40, 60, 79, 200])
