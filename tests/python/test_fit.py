@@ -237,14 +237,6 @@ def test_bad_data_are_refused_with_the_reason(make, text):
         make()
 
 
-def test_a_body_with_torques_is_refused():
-    t = np.linspace(0, 1, 9)
-    data = measured.Rates(t, np.ones((9, 3)), 0.1)
-    scene = ph.Scene(inertia=(1, 2, 2.5), omega=(1, 2, 3), times=t, torques=[ph.torques.Constant((0.1, 0, 0))])
-    with pytest.raises(ph.InvalidInput, match="scene: must be of a free body"):
-        ph.fit(data, scene)
-
-
 def test_sigma_may_be_a_covariance_or_differ_by_sample_and_component():
     t, y = np.arange(4.0), np.ones((4, 3))
     r = np.ones((4, 3))

@@ -11,6 +11,7 @@ from .._core import InvalidInput
 from .._scene.scene import Scene
 from ..measured import Attitudes, Axis, Direction, Measurement, Rates
 from . import turns
+from .driven_problem import DrivenProblem, DrivenState
 from .least_squares import LOSSES, Minimum, minimise
 from .problem import GROUPS, Problem, State, ratios_of
 from .result import FitResult, make_result
@@ -29,9 +30,14 @@ def _to_data(data: Any) -> list[Measurement]:
     return found
 
 
-def _to_groups(fit: str | Sequence[str]) -> tuple[str, ...]:
+def _to_groups(fit: str | Sequence[str], driven: bool) -> tuple[str, ...]:
     groups = (fit,) if isinstance(fit, str) else tuple(fit)
-    if not groups or len(set(groups)) != len(groups) or not set(groups) <= set(GROUPS):
+    numbers = {group for group in groups if driven and isinstance(group, str) and "." in group}
+    known = set(GROUPS) - {"axes"} if driven else set(GROUPS)
+    if not groups or len(set(groups)) != len(groups) or not set(groups) <= known | numbers:
+        if driven:
+            raise InvalidInput("fit: must be some of attitude, omega, inertia and names such as 'torques.0.weight', "
+                               f"each once, got {fit!r}")
         raise InvalidInput(f"fit: must be some of {', '.join(GROUPS)}, each once, got {fit!r}")
     return groups
 
@@ -44,8 +50,6 @@ def _of_scene(scene: Scene | None, groups: Sequence[str], count: int) -> tuple[S
         if known:
             raise InvalidInput(f"scene: needed for {' and '.join(sorted(known))}, which `fit` does not hold")
         return State(np.array([0.0, 0, 0, 1]), np.zeros(3), np.zeros(2), np.array([0.0, 0, 0, 1]), bias), 1.0
-    if len(scene.torques) or len(getattr(scene, "rotors", ())):
-        raise InvalidInput("scene: must be of a free body, without torques; fits of driven bodies are not there yet")
     tensor = scene.inertia
     matrix = np.asarray(tensor.matrix)
     diagonal = not (matrix - np.diag(np.diag(matrix))).any()
@@ -88,6 +92,22 @@ def _first_attitude(problem: Problem, state: State) -> State:
     if not pairs:
         return state
     return State(wahba(pairs)[1][0], state.omega, state.ratios, state.axes, state.bias)
+
+
+def _start_driven(problem: Problem, state: State, loss: str, scale: float) -> State:
+    """Return the start of the last fit: the scene's numbers, the first samples, and windows that grow."""
+    step = np.zeros(len(problem.names))
+    for m in problem.data:
+        if not len(m):
+            continue
+        first = int(np.argmin(np.abs(m.t)))
+        if isinstance(m, Rates) and "omega" in problem.slices:
+            step[problem.slices["omega"]] = m.y[first] - state.omega
+        if isinstance(m, Attitudes) and "attitude" in problem.slices:
+            step[problem.slices["attitude"]] = turns.log(turns.product(m.y[first], turns.conjugate(state.attitude)))
+    spans = np.quantile(np.abs(problem.t), SPANS)
+    starts = [_grown(problem, s, spans, loss, scale) for s in (state, state.moved(step, problem.slices))]
+    return min(starts, key=lambda found: found.cost).state
 
 
 def _grown(problem: Problem, state: State, spans: Array, loss: str, scale: float) -> Minimum:
@@ -134,6 +154,22 @@ def _start(problem: Problem, state: State, rng: np.random.Generator, loss: str, 
     return searched.state, "a search through motions at random"
 
 
+def _set_up(data: list[Measurement], groups: Sequence[str], scene: Scene | None, driven: bool,
+            ) -> tuple[State, float, Problem]:
+    """Return the scene's state, its largest moment, and the problem."""
+    count = sum(m.bias for m in data)
+    if not driven or scene is None:
+        state, largest = _of_scene(scene, groups, count)
+        return state, largest, Problem(data, groups, state)
+    if scene.t0 != 0:
+        raise InvalidInput(f"scene: must start at t0 = 0, where the times of measurements start, got {scene.t0}")
+    base = DrivenState.of(scene, groups, np.zeros(count))
+    problem = DrivenProblem(data, groups, base)
+    if problem.t.size:
+        base.limit_steps(problem.t)
+    return base, float(base.moments.max()), problem
+
+
 def fit(
     data: Measurement | Sequence[Measurement],
     scene: Scene | None = None,
@@ -144,22 +180,26 @@ def fit(
     f_scale: float = 1.0,
     seed: int = 0,
 ) -> FitResult:
-    """Fit the start, the moments' ratios and the axes of a free body to measurements.
+    """Fit the start, the inertia and the axes of a free body, or numbers of a scene with torques, to measurements.
 
     Parameters
     ----------
     data : Measurement or sequence of them
         Of :mod:`polhode.measured`, in any mixture.
     scene : Scene, optional
-        A free body. It gives what is not fitted, the start of the fit with start='scene', and the scale of the inertia,
-        which no free motion tells.
+        It gives what is not fitted, the start of the fit with start='scene', and the scale of the inertia, which no
+        free motion tells. With torques or rotors it starts at t0 = 0, and the fit starts from its numbers.
     fit : str or sequence of str
         Some of 'omega', 'attitude', 'inertia' (two ratios of second moments) and 'axes' (the principal axes in the
-        body; without it the given axes are principal).
+        body; without it the given axes are principal). With torques or rotors 'inertia' are three second moments about
+        the scene's principal axes, and there are numbers such as 'torques.0.weight', 'damping.matrix' and
+        'rotors.0.momentum'.
     start : {'search', 'scene'}
-        'search' needs no start. 'scene' starts at the scene's values.
+        'search' needs no start for a free body. With torques or rotors windows of the data grow from the scene's
+        numbers. 'scene' starts at the scene's values, with all data.
     bounds : dict, optional
-        (least, most) of parameters by name, for 'omega_x' and so on, 'log_p1_p3', 'log_p2_p3' and 'bias_x'.
+        (least, most) of parameters by name, for 'omega_x' and so on, 'log_p1_p3', 'log_p2_p3', 'bias_x', and with
+        torques or rotors 'log_p1' to 'log_p3' and 'torques.0.weight' or 'torques.0.arm_x'.
     loss : {'linear', 'soft_l1', 'huber', 'cauchy'}
         The loss of (residual / (sigma f_scale))^2, as for SciPy's `least_squares`.
     f_scale : float
@@ -177,27 +217,29 @@ def fit(
     Raises
     ------
     InvalidInput
-        Data of unequal lengths, sigma that is not positive, too few samples, or a body with torques.
+        Data of unequal lengths, sigma that is not positive, too few samples, or a Custom torque.
 
     Notes
     -----
     A gyroscope's scale and an offset of times are not fitted. See docs/fit.md.
     """
-    measurements, groups = _to_data(data), _to_groups(fit)
+    driven = scene is not None and bool(len(scene.torques) or len(scene.rotors))
+    measurements, groups = _to_data(data), _to_groups(fit, driven)
     if loss not in LOSSES:
         raise InvalidInput(f"loss: must be one of {', '.join(LOSSES)}, got {loss!r}")
     if not f_scale > 0:
         raise InvalidInput(f"f_scale: must be positive, got {f_scale}")
     if start not in ("search", "scene") or (start == "scene" and scene is None):
         raise InvalidInput(f"start: must be 'search', or 'scene' with a scene, got {start!r}")
-    state, largest = _of_scene(scene, groups, sum(m.bias for m in measurements))
-    problem = Problem(measurements, groups, state)
+    state, largest, problem = _set_up(measurements, groups, scene, driven)
     independent = sum(m.independent for m in measurements)
     if independent < len(problem.names) or problem.t.size < 2:
         raise InvalidInput(f"data: {independent} numbers cannot give {len(problem.names)} parameters; "
                            f"{sum(m.left_out for m in measurements)} samples were left out as NaN")
     how = "the scene"
-    if start == "search":
+    if start == "search" and driven:
+        state, how = _start_driven(problem, state, loss, f_scale), "growing windows from the scene"
+    elif start == "search":
         state, how = _start(problem, state, np.random.default_rng(seed), loss, f_scale)
     low, high = _bounds(problem, bounds)
     found = minimise(problem, state, loss=loss, scale=f_scale, low=low, high=high, most=1000)

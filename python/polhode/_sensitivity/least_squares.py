@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .._core import IntegrationFailure, InvalidInput
 from .turns import Array
 
 if TYPE_CHECKING:
@@ -84,8 +85,11 @@ def minimise(problem: Problem, state: State, *, loss: str = "linear", scale: flo
                                     (high - now) * size) / size
             other = state.moved(step, problem.slices)
             nfev += 1
-            tried = problem.residuals_and_jacobian(other)
-            trial = cost_of(tried[0], loss, scale)
+            try:
+                tried = problem.residuals_and_jacobian(other)
+                trial = cost_of(tried[0], loss, scale)
+            except (IntegrationFailure, InvalidInput):   # too far: no such motion
+                trial = np.inf
             if trial <= cost:
                 accepted = True
                 break
@@ -105,8 +109,8 @@ def minimise(problem: Problem, state: State, *, loss: str = "linear", scale: flo
 def values_of(problem: Problem, state: State) -> Array:
     """Return the parameters as numbers; rotations as NaN."""
     out = np.full(len(problem.names), np.nan)
-    for group, value in (("omega", state.omega), ("inertia", state.ratios), ("bias", state.bias)):
-        if group in problem.slices:
+    for group, value in state.values().items():
+        if group in problem.slices and group not in ("attitude", "axes"):
             out[problem.slices[group]] = value
     return out
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -50,6 +50,11 @@ class State:
                      np.clip(self.ratios + part("inertia", 2), -30, 30), turned(self.axes, part("axes", 3)),
                      self.bias + part("bias", self.bias.size))
 
+    def values(self) -> dict[str, Array]:
+        """Return the parameters as numbers, by group."""
+        return {"attitude": turns.log(self.attitude), "omega": self.omega, "inertia": self.ratios,
+                "axes": turns.log(self.axes), "bias": self.bias}
+
     def motion(self) -> FreeMotion:
         """The motion in principal axes."""
         inertia = InertiaTensor.from_moments(self.moments, physical=False)
@@ -90,13 +95,14 @@ class Problem:
         Where the parameters of `fun` and `jac` start: attitude and axes are small rotations from it.
     """
 
-    def __init__(self, data: Sequence[Measurement], groups: Sequence[str], base: State) -> None:
+    def __init__(self, data: Sequence[Measurement], groups: Sequence[str], base: State,
+                 known: Mapping[str, Sequence[str]] = GROUPS) -> None:
         self.data, self.groups, self.base = list(data), tuple(groups), base
         self.slices: dict[str, slice] = {}
         names: list[str] = []
         for group in self.groups:
-            self.slices[group] = slice(len(names), len(names) + len(GROUPS[group]))
-            names += GROUPS[group]
+            self.slices[group] = slice(len(names), len(names) + len(known[group]))
+            names += known[group]
         count = sum(measurement.bias for measurement in self.data)
         if count:
             self.slices["bias"] = slice(len(names), len(names) + count)
@@ -173,6 +179,6 @@ class Problem:
                 jacobian[:, here] = jacobian[:, here] @ np.linalg.inv(turns.inverse_right_jacobian(x[here]).T)
         return jacobian
 
-    def with_data(self, data: Sequence[Measurement]) -> Problem:
-        """Return the same problem with other samples."""
-        return Problem(data, self.groups, self.base)
+    def with_data(self, data: Sequence[Measurement], base: State | None = None) -> Problem:
+        """Return the same problem with other samples, or from another state."""
+        return Problem(data, self.groups, self.base if base is None else base)

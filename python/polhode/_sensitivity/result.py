@@ -12,6 +12,7 @@ from .._core import InertiaTensor
 from .._scene.scene import Scene
 from ..measured import Axis, Rates, Scalar
 from . import turns
+from .driven_problem import DrivenState
 from .least_squares import Minimum
 from .problem import Problem, State
 from .turns import Array
@@ -88,6 +89,10 @@ class FitResult:
         In words: what these data cannot tell, and which other bodies fit as well.
     left_out : int
         Samples with a NaN.
+    numbers : dict
+        The fitted numbers of torques and rotors, by their names.
+    scene : Scene
+        What was fitted, with the times of the data.
     problem : object
         `problem.fun` and `problem.jac` for SciPy's `least_squares`, from problem.base.
     """
@@ -116,11 +121,12 @@ class FitResult:
     scene: Scene
     problem: Problem
     state: State
+    numbers: dict[str, Array]
 
     def predict(self, t: npt.ArrayLike) -> Prediction:
         """Return the fitted motion with its covariance at times t, shape (n,)."""
         times = np.atleast_1d(np.asarray(t, dtype=float))
-        problem = Problem([], self.problem.groups, self.state)
+        problem = self.problem.with_data([], self.state)
         problem.t = times
         omega, attitude, d_omega, d_turn = problem.columns(self.state)
         cov = np.nan_to_num(self.cov[: len(problem.names), : len(problem.names)])
@@ -215,10 +221,10 @@ def make_result(problem: Problem, found: Minimum, scene: Scene | None, largest: 
     if "attitude" in problem.slices and all(isinstance(m, Rates) for m in problem.data):
         hidden = [text for text in hidden if not text.startswith("attitude")]
         hidden.insert(0, "the attitude: rates alone do not depend on it")
-    hidden += _symmetry(problem, state, cov)
+    if not isinstance(state, DrivenState):
+        hidden += _symmetry(problem, state, cov)
     x = np.zeros(len(problem.names))
-    for group, value in (("attitude", turns.log(state.attitude)), ("omega", state.omega), ("inertia", state.ratios),
-                         ("axes", turns.log(state.axes)), ("bias", state.bias)):
+    for group, value in state.values().items():
         if group in problem.slices:
             x[problem.slices[group]] = value
     chi2 = float(found.residuals @ found.residuals)
@@ -232,9 +238,14 @@ def make_result(problem: Problem, found: Minimum, scene: Scene | None, largest: 
         message += f"; {left_out} samples were left out as NaN"
     attitude = Rotation.from_quat(state.attitude)
     times = np.unique(problem.t)
-    scene_out = Scene(inertia=inertia if turned else tuple(moments), omega=tuple(state.omega),
-                      attitude=attitude, times=times, name=scene.name if scene is not None else "fit")
+    if isinstance(state, DrivenState):
+        scene_out = state.make_scene(times, "inertia" in problem.slices)
+        inertia, numbers = state.moments, {group: state.numbers[group] for group in state.numbers}
+    else:
+        scene_out = Scene(inertia=inertia if turned else tuple(moments), omega=tuple(state.omega),
+                          attitude=attitude, times=times, name=scene.name if scene is not None else "fit")
+        numbers = {}
     return FitResult(x, found.cost, found.residuals, found.jacobian, found.nfev, found.status, message,
                      bool(found.status > 0 and good), state.omega, attitude, inertia, cov, stderr, correlation,
                      problem.names, chi2, dof, tuple(unobservable + hidden), _twins(problem, moments), left_out,
-                     state.bias, scene_out, Problem(problem.data, problem.groups, state), state)
+                     state.bias, scene_out, problem.with_data(problem.data, state), state, numbers)

@@ -1,0 +1,73 @@
+"""Numbers of the torques and the rotors of a scene, by their names."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .. import torques
+from .._core import InvalidInput, Rotor
+from .._scene.scene import Scene
+from .turns import Array
+
+
+def _inner(torque: Any) -> Any:
+    return torque.torque if isinstance(torque, torques.During) else torque
+
+
+def _key(torque: Any) -> str:
+    """The name in scene files: 'gravity_gradient' of GravityGradient."""
+    name = type(_inner(torque)).__name__
+    return "".join("_" + c.lower() if c.isupper() and k else c.lower() for k, c in enumerate(name))
+
+
+def find(scene: Scene, group: str) -> tuple[str, int, str]:
+    """Return ('torques' or 'rotors', number, field) of a name such as 'torques.0.weight' or 'gravity.weight'."""
+    parts = group.split(".")
+    kinds = {"torques": scene.torques, "rotors": scene.rotors}
+    if len(parts) == 3 and parts[0] in kinds and parts[1].isdigit() and int(parts[1]) < len(kinds[parts[0]]):
+        what, index, field = parts[0], int(parts[1]), parts[2]
+    else:
+        among = [k for k, torque in enumerate(scene.torques) if _key(torque) == parts[0]]
+        if parts[0] == "rotor" and len(scene.rotors) == 1:
+            among, what = [0], "rotors"
+        else:
+            what = "torques"
+        if len(parts) != 2 or len(among) != 1:
+            raise InvalidInput(f"fit: must be 'omega', 'attitude', 'inertia', or numbers of torques and rotors of the "
+                               f"scene, as 'torques.0.weight' or 'gravity.weight', got {group!r}")
+        index, field = among[0], parts[1]
+    holder = _inner(kinds[what][index])
+    value = getattr(holder, field, None)
+    fits = field in ("momentum", "inertia", "speed") if what == "rotors" else field not in ("traits", "windows")
+    if not fits or value is None or isinstance(value, str):
+        raise InvalidInput(f"fit: {group!r} is no number of {holder!r}; ends of windows are not fitted")
+    return what, index, field
+
+
+def get(scene: Scene, group: str) -> Array:
+    """Return the numbers of a group, shape (1,), (3,) or (9,)."""
+    what, index, field = find(scene, group)
+    holder = _inner(getattr(scene, what)[index])
+    return np.array(getattr(holder, field), dtype=float).reshape(-1)
+
+
+def put(scene: Scene, group: str, value: Array) -> Scene:
+    """Return the scene with other numbers of a group."""
+    what, index, field = find(scene, group)
+    items = list(getattr(scene, what))
+    holder = _inner(items[index])
+    shape = np.shape(getattr(holder, field))
+    new: Any = value.reshape(shape) if shape else float(value[0])
+    if what == "rotors":
+        names = ("axis", "momentum", "inertia", "speed", "free")
+        given = {name: getattr(holder, name) for name in names if getattr(holder, name) is not None}
+        made: Any = Rotor(**{**given, **({"during": holder.during} if holder.during else {}), field: new})
+    else:
+        fields = [name for name in dir(holder) if not name.startswith("_") and name != "traits"]
+        made = type(holder)(**{**{name: getattr(holder, name) for name in fields}, field: new})
+        if isinstance(items[index], torques.During):
+            made = torques.During(made, items[index].windows)
+    items[index] = made
+    return scene.replace(**{what: items})
