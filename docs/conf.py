@@ -46,6 +46,7 @@ autodoc_default_options = {"members": True, "undoc-members": False}
 napoleon_google_docstring = False
 napoleon_use_rtype = False
 napoleon_use_ivar = True
+napoleon_use_param = False   # types are prose: a cross-reference would take any word of them for a name
 
 # The gallery
 sphinx_gallery_conf = {

@@ -34,12 +34,16 @@ def methods() -> str:
         for r in ph.methods():
             if r["cheap"] == cheap:
                 yield (code(r["name"]), r["order"], r["driven_order"], r["dense_order"],
-                       "tolerance" if r["adaptive"] else "`step=`", "yes" if r["implicit"] else "no", r["keeps"],
-                       r["doc"] + (f" Needs: {r['needs']}." if r["needs"] else ""), r["source"])
+                       "tolerance" if r["adaptive"] else "`step=`", "yes" if r["implicit"] else "no", r["keeps"])
 
-    head = ("method", "order", "with a torque", "between steps", "steps by", "implicit", "keeps", "what it is",
-            "source")
-    return f"{table(head, rows(False))}\n\n## Steps of engines\n\nA plan never chooses them.\n\n{table(head, rows(True))}"
+    def about(cheap: bool) -> str:
+        return "\n\n".join(
+            f"{code(r['name'])}\n: {r['doc']}" + (f" Needs: {r['needs']}." if r["needs"] else "") + f" *{r['source']}.*"
+            for r in ph.methods() if r["cheap"] == cheap)
+
+    head = ("method", "order", "with a torque", "between steps", "steps by", "implicit", "keeps")
+    return (f"{table(head, rows(False))}\n\n{about(False)}\n\n"
+            f"## Steps of engines\n\nA plan never chooses them.\n\n{table(head, rows(True))}\n\n{about(True)}")
 
 
 def models() -> str:
@@ -77,6 +81,12 @@ def commands() -> str:
     return "\n\n".join(parts)
 
 
+def plural(words: str) -> str:
+    """Return a type in the plural."""
+    return " or ".join(re.sub(r"^(number|string|integer|boolean|list|table)\b", r"\1s", part)
+                       for part in words.split(" or "))
+
+
 def to_type(schema: dict[str, Any]) -> str:
     """Return the type of a key, from its JSON Schema, in words."""
     if "const" in schema:
@@ -91,7 +101,7 @@ def to_type(schema: dict[str, Any]) -> str:
     if schema.get("type") == "array":
         least, most = schema.get("minItems"), schema.get("maxItems")
         count = f"{most} " if least == most and most else ""
-        return f"list of {count}{to_type(schema.get('items', {}))}"
+        return f"list of {count}{plural(to_type(schema.get('items', {})))}"
     bounds = [f"{sign} {schema[key]}" for key, sign in
               (("minimum", ">="), ("exclusiveMinimum", ">"), ("maximum", "<=")) if key in schema]
     return " ".join([schema.get("type", "any"), *bounds])
@@ -101,9 +111,10 @@ def keys(model: Any) -> str:
     """Return the tables of a file's keys, from the schema that checks the file."""
     schema = model.model_json_schema()
     parts = []
-    for title, part in {"the file": schema, **schema.get("$defs", {})}.items():
+    for title, part in {"The file": schema, **schema.get("$defs", {})}.items():
         required = part.get("required", [])
-        rows = ((code(name), to_type(one), "required" if name in required else code(json.dumps(one.get("default"))))
+        rows = ((code(name), to_type(one), "required" if name in required else
+                 "" if one.get("default") is None else code(json.dumps(one["default"])))
                 for name, one in part.get("properties", {}).items())
         parts.append(f"### {title}\n\n{table(('key', 'type', 'default'), rows)}")
     return "\n\n".join(parts)
