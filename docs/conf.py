@@ -54,8 +54,8 @@ sphinx_gallery_conf = {
     "examples_dirs": str(HERE / "gallery"), "gallery_dirs": "auto_gallery", "filename_pattern": r"/\w+\.py",
     "plot_gallery": RUN, "within_subsection_order": "FileNameSortKey", "remove_config_comments": True,
     "download_all_examples": False, "show_signature": False, "write_computation_times": False,
-    "show_memory": False, "reset_modules": ("_site.reset_matplotlib",), "abort_on_example_error": True,
-    "image_srcset": ["2x"], "nested_sections": False,
+    "show_memory": False, "min_reported_time": 1000, "reset_modules": ("_site.reset_matplotlib",),
+    "abort_on_example_error": True, "image_srcset": ["2x"], "nested_sections": False,
 }
 
 # The bibliography

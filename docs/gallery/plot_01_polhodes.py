@@ -2,8 +2,9 @@
 Polhodes
 ========
 
-A free body's momentum runs along curves on a sphere. Blue curves go round the axis of the greatest moment, green ones
-round that of the least. The orange one is next to the separatrix.
+A free body's momentum runs along curves on a sphere. Blue curves go round the
+axis of the greatest moment, green ones round that of the least. The orange one
+is next to the separatrix.
 """
 
 import matplotlib.pyplot as plt
@@ -25,8 +26,18 @@ figure = plt.figure(figsize=(5, 5))
 ax = figure.add_subplot(projection="3d", proj_type="ortho")
 for angle in np.radians([5, 15, 27, 40, 55, 70]):
     for sign in (1, -1):
-        draw(ax, np.array([0, np.sin(angle), sign * np.cos(angle)]), color="C1", lw=1)
-        draw(ax, np.array([sign * np.cos(angle), np.sin(angle), 0]), color="C2", lw=1)
+        draw(
+            ax,
+            np.array([0, np.sin(angle), sign * np.cos(angle)]),
+            color="C1",
+            lw=1,
+        )
+        draw(
+            ax,
+            np.array([sign * np.cos(angle), np.sin(angle), 0]),
+            color="C2",
+            lw=1,
+        )
 draw(ax, np.array([0.001, 1, 0.001]), color="C0", lw=2.5)
 ax.view_init(25, 35)
 ax.set_axis_off()

@@ -2,8 +2,9 @@
 Herpolhode
 ==========
 
-The ellipsoid of inertia rolls on a plane without slipping. The track of the point of contact is the herpolhode. It
-stays in a ring, and never closes in general.
+The ellipsoid of inertia rolls on a plane without slipping. The track of the
+point of contact is the herpolhode. It stays in a ring, and never closes in
+general.
 """
 
 import matplotlib.pyplot as plt

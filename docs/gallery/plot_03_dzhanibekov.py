@@ -2,7 +2,8 @@
 Dzhanibekov's nut
 =================
 
-A body that spins about its middle axis turns over again and again. A smaller wobble only delays the flips.
+A body that spins about its middle axis turns over again and again. A smaller
+wobble only delays the flips.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,9 @@
 Settling to the greatest moment
 ===============================
 
-Inner friction takes energy and leaves the momentum. The body then ends in a spin about the axis of its greatest
-moment. Here a torque across the momentum stands for the friction.
+Inner friction takes energy and leaves the momentum. The body then ends in a
+spin about the axis of its greatest moment. Here a torque across the momentum
+stands for the friction.
 """
 
 import matplotlib.pyplot as plt
@@ -15,13 +16,18 @@ moments = np.array([0.20, 0.40, 0.52])
 
 
 def friction(t, omega, attitude):
-    """Take energy, and no momentum: a torque across L, against the part of omega that is across L."""
+    """Take energy and no momentum: a torque across L, against omega."""
     L = moments * omega
     return 0.01 * np.cross(L, np.cross(L, omega)) / np.dot(L, L)
 
 
-scene = ph.Scene(inertia=moments, omega=(5, 0.1, 0.1), times=np.linspace(0, 120, 6000), want=("omega",),
-                 torques=[ph.torques.Custom(friction, uses_time=False, uses_attitude=False)])
+scene = ph.Scene(
+    inertia=moments,
+    omega=(5, 0.1, 0.1),
+    times=np.linspace(0, 120, 6000),
+    want=("omega",),
+    torques=[ph.torques.Custom(friction, uses_time=False, uses_attitude=False)],
+)
 motion = ph.solve(scene, method="dop853", rtol=1e-9)
 path = motion.omega * moments
 path /= np.linalg.norm(path, axis=1)[:, None]

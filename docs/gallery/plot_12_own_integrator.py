@@ -2,8 +2,8 @@
 Judge your own integrator
 =========================
 
-A closed form is a reference that costs nothing. Here it judges a Runge-Kutta step as one writes it in an afternoon,
-on a calm body and on a racket.
+A closed form is a reference that costs nothing. Here it judges a Runge-Kutta
+step as one writes it in an afternoon, on a calm body and on a racket.
 """
 
 import matplotlib.pyplot as plt
@@ -34,7 +34,10 @@ figure, ax = plt.subplots()
 counts = 2 ** np.arange(6, 13)
 for name, start in (("calm", (0.3, 0.2, 5.0)), ("racket", (1e-4, 5.0, 1e-4))):
     exact, _ = ph.FreeMotion(moments, omega=start).at(20.0)
-    errors = [np.linalg.norm(runge_kutta(np.array(start), 20 / n, n) - exact) / 5 for n in counts]
+    errors = [
+        np.linalg.norm(runge_kutta(np.array(start), 20 / n, n) - exact) / 5
+        for n in counts
+    ]
     ax.loglog(20 / counts, errors, "o-", label=name)
 ax.set(xlabel="step [s]", ylabel="relative error after 20 s")
 ax.legend()

@@ -71,6 +71,7 @@ def test_the_python_examples_of_a_page_run_in_their_order(page, tmp_path, monkey
 @pytest.mark.parametrize("path", sorted((ROOT / "docs/gallery").glob("*.py")), ids=lambda path: path.stem)
 def test_a_program_of_the_gallery_draws(path):
     plt = pytest.importorskip("matplotlib.pyplot")
+    assert max(map(len, path.read_text().splitlines())) <= 80
     plt.switch_backend("agg")
     names = {"__name__": "gallery"}
     exec(compile(path.read_text().replace("plt.show()", ""), str(path), "exec"), names)
