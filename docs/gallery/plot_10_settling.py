@@ -2,7 +2,7 @@
 Settling to the greatest moment
 ===============================
 
-Inner friction takes energy and leaves the momentum. The body then ends in a
+Inner friction takes energy and leaves the length of L. The body then ends in a
 spin about the axis of its greatest moment. Here a torque across the momentum
 stands for the friction.
 """
@@ -16,7 +16,7 @@ moments = np.array([0.20, 0.40, 0.52])
 
 
 def friction(t, omega, attitude):
-    """Take energy and no momentum: a torque across L, against omega."""
+    """Take energy and keep the length of L: a torque across L."""
     L = moments * omega
     return 0.01 * np.cross(L, np.cross(L, omega)) / np.dot(L, L)
 
