@@ -31,7 +31,7 @@ $(VENV)/.demo: pyproject.toml .ci/prepare
 	@.ci/prepare $(VENV) cli plot scipy
 	@touch $@
 $(VENV)/.ready: $(VENV)/.demo
-	@.ci/prepare $(VENV) cli plot mesh test docs
+	@.ci/prepare $(VENV) cli plot mesh ensemble test docs
 	@touch $@
 
 # One editable build serves the Python module and the C++ tests; ninja rebuilds only what changed.

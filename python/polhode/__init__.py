@@ -50,6 +50,9 @@ from .inertia import MassProperties as MassProperties
 from .inertia import PrincipalAxes as PrincipalAxes
 
 if _TYPE_CHECKING:
+    from ._ensemble.ensemble import Ensemble as Ensemble
+    from ._ensemble.run import ensemble as ensemble
+    from ._saved import load as load
     from . import atlas as atlas
     from . import charts as charts
     from . import recipe as recipe
@@ -58,17 +61,20 @@ if _TYPE_CHECKING:
 
 _attach()   # the methods of compiled classes that are written in Python
 
-__all__ = sorted(name for name in globals() if not name.startswith("_")) + ["__version__"]
-
 # imported at first use, to keep `import polhode` fast
 _LATE = ("atlas", "charts", "recipe", "report", "schema")
+_LATE_NAMES = {"Ensemble": "_ensemble.ensemble", "ensemble": "_ensemble.run", "load": "_saved"}
+
+__all__ = sorted({*(name for name in globals() if not name.startswith("_")), *_LATE_NAMES}) + ["__version__"]
 
 
 def __getattr__(name: str) -> _Any:
+    if name in _LATE_NAMES:
+        return getattr(_importlib.import_module(f"{__name__}.{_LATE_NAMES[name]}"), name)
     if name in _LATE:
         return _importlib.import_module(f"{__name__}.{name}")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_LATE})
+    return sorted({*globals(), *_LATE, *_LATE_NAMES})

@@ -92,6 +92,21 @@ def test_code_fits_on_the_page(page):
     assert not [formula for formula in re.findall(r"\$\$(.*?)\$\$", text, flags=re.S) if "quad" in formula]
 
 
+def test_the_examples_of_ensembles_run_with_the_recipe_of_the_page(tmp_path, monkeypatch):
+    for name in ("pandas", "xarray"):
+        pytest.importorskip(name)
+    recipe, sweep, _ = blocks("docs/ensemble.md", "toml")
+    (tmp_path / "mine.toml").write_text(recipe.replace("count = 2000", "count = 200"))
+    monkeypatch.chdir(tmp_path)
+    names = {}
+    for block in blocks("docs/ensemble.md", "python"):
+        exec(compile(block, "docs/ensemble.md", "exec"), names)
+    assert names["run"].done == 50 and names["states"].omega.shape == (23, 61, 3)
+    rotors = "[[rotors]]\naxis = [0.0, 0.0, 1.0]\nmomentum = 0.0\n"
+    (tmp_path / "swept.toml").write_text(recipe.replace("[times]", f"{rotors}[times]") + sweep)
+    assert ph.ensemble("swept.toml", executor=0, count=2).summary["omega"].mean.shape == (6, 61)
+
+
 @pytest.mark.parametrize("page", ["docs/scene.md", "docs/reference_scenes.md"])
 def test_the_scene_files_of_the_pages_load(page, tmp_path):
     (block,) = blocks(page, "toml")

@@ -6,6 +6,7 @@ import pickle
 import re
 import subprocess
 import sys
+import tempfile
 import types
 
 import numpy as np
@@ -187,6 +188,35 @@ def smoke_solve_many():
     assert isinstance(many, ph.Motions) and many.omega.shape == (2, 5, 3) and many.success.all()
 
 
+RECIPE = """
+count = 100
+seed = 1
+draw = "by-body"
+body = { moments = [0.2, 0.4, 0.52] }
+start = { omega = { normal = [[1.0, 2.0, 3.0], 0.1] } }
+times = { span = 1.0, samples = 5 }
+"""
+
+
+def smoke_ensemble():
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder) / "recipe.toml"
+        path.write_text(RECIPE)
+        run = ph.ensemble(path, executor=0)
+    assert isinstance(run, ph.Ensemble) and run.done == 100
+    assert np.allclose(run.summary["omega"].mean[0], np.linalg.norm(run.bodies(range(100)).omega, axis=1).mean())
+
+
+def smoke_load():
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder) / "motion.npz"
+        motion = ph.solve(scene(), rtol=1e-8)
+        motion.save(path)
+        again = ph.load(path)
+    assert np.array_equal(again.omega, motion.omega) and again.scene == motion.scene
+    assert np.array_equal(ph.solve(again.scene, **again.options).omega, motion.omega)
+
+
 SMOKE = {
     "Event": smoke_event,
     "DampedFree": smoke_damped_free,
@@ -197,6 +227,7 @@ SMOKE = {
     "Pendulum": smoke_pendulum,
     "InertiaTensor": smoke_inertia_tensor,
     "IntegrationFailure": smoke_errors,
+    "Ensemble": smoke_ensemble,
     "InvalidInput": smoke_errors,
     "MassProperties": smoke_mass_properties,
     "Motion": smoke_solve,
@@ -211,6 +242,7 @@ SMOKE = {
     "body_rates": smoke_body_rates,
     "build_info": smoke_build_info,
     "cmake_prefix": smoke_cmake_prefix,
+    "ensemble": smoke_ensemble,
     "euler_rates": smoke_body_rates,
     "fit": smoke_fit,
     "free_motion": smoke_free_motion,
@@ -221,6 +253,7 @@ SMOKE = {
     "generalised_forces": smoke_generalised_forces,
     "gyrostat": smoke_gyrostat,
     "heavy_top": smoke_heavy_tops,
+    "load": smoke_load,
     "methods": smoke_methods,
     "plan": smoke_plan,
     "solve": smoke_solve,

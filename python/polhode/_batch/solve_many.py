@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from .. import _core
+from .. import _core, _export
 from .._keywords import checked
+from .._scene.plain import to_plain
 from .._scene.scene import Scene
 from .._solve.motion import Floats
 from .._solve.solve import check_max_steps
@@ -41,6 +43,9 @@ class Motions:
         True if a body was integrated in SIMD lanes together with others, False if by `solve`.
     refused : ndarray of bool, shape (bodies,)
         With errors="nan": True for a start that no body can have. Its samples are NaN, and its message says why.
+    scenes : Scene or list of Scene
+    options : dict
+        The other keywords: ``solve_many(motions.scenes, **motions.options)`` repeats the motions.
     """
 
     omega: Floats | None
@@ -54,6 +59,50 @@ class Motions:
     success: npt.NDArray[np.bool_]
     lanes: npt.NDArray[np.bool_]
     refused: npt.NDArray[np.bool_]
+    scenes: Scene | list[Scene] = field(default_factory=list)
+    options: dict[str, Any] = field(default_factory=dict)
+
+    def _states(self) -> dict[str, Floats]:
+        return {name: array for name, array in (("omega", self.omega), ("attitude", self.attitude))
+                if array is not None}
+
+    def _outcomes(self) -> dict[str, Any]:
+        return {name: getattr(self, name) for name in ("t_reached", "error", "steps", "success", "lanes", "refused")}
+
+    def _times(self) -> Floats:
+        """The sample times: (times,), or (bodies, times) if the scenes have their own."""
+        if isinstance(self.scenes, Scene):
+            return self.scenes.times
+        rows = np.array([scene.times for scene in self.scenes])
+        return rows[0] if len(rows) and (rows == rows[0]).all() else rows
+
+    def to_pandas(self) -> Any:
+        """Return the samples as a pandas.DataFrame, a row for each body and time."""
+        bodies, times = len(self.status), self._times()
+        count = times.shape[-1]
+        index = {"body": np.repeat(np.arange(bodies), count),
+                 "t": times.reshape(-1) if times.ndim == 2 else np.tile(times, bodies)}
+        return _export.to_pandas(index, self._states())
+
+    def to_xarray(self) -> Any:
+        """Return the samples as an xarray.Dataset with units; omega (body, time, axis)."""
+        return _export.to_xarray(("body", "time"), {"time": self._times()}, self._states(), {"kind": "motions"},
+                                 self._outcomes())
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the motions with all that repeats them to a .npz file or a .zarr folder, for `polhode.load`.
+
+        Raises
+        ------
+        InvalidInput
+            For another suffix, and for a scene with a torque that is a function.
+        """
+        scenes = to_plain(self.scenes) if isinstance(self.scenes, Scene) else [to_plain(scene) for scene in self.scenes]
+        starts = {f"start_{name}": value for name, value in self.options.items() if isinstance(value, np.ndarray)}
+        options = {name: value for name, value in self.options.items() if not isinstance(value, np.ndarray)}
+        about = {"kind": "motions", "scenes": scenes, "options": options, "status": self.status,
+                 "message": self.message, "method": self.method}
+        _export.save(_export.check_path(path), about, {**self._states(), **self._outcomes(), **starts})
 
     def __repr__(self) -> str:
         return (f"Motions({len(self.status)} bodies, {int(self.success.sum())} with success, "
@@ -119,11 +168,12 @@ def solve_many(
         For everything that `solve` refuses, with the number of the body. See `errors` for impossible starts.
     """
     starts: tuple[Floats | None, Floats | None, Floats | None] = (None, None, None)
+    given: dict[str, Any] = {}
     if isinstance(scenes, Scene):
         arrays = {}
         for name, value, width in (("inertia", inertia, 3), ("omega", omega, 3), ("attitude", attitude, 4)):
             if value is not None:
-                arrays[name] = _rows(value, width, name)
+                arrays[name] = given[name] = _rows(value, width, name)
         sizes = {array.shape[0] for array in arrays.values() if array.ndim == 2}
         if len(sizes) != 1:
             raise _core.InvalidInput(
@@ -154,4 +204,7 @@ def solve_many(
                "max_steps": check_max_steps(max_steps)}
     found = _core._solve_many(listed, *starts, bodies, times, out["omega"], out["attitude"], options, workers,
                                refuse)
-    return Motions(omega=out["omega"], attitude=out["attitude"], **found)
+    given |= {name: value for name, value in options.items() if value is not None and value != 10_000_000}
+    given |= {} if refuse else {"errors": "nan"}
+    return Motions(omega=out["omega"], attitude=out["attitude"], **found,
+                   scenes=scenes if isinstance(scenes, Scene) else listed, options=given)

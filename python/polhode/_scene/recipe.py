@@ -105,7 +105,21 @@ def recipe_model() -> Any:
     start = model("RecipeStart", omega=(model("Rates", _deviation, normal=(kind.pair, ...)), ...))
     times = model("RecipeTimes", _ordered("uniform"), uniform=(kind.pair, ...))
     return model("RecipeFile", name=(str, ""), title=(str, ""), about=(str, ""), count=(count, ...), seed=(seed, ...),
+                 draw=(Literal["whole-arrays"], "whole-arrays"),
                  body=(body, ...), start=(start, ...), times=(times, ...))
+
+
+def find_recipe(source: str | os.PathLike[str]) -> pathlib.Path:
+    """Return the path of a recipe, given as a path or as the name of a recipe of polhode."""
+    path = _files.to_path(source, "recipe")
+    if _files.is_file(path):
+        return path
+    folder = scene_folder() / "recipes"
+    installed = folder / f"{path.name}.toml"
+    if path.parent == pathlib.Path() and not path.suffix and _files.is_file(installed):
+        return installed
+    names = ", ".join(sorted(p.stem for p in folder.glob("*.toml")))
+    raise InvalidInput(f"recipe: must be a file, or one of {names}; got {str(source)!r}")
 
 
 def load_recipe(source: str | os.PathLike[str]) -> Recipe:
@@ -116,14 +130,7 @@ def load_recipe(source: str | os.PathLike[str]) -> Recipe:
     InvalidInput
         For a file that is missing or not TOML, and for a key that is unknown, missing or wrong, with its name.
     """
-    path = _files.to_path(source, "recipe")
-    folder = scene_folder() / "recipes"
-    if not _files.is_file(path):
-        installed = folder / f"{path.name}.toml"
-        if path.parent != pathlib.Path() or path.suffix or not _files.is_file(installed):
-            names = ", ".join(sorted(p.stem for p in folder.glob("*.toml")))
-            raise InvalidInput(f"recipe: must be a file, or one of {names}; got {str(source)!r}")
-        path = installed
+    path = find_recipe(source)
     data = read_toml(path)
     data.setdefault("name", path.stem)
     entry = validate(recipe_model(), data, path.name)

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from .. import _core
+from .. import _core, _export
 from .._attitude.rotation import Rotation
+from .._scene.plain import to_plain
 from .._scene.scene import Scene
 from .plan import Plan
 
@@ -46,6 +48,9 @@ class Motion:
     Attributes
     ----------
     scene : Scene
+    options : dict
+        The keywords of `solve`, except `plan`, `dense`, `events` and `progress`: ``solve(motion.scene,
+        **motion.options)`` repeats the motion.
     t : ndarray, shape (n,)
         The times that were reached [s].
     omega : ndarray, shape (n, 3), or None
@@ -97,10 +102,12 @@ class Motion:
     events: tuple[EventHit, ...]
     sensitivity: Sensitivity | None = None
 
-    def __init__(self, scene: Scene, answer: _core.Answer, options: dict[str, Any] | None = None) -> None:
+    def __init__(self, scene: Scene, answer: _core.Answer, wishes: dict[str, Any] | None = None,
+                 options: dict[str, Any] | None = None) -> None:
         self.scene = scene
+        self.options = options or {}
         self._answer: _core.Answer | None = answer
-        self._options = options or {}
+        self._options = wishes or {}   # of the plan
 
     def __getattr__(self, name: str) -> Any:
         # Each part is copied from the compiled core at first use.
@@ -245,6 +252,37 @@ class Motion:
         from .._plot.motion import plot
 
         return plot(self, *parts, ax=ax, marks=marks, dark=dark)
+
+    def _arrays(self) -> dict[str, Floats]:
+        names = ("omega", "attitude", "omega_lower", "omega_upper", "attitude_lower", "attitude_upper")
+        return {name: array for name in names if (array := getattr(self, name)) is not None}
+
+    def _about(self) -> dict[str, Any]:
+        """Everything but the arrays, for JSON."""
+        plan = {key: value for key, value in vars(self.plan).items() if key not in ("scene", "_report")}
+        plan["pieces"] = [piece._asdict() for piece in self.plan.pieces]
+        hits = [[hit.event, hit.t, list(hit.omega), list(hit.attitude)] for hit in self.events]
+        return {"kind": "motion", "scene": to_plain(self.scene), "options": self.options, "plan": plan,
+                "status": self.status, "message": self.message, "stats": self.stats, "error": self.error,
+                "error_kind": self.error_kind, "asked": self.asked, "proved_span": self.proved_span, "events": hits}
+
+    def to_pandas(self) -> Any:
+        """Return the samples as a pandas.DataFrame with the columns t, omega_x to omega_z, attitude_x to attitude_w."""
+        return _export.to_pandas({"t": self.t}, self._arrays())
+
+    def to_xarray(self) -> Any:
+        """Return the samples as an xarray.Dataset with units; omega (time, axis) and attitude (time, component)."""
+        return _export.to_xarray(("time",), {"time": self.t}, self._arrays(), self._about())
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the motion with all that repeats it to a .npz file or a .zarr folder, for `polhode.load`.
+
+        Raises
+        ------
+        InvalidInput
+            For another suffix, and for a scene with a torque that is a function.
+        """
+        _export.save(_export.check_path(path), self._about(), {"t": self.t, **self._arrays()})
 
     def __len__(self) -> int:
         return int(self.t.size)

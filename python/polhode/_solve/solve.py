@@ -172,7 +172,12 @@ def solve(
             "max_steps": check_max_steps(max_steps), "dense": bool(dense), "formulation": str(formulation),
             "events": [_event(item) for item in events], "progress": callback, "cost_factors": factors()})
     asked = None if method is None and formulation == "euler" else {"method": method, "formulation": formulation}
-    motion = Motion(scene, answer, asked)
+    given = {"accuracy": accuracy, "method": method, "rtol": rtol, "atol": atol, "step": step}
+    options = {name: value for name, value in given.items() if value is not None}
+    options |= {"certify": certify} if certify is not True else {}
+    options |= {"max_steps": max_steps} if max_steps != 10_000_000 else {}
+    options |= {"formulation": formulation} if formulation != "euler" else {}
+    motion = Motion(scene, answer, asked, options)
     if sensitivity is not None:
         for name, given in (("events", events), ("rtol", rtol), ("atol", atol), ("step", step)):
             if given is not None and given != ():

@@ -21,6 +21,7 @@ from .._solve.plan import plan as make_plan
 from .._solve.solve import methods as method_records
 from .._solve.solve import solve
 from . import files, show
+from . import ensemble as ensembles   # after `show`, which imports rich itself
 from .streams import PipeClosed
 
 app = typer.Typer(name="polhode", add_completion=False, no_args_is_help=True, rich_markup_mode=None,
@@ -369,3 +370,6 @@ def atlas(
         tables.matrix(content)
         tables.end(content, output)
     return 1 if content["broken_claims"] else 0
+
+
+_command(ensembles.ensemble)

@@ -24,7 +24,8 @@ COLUMNS |= {f"{name}_{side}": tuple(f"{column}_{side}" for column in COLUMNS[nam
 def check(path: pathlib.Path, endings: tuple[str, ...] = (".csv", ".npz", ".json"), option: str = "output") -> None:
     """Refuse a file that cannot be written, before the motion is computed."""
     if path.suffix not in endings:
-        raise InvalidInput(f"{option}: must end in {', '.join(endings[:-1])} or {endings[-1]}, got {str(path)!r}")
+        known = f"{', '.join(endings[:-1])} or {endings[-1]}" if len(endings) > 1 else endings[0]
+        raise InvalidInput(f"{option}: must end in {known}, got {str(path)!r}")
     if path.is_dir() or not path.parent.is_dir() or not os.access(path.parent, os.W_OK):
         raise InvalidInput(f"{option}: {path} cannot be written: no such folder, or not writable")
 

@@ -1,0 +1,119 @@
+"""Speed of ensembles: states summed up, driven bodies, and what the engines cost beside the chunks.
+
+    python benchmarks/ensemble.py [sums] [driven] [overhead] [--small]
+
+CPU times are those of all processes. `--small` takes a tenth of the bodies.
+"""
+
+import json
+import pathlib
+import resource
+import shutil
+import sys
+import tempfile
+import time
+
+import polhode as ph
+from polhode._build import processor
+
+FREE = """
+name = "free"
+count = {count}
+seed = 8
+draw = "by-body"
+[body]
+moments = [0.02, 0.03, 0.04]
+moments_relative = {{ normal = [0.0, 0.05] }}
+[start]
+omega = {{ normal = [[0.0, 0.0, 0.2], 0.05] }}
+attitude = {{ normal_deg = 3.0 }}
+[times]
+span = 1000.0
+samples = 500
+[[summary]]
+of = "angle"
+"""
+
+HEAVY = """
+name = "heavy"
+count = {count}
+seed = 8
+draw = "by-body"
+[body]
+moments = [1.0, 2.0, 2.5]
+moments_relative = {{ normal = [0.0, 0.02] }}
+[start]
+omega = {{ normal = [[0.3, 0.2, 3.0], 0.05] }}
+euler = {{ sequence = "ZXZ", angles = [0.0, 0.5, 0.0] }}
+attitude = {{ normal_deg = 3.0 }}
+[[torques]]
+kind = "gravity"
+weight = 2.0
+arm = [0.3, 0.2, 0.5]
+[times]
+span = 10.0
+samples = 101
+[solve]
+method = "taylor"
+rtol = 1e-10
+[[summary]]
+of = "angle"
+"""
+
+
+def cpu():
+    return sum(sum(resource.getrusage(who)[:2]) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+
+
+def measure(text, count, executor, folder, store=True):
+    """Run a recipe; return wall and CPU seconds, those of the chunks, and the largest memory of a child [MB]."""
+    path, out = folder / "recipe.toml", folder / "out.zarr"
+    shutil.rmtree(out, ignore_errors=True)
+    log = folder / "out.zarr.log"
+    log.unlink(missing_ok=True)
+    path.write_text(text.format(count=count))
+    wall, start = time.perf_counter(), cpu()
+    run = ph.ensemble(path, out=out if store else None, executor=executor)
+    wall, total = time.perf_counter() - wall, cpu() - start
+    assert run.done == count and not run.failed
+    events = [json.loads(line) for line in log.read_text().splitlines()] if store else []
+    chunks = [event["cpu"] for event in events if event["event"] == "done"]
+    peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
+    return {"wall": wall, "cpu": total, "chunks_cpu": sum(chunks), "chunks": len(chunks), "largest_child_MB": peak}
+
+
+def show(name, bodies, times, found):
+    rate, each = bodies / found["wall"], 1e9 * found["chunks_cpu"] / (bodies * times)
+    over = 100 * (found["cpu"] / found["chunks_cpu"] - 1) if found["chunks_cpu"] else float("nan")
+    print(f"{name:34s} {bodies * times:12.3g} states  wall {found['wall']:7.1f} s  CPU {found['cpu']:7.1f} s  "
+          f"chunks {found['chunks_cpu']:7.1f} s in {found['chunks']:4d}  {each:7.1f} ns a state  "
+          f"{rate:9.0f} bodies/s  beside the chunks {over:5.1f} %  child {found['largest_child_MB']:4.0f} MB", flush=True)
+
+
+def main(words):
+    small = "--small" in words
+    wanted = [word for word in words if not word.startswith("--")] or ["sums", "driven", "overhead"]
+    print(f"polhode {ph.__version__}, {ph.build_info()['simd']}, {processor()}")
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        if "sums" in wanted:
+            count = 200_000 if small else 2_000_000
+            show("free, angle, 1 process", count, 500, measure(FREE, count, 1, folder))
+        if "driven" in wanted:
+            count = 100_000 if small else 1_000_000
+            for workers in (1, 2):
+                show(f"heavy, taylor 1e-10, {workers} processes", count, 101, measure(HEAVY, count, workers, folder))
+        if "overhead" in wanted:
+            count = 100_000 if small else 400_000
+            show("heavy, 2 processes", count, 101, measure(HEAVY, count, 2, folder))
+            from distributed import LocalCluster
+
+            start = cpu()
+            with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster:
+                found = measure(HEAVY, count, cluster.scheduler_address, folder)
+            found["cpu"] = cpu() - start   # the workers' CPU is known once they have ended
+            show("heavy, Dask, 2 workers", count, 101, found)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

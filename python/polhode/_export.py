@@ -1,0 +1,134 @@
+"""Motions for pandas and xarray, and as files with all that is needed to repeat them."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+import pathlib
+import shutil
+from typing import Any
+
+import numpy as np
+
+from . import _files
+from ._core import InvalidInput, __version__
+
+COMPONENTS = {"omega": ("x", "y", "z"), "attitude": ("x", "y", "z", "w")}
+DIMENSIONS = {"omega": "axis", "attitude": "component"}
+UNITS = {"t": "s", "time": "s", "omega": "rad s-1", "attitude": "1", "t_reached": "s", "error": "1", "steps": "1"}
+TEXTS = {"omega": "angular velocity in body axes", "attitude": "unit quaternion (x, y, z, w), body to space",
+         "time": "time since the epoch of the scene", "error": "error of all samples, NaN if not estimated"}
+SUFFIXES = (".npz", ".zarr")
+
+
+def need(package: str) -> Any:
+    """Import an optional package; raise InvalidInput with the command that installs it."""
+    try:
+        return importlib.import_module(package)
+    except ImportError as error:
+        raise InvalidInput(f"{package}: needs {error.name}: pip install 'polhode[ensemble]'") from None
+
+
+def describe(name: str) -> dict[str, str]:
+    """Return the attributes of an array by the conventions of CF."""
+    base = name.removesuffix("_lower").removesuffix("_upper")
+    found = {"units": UNITS.get(base, "1")}
+    if text := TEXTS.get(base):
+        found["long_name"] = text + (f", {name.removeprefix(base)[1:]} bound" if name != base else "")
+    return found
+
+
+def columns_of(name: str, array: Any) -> dict[str, Any]:
+    """Return the columns of an array, such as omega_x, omega_y and omega_z."""
+    base = name.removesuffix("_lower").removesuffix("_upper")
+    tail = name.removeprefix(base)
+    return {f"{base}_{axis}{tail}": array[..., k].reshape(-1) for k, axis in enumerate(COMPONENTS[base])}
+
+
+def to_pandas(index: dict[str, Any], arrays: dict[str, Any]) -> Any:
+    """Return a table with the columns of the index first."""
+    pandas = need("pandas")
+    columns = dict(index)
+    for name, array in arrays.items():
+        columns |= columns_of(name, array)
+    return pandas.DataFrame(columns)
+
+
+def to_xarray(dims: tuple[str, ...], coordinates: dict[str, Any], arrays: dict[str, Any], about: dict[str, Any],
+              more: dict[str, Any] | None = None) -> Any:
+    """Return a Dataset: states along `dims`, and `more` arrays along the first of them."""
+    xarray = need("xarray")
+    variables = {}
+    for name, array in arrays.items():
+        base = name.removesuffix("_lower").removesuffix("_upper")
+        variables[name] = ((*dims, DIMENSIONS[base]), array, describe(name))
+    for name, array in (more or {}).items():
+        variables[name] = (dims[:1], array, describe(name))
+    coords: dict[str, Any] = {name: (name if np.ndim(values) == 1 else dims, values, describe(name))
+              for name, values in coordinates.items()}
+    coords |= {DIMENSIONS[name]: list(axes) for name, axes in COMPONENTS.items() if name in arrays}
+    attributes = {"Conventions": "CF-1.11", "source": f"polhode {__version__}", "polhode": json.dumps(about)}
+    return xarray.Dataset(variables, coords, attributes)
+
+
+def check_path(path: str | os.PathLike[str]) -> pathlib.Path:
+    """Return the path of a file to save; refuse other suffixes."""
+    found = _files.to_path(path, "path")
+    if found.suffix not in SUFFIXES:
+        raise InvalidInput(f"path: must end in .npz or .zarr, got {str(path)!r}")
+    return found
+
+
+def save(path: pathlib.Path, about: dict[str, Any], arrays: dict[str, Any]) -> None:
+    """Write arrays and what they are to a .npz file, or to a folder of Zarr."""
+    about = {**about, "polhode": __version__}
+    if path.suffix == ".npz":
+        with _files.whole(path) as draft:
+            np.savez_compressed(draft, about=np.array(json.dumps(about)), **arrays)
+        return
+    zarr = need("zarr")
+    draft = path.with_name(f".{path.name}.{os.getpid()}.draft")
+    try:
+        group = zarr.open_group(str(draft), mode="w")
+        for name, array in arrays.items():
+            dims = [f"{name}_{axis}" for axis in range(array.ndim)]
+            dims[-1:] = [DIMENSIONS[base] for base in COMPONENTS if name.startswith(base)] or dims[-1:]
+            group.create_array(name, data=array, dimension_names=dims, attributes=describe(name))
+        group.attrs.update({"Conventions": "CF-1.11", "polhode": json.dumps(about)})
+        if path.exists():
+            _remove(path)
+        os.replace(draft, path)
+    finally:
+        shutil.rmtree(draft, ignore_errors=True)
+
+
+def _remove(path: pathlib.Path) -> None:
+    """Remove a folder that `save` wrote; refuse any other."""
+    try:
+        json.loads((path / "zarr.json").read_bytes())["attributes"]["polhode"]
+    except (OSError, ValueError, LookupError, TypeError):
+        raise InvalidInput(f"path: {path} is there and is not a saved motion") from None
+    shutil.rmtree(path)
+
+
+def read(path: pathlib.Path) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return what a file holds: `about` and the arrays.
+
+    Raises
+    ------
+    InvalidInput
+        For a file that was not saved by polhode, or is damaged.
+    """
+    try:
+        if path.is_dir():
+            group = need("zarr").open_group(str(path), mode="r")
+            return json.loads(group.attrs["polhode"]), {name: np.asarray(array[...]) for name, array in group.arrays()}
+        _files.size_of(path, _files.MESH)
+        with open(path, "rb") as file, np.load(file, allow_pickle=False) as table:
+            arrays = {name: table[name] for name in table.files}
+        return json.loads(str(arrays.pop("about"))), arrays
+    except InvalidInput:
+        raise
+    except Exception as error:   # of zip, zlib, NumPy, Zarr and JSON
+        raise InvalidInput(f"{path}: must be a file that polhode saved ({type(error).__name__})") from None

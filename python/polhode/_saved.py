@@ -1,0 +1,94 @@
+"""`ph.load`: motions and ensembles from files."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import Any
+
+from . import _export, _files
+from ._batch.solve_many import Motions
+from ._core import InvalidInput
+from ._ensemble.ensemble import Ensemble
+from ._ensemble.load import from_arrays, open_run
+from ._scene.plain import from_plain
+from ._solve.motion import EventHit, Motion
+from ._solve.plan import Plan
+
+
+def load(path: str | os.PathLike[str]) -> Motion | Motions | Ensemble:
+    """Read what `save` wrote, or the store of an ensemble.
+
+    Parameters
+    ----------
+    path : path
+        A .npz file, or a folder of Zarr. The store of an ensemble may be opened while its run goes on.
+
+    Returns
+    -------
+    Motion, Motions or Ensemble
+        Dense output is not saved.
+
+    Raises
+    ------
+    InvalidInput
+        For a file that is missing or damaged, or that polhode did not write; and for the store of an ensemble of
+        another version.
+    """
+    found = _files.to_path(path, "path")
+    if not found.exists():
+        raise InvalidInput(f"{found}: cannot be read: no such file")
+    if found.is_dir() and not _is_motion(found):
+        return open_run(str(found))
+    about, arrays = _export.read(found)
+    readers: dict[Any, Any] = {"motion": _motion, "motions": _motions}
+    kind = about.get("kind") if isinstance(about, dict) else None
+    try:
+        if kind == "ensemble":
+            return from_arrays(found, about, arrays)
+        result: Motion | Motions = readers[kind](about, arrays)
+        return result
+    except (LookupError, TypeError, ValueError, AttributeError) as error:
+        if isinstance(error, InvalidInput):
+            raise
+        raise InvalidInput(f"{found}: must be a file that polhode saved ({type(error).__name__})") from None
+
+
+def _is_motion(folder: Any) -> bool:
+    try:
+        return "polhode" in json.loads((folder / "zarr.json").read_bytes())["attributes"]
+    except (OSError, ValueError, LookupError, TypeError):
+        return False
+
+
+def _motion(about: dict[str, Any], arrays: dict[str, Any]) -> Motion:
+    scene = from_plain(about["scene"])
+    motion = Motion.__new__(Motion)
+    plan: dict[str, Any] = dict(about["plan"])
+    wishes: dict[str, Any] = plan.pop("wishes")
+    names = ("omega", "attitude", "omega_lower", "omega_upper", "attitude_lower", "attitude_upper")
+    span = about["proved_span"]
+    motion.__dict__.update(
+        {name: arrays.get(name) for name in names}, scene=scene, _answer=None, _options=wishes, t=arrays["t"],
+        options=about["options"], status=str(about["status"]), _message=str(about["message"]), stats=about["stats"],
+        error=float(about["error"]), error_kind=str(about["error_kind"]), asked=float(about["asked"]),
+        proved_span=None if span is None else (float(span[0]), float(span[1])),
+        plan=Plan(scene, plan, wishes),
+        events=tuple(EventHit(int(event), float(t), _array(omega), _array(attitude))
+                     for event, t, omega, attitude in about["events"]))
+    return motion
+
+
+def _array(values: Any) -> Any:
+    import numpy as np
+
+    return np.asarray(values, dtype=float)
+
+
+def _motions(about: dict[str, Any], arrays: dict[str, Any]) -> Motions:
+    shared = about["scenes"]
+    scenes = from_plain(shared) if isinstance(shared, dict) else [from_plain(scene) for scene in shared]
+    starts = {name: arrays[f"start_{name}"] for name in ("inertia", "omega", "attitude") if f"start_{name}" in arrays}
+    return Motions(arrays.get("omega"), arrays.get("attitude"), tuple(about["status"]), tuple(about["message"]),
+                   tuple(about["method"]), arrays["t_reached"], arrays["error"], arrays["steps"], arrays["success"],
+                   arrays["lanes"], arrays["refused"], scenes, {**starts, **about["options"]})

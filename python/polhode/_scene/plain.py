@@ -1,0 +1,76 @@
+"""Scenes as plain data, for files: every number keeps its bits."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .. import torques
+from .._core import InertiaTensor, InvalidInput, Rotor
+from .scene import Scene, _restore
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return [_plain(item) for item in value] if isinstance(value, (tuple, list)) else value
+
+
+def _state(thing: Any) -> Any:
+    return _plain(thing.__getstate__())
+
+
+def _made(kind: Any, state: list[Any]) -> Any:
+    """Return the object that had this state, without rounding it again."""
+    made = kind.__new__(kind)
+    made.__setstate__(tuple(tuple(part) if kind is Rotor and isinstance(part, list) else part for part in state))
+    return made
+
+
+def _torque(torque: Any) -> dict[str, Any]:
+    if isinstance(torque, torques.During):
+        return {**_torque(torque.torque), "during": _plain(torque.windows)}
+    name = type(torque).__name__
+    if name == "Custom" or name not in torques.__all__:
+        raise InvalidInput(f"scene: must have torques that a file can hold, got {name}, a function")
+    return {"kind": name, "state": _state(torque)}
+
+
+def _from_torque(data: dict[str, Any]) -> Any:
+    if data["kind"] not in torques.__all__ or data["kind"] in ("Custom", "During", "records"):
+        raise ValueError(data["kind"])
+    torque = _made(getattr(torques, data["kind"]), data["state"])
+    return torques.During(torque, data["during"]) if "during" in data else torque
+
+
+def to_plain(scene: Scene) -> dict[str, Any]:
+    """Return a scene as lists, numbers and text.
+
+    Raises
+    ------
+    InvalidInput
+        For a torque that is a function.
+    """
+    matrix, physical = _state(scene.inertia)
+    return {"inertia": matrix, "physical": physical, "omega": scene.omega.tolist(), "attitude": scene.attitude.tolist(),
+            "torques": [_torque(torque) for torque in scene.torques],
+            "rotors": [_state(rotor) for rotor in scene.rotors],
+            "times": scene.times.tolist(), "want": list(scene.want), "t0": scene.t0, "name": scene.name}
+
+
+def from_plain(data: dict[str, Any]) -> Scene:
+    """Return the scene of plain data.
+
+    Raises
+    ------
+    InvalidInput, LookupError, TypeError, ValueError
+        For data that is none of a scene.
+    """
+    return _restore(Scene, {
+        "inertia": InertiaTensor(data["inertia"], physical=bool(data["physical"])), "omega": data["omega"],
+        "attitude": np.asarray(data["attitude"], dtype=float),
+        "torques": [_from_torque(torque) for torque in data["torques"]],
+        "rotors": [_made(Rotor, rotor) for rotor in data["rotors"]],
+        "times": np.asarray(data["times"], dtype=float), "want": tuple(data["want"]), "t0": float(data["t0"]),
+        "name": str(data["name"])})
