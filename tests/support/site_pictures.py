@@ -30,11 +30,20 @@ def take(site: Path, page: str, width: int, theme: str, folder: Path) -> list[st
         return wrong + ([f"is {seen} pixels wide in a window of {width}"] if seen > width else [])
 
 
+def search(site: Path, word: str) -> int:
+    """Return how many pages the site's own search finds, from the disk."""
+    with Browser((site / "search.html").resolve().as_uri() + f"?q={word}") as browser:
+        browser.wait("document.querySelector('#search-results p')?.textContent.includes('found')")
+        return browser.run("document.querySelectorAll('#search-results li').length")
+
+
 def main(site: str, folder: str) -> int:
-    """Take all screenshots; 1 if a page is wrong."""
+    """Take all screenshots; 1 if a page is wrong, or the search finds nothing."""
     target = Path(folder)
     target.mkdir(parents=True, exist_ok=True)
-    status = 0
+    status = int(search(Path(site), "separatrix") < 3)
+    if status:
+        print("the search finds nothing")
     for page in PAGES:
         for width in WIDTHS:
             for theme in ("light", "dark"):
