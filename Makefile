@@ -17,7 +17,7 @@ inputs := build/.names $(shell find CMakeLists.txt pyproject.toml cpp python/CMa
             tests/cpp/CMakeLists.txt scenes -type f 2>/dev/null)
 
 .PHONY: help demo test same-bits check-long install module clang sanitize valgrind fuzz mutants \
-        aarch64 debian13 free-threaded wheels stubs docs docs-pictures clean
+        aarch64 debian13 free-threaded wheels stubs docs docs-pictures clean web web-pictures
 .NOTPARALLEL:
 # An environment whose Python has gone is made anew.
 ifneq ($(shell $(VENV)/bin/python -c 'import pip; print("there")' 2>/dev/null),there)
@@ -126,6 +126,16 @@ docs: install
 # Screenshots of four pages, light and dark, wide and narrow, by a headless Chromium.
 docs-pictures: docs
 	@$(PYTHON) tests/support/site_pictures.py build/site build/site-pictures
+
+# The core as WebAssembly by Zig's Clang, its numbers against the native baseline, and the playground as one file.
+web: install
+	@$(PYTHON) -m pip install -qq --disable-pip-version-check "ziglang==0.17.1" wasmtime
+	@$(PYTHON) web/build.py
+	@POLHODE_SIMD=baseline $(PYTHON) -m pytest -q tests/python/test_web.py
+
+# The playground in a headless Chromium: two widths, light and dark. Pictures in build/web/pictures.
+web-pictures: install
+	@$(PYTHON) tests/support/web_pictures.py build/web/playground.html build/web/pictures
 
 stubs: install
 	@$(PYTHON) tests/support/make_stubs.py

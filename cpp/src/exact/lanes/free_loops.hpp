@@ -108,9 +108,11 @@ template <bool want_omega, bool want_attitude>
 void trig_loop(const exact::FreeTrig<double>& body, const FreeFrame& frame, const TimeGrid& grid, double* omega,
                double* attitude) {
   if (grid.n < TimeGrid::row) return loop<want_omega, want_attitude>(body, frame, grid.t, grid.n, omega, attitude);
-  const AlongBodyAxes axes = along_body_axes(body, frame);
-  if (axes.found) return trig_loop<want_omega, want_attitude, true>(axes, frame, grid, omega, attitude);
-  trig_loop<want_omega, want_attitude, false>(axes, frame, grid, omega, attitude);
+  if constexpr (want_omega) {
+    const AlongBodyAxes axes = along_body_axes(body, frame);
+    if (axes.found) return trig_loop<true, want_attitude, true>(axes, frame, grid, omega, attitude);
+  }
+  trig_loop<want_omega, want_attitude, false>({.body = body}, frame, grid, omega, attitude);
 }
 
 inline void on_times(const exact::FreeTrig<double>& body, const FreeFrame& frame, const TimeGrid& grid, double* omega,
