@@ -3,13 +3,15 @@
     python benchmarks/sensitivity.py            # the table of docs/results/fit.md
     python benchmarks/sensitivity.py S5 --rounds 5
 
-Every round runs the plain solution, the columns and heyoka's `var_ode_sys` (order 1, seven variables) in turn, each in
-CPU time of this thread; the smallest of the rounds counts. heyoka makes one run of its own step control and gives no
-error. polhode makes two runs and states one. Errors are those of the columns of omega(0), relative to their size, at
-all samples, against heyoka in 80-bit numbers.
+Every round runs the plain solution, the columns with it, and heyoka's `var_ode_sys` (order 1, seven variables) in turn,
+each in CPU time of this thread; the smallest of the rounds counts. heyoka makes one run and states no error. polhode
+makes the plain run, two runs of the columns, and states an error; with certify=False it makes one run of each. Errors are those of the columns of omega(0), relative
+to their size, against tests/reference/driven_sensitivity.json at its times.
 """
 
 import argparse
+import json
+import pathlib
 import time
 
 import numpy as np
@@ -20,6 +22,7 @@ from polhode.charts.equations import derivatives
 SCENES = {"S5": ("omega", "attitude", "gravity.weight"), "S6": ("omega", "attitude", "gravity_gradient.mean_motion"),
           "S7": ("omega", "attitude", "damping.matrix"), "S9": ("omega", "attitude", "constant.torque")}
 ACCURACIES = (1e-9, 1e-12)
+CASES = json.loads((pathlib.Path(__file__).parents[1] / "tests" / "reference" / "driven_sensitivity.json").read_text())
 
 
 def clock(work):
@@ -29,7 +32,7 @@ def clock(work):
 
 
 def make_heyoka(scene, tolerance, real):
-    """A function that gives states and columns of omega(0) at the scene's times; None without heyoka."""
+    """A function that gives states and their derivatives at the start and at the scene's times; None without heyoka."""
     try:
         import heyoka as hy
     except ImportError:
@@ -42,10 +45,11 @@ def make_heyoka(scene, tolerance, real):
     variational = hy.var_ode_sys(system, hy.var_args.vars, order=1)
     solver = hy.taylor_adaptive(variational, start, time=real(scene.t0), tol=real(tolerance), fp_type=real)
     whole = solver.state.copy()
+    grid = np.unique(np.concatenate([[scene.t0], scene.times])).astype(real)
 
     def run():
         solver.time, solver.state[:] = real(scene.t0), whole
-        return solver.propagate_grid(scene.times.astype(real))[-1]
+        return solver.propagate_grid(grid)[-1]
 
     return run
 
@@ -70,27 +74,31 @@ def measure_error(found, truth, scale):
 
 
 def measure(name, rounds):
-    scene = ph.Scene.load(name)
-    groups = list(SCENES[name])
-    exact = make_heyoka(scene, 1e-18, np.longdouble)
-    truth = to_columns(exact()) if exact else None
+    scene, groups, case = ph.Scene.load(name), SCENES[name], CASES.get(name)
     for accuracy in ACCURACIES:
         theirs = make_heyoka(scene, accuracy, float)
-        best = np.full(3, np.inf)
+        best = np.full(4, np.inf)
         for _ in range(rounds):
             plain, _ = clock(lambda: ph.solve(scene, accuracy))
             own, motion = clock(lambda: ph.solve(scene, accuracy, sensitivity=groups))
-            other, rows = clock(theirs) if theirs else (np.inf, None)
-            best = np.minimum(best, [plain, own, other])
-        s = motion.sensitivity
-        scale = np.linalg.norm(s.omega, axis=1).max()
-        own = np.concatenate([s.d_omega, s.d_attitude], axis=1)[:, :, :3]
-        errors = ["-", "-"]
-        if truth is not None:
-            errors = [f"{measure_error(own, truth, scale):.0e}", f"{measure_error(to_columns(rows), truth, scale):.0e}"]
-        cells = [f"{best[0] / 1e6:.2f}", f"{best[1] / 1e6:.2f}", f"{best[1] / best[0]:.1f}", errors[0],
-                 f"{s.error[:3].max():.0e}", f"{best[2] / 1e6:.2f}", f"{best[2] / best[1]:.1f}", errors[1]]
-        print(f"| {name} | {accuracy:.0e} | {len(s.columns)} | {' | '.join(cells)} |", flush=True)
+            one, _ = clock(lambda: ph.solve(scene, accuracy, certify=False, sensitivity=groups))
+            other = clock(theirs)[0] if theirs else np.inf
+            best = np.minimum(best, [plain, own, other, one])
+        errors = ["-", "-", "-"]
+        if case is not None:
+            at = scene.replace(times=case["times"])
+            s = ph.solve(at, accuracy, sensitivity="omega").sensitivity
+            truth = np.moveaxis(np.array([case["columns"][f"omega_{c}"] for c in "xyz"]), 0, 2)
+            scale = np.linalg.norm(s.omega, axis=1).max()
+            columns = np.concatenate([s.d_omega, s.d_attitude], axis=1)
+            errors = [f"{measure_error(columns, truth, scale):.0e}", f"{s.error.max():.0e}", "-"]
+            if theirs:
+                rows = make_heyoka(at, accuracy, float)()
+                errors[2] = f"{measure_error(to_columns(rows)[-len(truth):], truth, scale):.0e}"
+        count = len(motion.sensitivity.columns)
+        print(f"| {name} | {accuracy:.0e} | {count} | {best[0] / 1e6:.2f} | {best[1] / 1e6:.2f} | "
+              f"{best[1] / best[0]:.1f} | {errors[0]} | {errors[1]} | {best[3] / 1e6:.2f} | "
+              f"{best[2] / 1e6:.2f} | {errors[2]} | {best[2] / best[1]:.1f} | {best[2] / best[3]:.1f} |", flush=True)
 
 
 if __name__ == "__main__":

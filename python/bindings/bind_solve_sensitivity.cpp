@@ -17,8 +17,9 @@ TurnSide to_turn_side(const std::string& side) {
 }
 
 py::tuple sensitivity_of(const Scene& scene, const std::vector<std::string>& groups, double accuracy,
-                         const std::string& side, long max_steps) {
-  const SensitivityOptions options{.accuracy = accuracy, .side = to_turn_side(side), .max_steps = max_steps};
+                         bool certify, const std::string& side, long max_steps) {
+  const SensitivityOptions options{
+      .accuracy = accuracy, .certify = certify, .side = to_turn_side(side), .max_steps = max_steps};
   MotionSensitivity found;
   {
     const WithoutGil nogil;
@@ -29,14 +30,14 @@ py::tuple sensitivity_of(const Scene& scene, const std::vector<std::string>& gro
                         Array({n, py::ssize_t{4}}, found.attitude.data()),
                         Array({n, py::ssize_t{3}, width}, found.d_omega.data()),
                         Array({n, py::ssize_t{3}, width}, found.d_attitude.data()), found.columns,
-                        Array(width, found.error.data()), found.steps, found.runs);
+                        certify ? py::object(Array(width, found.error.data())) : py::none(), found.steps, found.runs);
 }
 
 }  // namespace
 
 void bind_solve_sensitivity(py::module_& m) {
-  m.def("sensitivity", &sensitivity_of, py::arg("scene"), py::arg("groups"), py::arg("accuracy"), py::arg("side"),
-        py::arg("max_steps"),
+  m.def("sensitivity", &sensitivity_of, py::arg("scene"), py::arg("groups"), py::arg("accuracy"), py::arg("certify"),
+        py::arg("side"), py::arg("max_steps"),
         "omega, attitude, their derivatives, the names of the columns, their errors, the steps and the runs.");
 }
 

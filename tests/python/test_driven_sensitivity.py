@@ -65,6 +65,14 @@ def test_columns_have_the_error_that_they_state(name, accuracy):
     assert errors.max() < 0.3 * accuracy
 
 
+def test_without_a_certificate_there_is_one_run_and_no_error():
+    case = CASES["wheels"]
+    one = ph.solve(scene_of(case), 1e-10, certify=False, sensitivity="inertia").sensitivity
+    two = ph.solve(scene_of(case), 1e-10, sensitivity="inertia").sensitivity
+    assert one.error is None
+    np.testing.assert_array_equal(one.d_omega, two.d_omega)
+
+
 def test_finer_accuracy_reaches_rounding():
     assert all(find_errors(name, 1e-14)[0].max() < 1e-12 for name in CASES)
 

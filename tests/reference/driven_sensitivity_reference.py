@@ -30,7 +30,7 @@ CASES = {
            "groups": ["omega", "attitude", "inertia", "axes", "torques.0.weight", "torques.0.arm"]},
     "S6": {"inertia": [20.0, 40.0, 52.0], "omega": [0.002, 0.004, 0.006], "attitude": [0.0, 0.0, 0.0, 1.0],
            "torques": [{"kind": "gravity_gradient", "mean_motion": 1e-3, "phase": 0.0}],
-           "times": [100.0, 6283.1853, 12566.3706],
+           "times": [100.0, 1000.0, 3000.0],
            "groups": ["omega", "attitude", "inertia", "torques.0.mean_motion", "torques.0.phase"]},
     "S7": {"inertia": [1.0, 2.0, 2.5], "omega": [1.0, 2.0, 3.0], "attitude": [0.0, 0.0, 0.0, 1.0],
            "torques": [{"kind": "damping", "matrix": [[50.0, 0, 0], [0, 0.01, 0], [0, 0, 0.01]]}],

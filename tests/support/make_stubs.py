@@ -63,6 +63,12 @@ def tidy(text: str, public: list[str], home: str) -> str:
     lines = [line.rstrip() for line in text.splitlines() if not line.startswith("__all__")]   # it has none: invented
     lines = [tidy_signature(line, public, home) if re.match(r" *def .*:$", line) else line for line in lines]
     text = re.sub(r"^ +def __getattribute__\(.*\n(?: {8}.*\n)*", "", "\n".join(lines) + "\n", flags=re.M)   # a guard
+    # The result is a class of the package, which the compiled module cannot name.
+    text, found = re.subn(r"^( +def sensitivity\(self: FreeMotion, .*) -> typing.Any:$", r"\1 -> Sensitivity:", text,
+                          flags=re.M)
+    if found:
+        text = text.replace("import typing\n", "import typing\n\n"
+                            "from polhode._sensitivity.sensitivity import Sensitivity\n", 1)
     return re.sub(r"^(__version__: str) = .*$", r"\1", text, flags=re.M)
 
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "method/series/body_series.hpp"
 #include "polhode/core/error.hpp"
@@ -99,9 +100,10 @@ MotionSensitivity compute_sensitivity(const Scene& scene, const std::vector<std:
   const double turns = std::min(std::max(1.0, compute_facts(scene).turns), 1e6);
   double rtol = std::max(0.25 * options.accuracy / turns, least_tolerance / finer);
   MotionSensitivity found;
-  ColumnSamples last = columns.run(rtol, options.max_steps, samples_compared), now;
+  if (!options.certify) rtol = std::max(rtol * finer, least_tolerance);
+  ColumnSamples last = columns.run(rtol, options.max_steps, options.certify ? samples_compared : 0), now;
   found.runs = 1, found.steps = last.steps;
-  double worst = std::numeric_limits<double>::infinity();
+  double worst = options.certify ? std::numeric_limits<double>::infinity() : 0.0;
   double part = finer;
   for (; found.runs < most_runs && worst > options.accuracy && rtol > least_tolerance; ++found.runs) {
     rtol = std::max(rtol * part, least_tolerance);

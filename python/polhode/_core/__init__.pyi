@@ -9,6 +9,8 @@ import numpy
 import numpy.typing
 import polhode
 import typing
+
+from polhode._sensitivity.sensitivity import Sensitivity
 from . import attitude
 from . import torques
 class InvalidInput(ValueError):
@@ -467,7 +469,7 @@ class FreeMotion:
         ndarray, shape (..., 3)
             omega / sqrt(2 T), on the inertia ellipsoid [kg^-1/2 m^-1].
         """
-    def sensitivity(self: FreeMotion, t: typing.Any, wrt: typing.Any = ('omega', 'inertia'), side: str = 'space') -> typing.Any:
+    def sensitivity(self: FreeMotion, t: typing.Any, wrt: typing.Any = ('omega', 'inertia'), side: str = 'space') -> Sensitivity:
         """
         The motion and its derivatives at the given times.
 
@@ -1420,7 +1422,7 @@ def require_kept(array: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     """
 def rotor_speed(arg0: Scene, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
     ...
-def sensitivity(scene: Scene, groups: collections.abc.Sequence[str], accuracy: typing.SupportsFloat | typing.SupportsIndex, side: str, max_steps: typing.SupportsInt | typing.SupportsIndex) -> tuple[typing.Any, ...]:
+def sensitivity(scene: Scene, groups: collections.abc.Sequence[str], accuracy: typing.SupportsFloat | typing.SupportsIndex, certify: bool, side: str, max_steps: typing.SupportsInt | typing.SupportsIndex) -> tuple[typing.Any, ...]:
     """
     omega, attitude, their derivatives, the names of the columns, their errors, the steps and the runs.
     """

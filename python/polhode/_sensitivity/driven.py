@@ -13,7 +13,7 @@ CLOSED = {"omega", "attitude", "inertia", "axes"}
 
 
 def differentiate(scene: Scene, names: str | Sequence[str], accuracy: float, side: str = "space",
-                  max_steps: int = 10_000_000) -> Sensitivity:
+                  max_steps: int = 10_000_000, certify: bool = True) -> Sensitivity:
     """Return the motion of a scene and its derivatives at the scene's times.
 
     A free body has closed forms. Any other body has its variational equations integrated.
@@ -27,5 +27,5 @@ def differentiate(scene: Scene, names: str | Sequence[str], accuracy: float, sid
         found: Sensitivity = body.sensitivity(scene.times - scene.t0, groups, side)
         return found
     omega, attitude, d_omega, d_attitude, columns, error, _, _ = _core.sensitivity(
-        scene, list(groups), accuracy, side, max_steps)
+        scene, list(groups), accuracy, certify, side, max_steps)
     return Sensitivity(omega, attitude, d_omega, d_attitude, tuple(columns), side, error)

@@ -79,7 +79,7 @@ class DrivenState(State):
     def limit_steps(self, times: Array) -> None:
         """Allow twenty times the steps that this state takes."""
         scene = self.make_scene(np.unique(times), False)
-        self.most_steps = 1000 + 20 * _core.sensitivity(scene, ["omega"], ACCURACY, "space", self.most_steps)[6]
+        self.most_steps = 1000 + 20 * _core.sensitivity(scene, ["omega"], ACCURACY, False, "space", self.most_steps)[6]
 
     def make_scene(self, times: Array, inertia: bool) -> Scene:
         """Return the scene with these parameters. `inertia`: the moments are among them."""
@@ -120,7 +120,7 @@ class DrivenProblem(Problem):
         assert isinstance(state, DrivenState)
         times, back = np.unique(self.t, return_inverse=True)
         s = differentiate(state.make_scene(times, "inertia" in self.slices), names, ACCURACY,
-                          max_steps=state.most_steps)
+                          max_steps=state.most_steps, certify=False)
         return s.omega[back], s.attitude[back], s.d_omega[back], s.d_attitude[back]
 
     def residuals(self, state: State) -> Array:

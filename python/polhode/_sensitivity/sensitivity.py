@@ -43,7 +43,7 @@ class Sensitivity:
     side : {'space', 'body'}
         The axes of the small rotations, those of the attitude at t = 0 included.
     error : ndarray, shape (n,), or None
-        The estimated error of each column relative to its size, where the motion was integrated.
+        The estimated error of each column relative to its size, where the motion was integrated with a certificate.
 
     Notes
     -----

@@ -144,7 +144,8 @@ def solve(
         What to differentiate the motion by, for `motion.sensitivity`: "omega" and "attitude" (the start), "inertia"
         (principal moments), "axes" (a small rotation of the principal axes in the body), numbers of torques and rotors
         such as "torques.0.weight", "torques.1.matrix", "torques.0.windows" (the ends of windows), "rotors.0.momentum",
-        or "gravity.weight" where only one is there. Its error is relative to the size of each column.
+        or "gravity.weight" where only one is there. Its error is relative to the size of each column. It is not
+        measured with certify=False.
     side : {"space", "body"}
         The axes of small rotations in `motion.sensitivity`.
 
@@ -183,7 +184,8 @@ def solve(
             if given is not None and given != ():
                 raise _core.InvalidInput(f"{name}: must be left out with sensitivity=, which has an accuracy and all "
                                          f"times, got {given!r}")
-        motion.sensitivity = differentiate(scene, sensitivity, 1e-9 if accuracy is None else accuracy, side, max_steps)
+        motion.sensitivity = differentiate(scene, sensitivity, 1e-9 if accuracy is None else accuracy, side, max_steps,
+                                           bool(certify))
     return motion
 
 

@@ -99,6 +99,17 @@ TEST_CASE("more than eight columns are those of one group") {
       CHECK(many.d_omega[18 * i + 6 + c] == doctest::Approx(few.d_omega[3 * i + c]).epsilon(1e-9));
 }
 
+TEST_CASE("one run without a certificate states no error") {
+  const Scene scene = DrivenNumbers().make();
+  const MotionSensitivity one = compute_sensitivity(scene, {"omega"}, {.accuracy = 1e-10, .certify = false});
+  const MotionSensitivity two = compute_sensitivity(scene, {"omega"}, {.accuracy = 1e-10});
+  CHECK(one.error.empty());
+  CHECK(one.runs == 1);
+  CHECK(two.runs >= 2);
+  for (std::size_t i = 0; i < two.d_omega.size(); ++i)
+    CHECK(one.d_omega[i] == doctest::Approx(two.d_omega[i]).epsilon(1e-9));
+}
+
 TEST_CASE("numbers that a scene does not have are refused") {
   const Scene scene = DrivenNumbers().make();
   for (const char* name : {"gravity.length", "torques.9.weight", "torques.x.weight", "rotors.2.momentum",

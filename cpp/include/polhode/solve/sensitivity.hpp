@@ -10,6 +10,7 @@ namespace polhode {
 
 struct SensitivityOptions {
   double accuracy = 1e-9;             ///< of each column relative to its size, 0 < accuracy <= 1
+  bool certify = true;                ///< measure the error by a second run
   TurnSide side = TurnSide::space;    ///< of the small rotations, those of the start included
   long max_steps = 10'000'000;        ///< of one run
 };
@@ -19,8 +20,8 @@ struct MotionSensitivity {
   std::vector<std::string> columns;   ///< their names
   std::vector<double> omega, attitude;        ///< (n, 3) in body axes and (n, 4)
   std::vector<double> d_omega, d_attitude;    ///< (n, 3, columns)
-  /// The error of each column relative to its size, the largest of all samples: four times the difference of the last
-  /// two runs, and 4e-15 for each turn, of what both round alike.
+  /// The error of each column relative to its size, the largest of all samples; empty without a certificate. It is four
+  /// times the difference of the last two runs, and 4e-15 for each turn, of what both round alike.
   /// The size of a column in a sample is the larger of |d omega| / (largest |omega|) and the angle of the rotation.
   std::vector<double> error;
   long steps = 0;                     ///< of all runs
