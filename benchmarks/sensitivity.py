@@ -5,8 +5,8 @@
 
 Every round runs the plain solution, the columns with it, and heyoka's `var_ode_sys` (order 1, seven variables) in turn,
 each in CPU time of this thread; the smallest of the rounds counts. heyoka makes one run and states no error. polhode
-makes the plain run, two runs of the columns, and states an error; with certify=False it makes one run of each. Errors are those of the columns of omega(0), relative
-to their size, against tests/reference/driven_sensitivity.json at its times.
+makes the plain run, two runs of the columns, and states an error. With certify=False it makes one run of each. Errors
+are those of the columns of omega(0), relative to their size, against tests/reference/driven_sensitivity.json.
 """
 
 import argparse

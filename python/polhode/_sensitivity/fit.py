@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from .._core import InvalidInput
+from .._core import IntegrationFailure, InvalidInput
 from .._scene.scene import Scene
 from ..measured import Attitudes, Axis, Direction, Measurement, Rates
 from . import turns
@@ -106,8 +106,18 @@ def _start_driven(problem: Problem, state: State, loss: str, scale: float) -> St
         if isinstance(m, Attitudes) and "attitude" in problem.slices:
             step[problem.slices["attitude"]] = turns.log(turns.product(m.y[first], turns.conjugate(state.attitude)))
     spans = np.quantile(np.abs(problem.t), SPANS)
-    starts = [_grown(problem, s, spans, loss, scale) for s in (state, state.moved(step, problem.slices))]
-    return min(starts, key=lambda found: found.cost).state
+    best: Minimum | None = None
+    for first in (state.moved(step, problem.slices), state):
+        for windows in (spans, spans[2:], spans[-1:]):
+            try:
+                found = _grown(problem, first, windows, loss, scale)
+            except IntegrationFailure:   # numbers that a short window hardly tells may be wild in a longer one
+                continue
+            if best is None or found.cost < best.cost:
+                best = found
+            if fits(best):
+                return best.state
+    return state if best is None else best.state
 
 
 def _grown(problem: Problem, state: State, spans: Array, loss: str, scale: float) -> Minimum:
