@@ -107,10 +107,10 @@ def _start_driven(problem: Problem, state: State, loss: str, scale: float) -> St
             step[problem.slices["attitude"]] = turns.log(turns.product(m.y[first], turns.conjugate(state.attitude)))
     spans = np.quantile(np.abs(problem.t), SPANS)
     best: Minimum | None = None
-    for first in (state.moved(step, problem.slices), state):
+    for begin in (state.moved(step, problem.slices), state):
         for windows in (spans, spans[2:], spans[-1:]):
             try:
-                found = _grown(problem, first, windows, loss, scale)
+                found = _grown(problem, begin, windows, loss, scale)
             except IntegrationFailure:   # numbers that a short window hardly tells may be wild in a longer one
                 continue
             if best is None or found.cost < best.cost:
