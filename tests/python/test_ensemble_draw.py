@@ -92,6 +92,14 @@ def test_draws_have_their_distributions(table, laws):
     assert (np.abs(across) < 0.03).all()
 
 
+def test_quantities_are_independent():
+    normal = {"normal": [0.0, 1.0]}
+    torques = [{"kind": "constant", "torque": normal}, {"kind": "constant", "torque": normal}]
+    values = drawn(made(start={"omega": normal}, torques=torques)).values
+    across = np.corrcoef(np.concatenate([values[path] for path in values if path[0] != "body"], axis=1).T)
+    assert across.shape == (9, 9) and (np.abs(across - np.eye(9)) < 0.03).all()
+
+
 def test_directions_and_attitudes_are_uniform():
     values = drawn(made(start={"omega": {"sphere": 0.2}, "attitude": {"uniform": "sphere"}})).values
     omega, attitude = values["start", "omega"], values["start", "attitude"]

@@ -76,7 +76,6 @@ def compute(task: Task, chunk: int, writer: Any = None) -> Floats:
         inertia = states.diagonal(bodies) if in_lanes else None
         if inertia is not None:
             omega, attitude = states.start_of(point, bodies)
-            omega[bodies.impossible] = np.nan
             times = point.nominal.times - point.nominal.t0
             summary.add_free(number + start, inertia, omega, attitude, times, threads=1)
         if inertia is None or stores:
