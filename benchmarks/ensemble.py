@@ -87,7 +87,8 @@ def show(name, bodies, times, found):
     over = 100 * (found["cpu"] / found["chunks_cpu"] - 1) if found["chunks_cpu"] else float("nan")
     print(f"{name:34s} {bodies * times:12.3g} states  wall {found['wall']:7.1f} s  CPU {found['cpu']:7.1f} s  "
           f"chunks {found['chunks_cpu']:7.1f} s in {found['chunks']:4d}  {each:7.1f} ns a state  "
-          f"{rate:9.0f} bodies/s  beside the chunks {over:5.1f} %  child {found['largest_child_MB']:4.0f} MB", flush=True)
+          f"{rate:9.0f} bodies/s  beside the chunks {over:5.1f} %  child {found['largest_child_MB']:4.0f} MB",
+          flush=True)
 
 
 def main(words):

@@ -245,8 +245,7 @@ def begin(recipe, out, moment, *arguments):
 
 def resumed(recipe, out, whole, kept):
     """Resume a run; the store is as if undisturbed, and no marked chunk was computed again."""
-    status, _, err = ensembles.run(recipe, "-o", out, "--workers", 2, "--resume")
-    assert status == 0, err
+    ph.ensemble(recipe, out=out, resume=True, executor=0)
     assert ensembles.content(out) == whole
     now = ensembles.marks(out)
     assert {name: now[name] for name in kept} == kept

@@ -134,3 +134,12 @@ def test_wrong_options_of_solve_are_refused_before_any_chunk(tmp_path, options, 
     path.write_text(text)
     with pytest.raises(ph.InvalidInput, match=message):
         ph.ensemble(path, executor=0)
+
+
+def test_histograms_that_need_too_much_memory_are_refused(tmp_path):
+    path = ensembles.write(tmp_path, ensembles.FREE, samples=1_000_000)
+    with pytest.raises(ph.InvalidInput, match="the histograms of 1000000 times at 1 points need .* bytes") as refused:
+        ph.ensemble(path, executor=0)
+    assert "least and largest narrow a histogram" in str(refused.value)
+    narrow = '[[summary]]\nof = "omega"\nleast = 0.0625\nlargest = 0.25\n'
+    assert ph.ensemble(ensembles.write(tmp_path, ensembles.FREE + narrow, samples=1000), executor=0, count=3).done == 3

@@ -226,6 +226,17 @@ def test_a_flipped_bit_of_states_is_found_by_verify_and_by_readers(copy):
     assert ensembles.run("status", copy)[0] == 0
 
 
+@pytest.mark.parametrize("changes", [{"slab": 0}, {"slab": 64}, {"chunk": 48}, {"number": 10**12}, {"points": 2},
+                                     {"chunk": -32}, {"chunk": "32"}, {"slab": 2.5}])
+def test_a_layout_that_is_none_is_refused(copy, changes):
+    path = copy / "zarr.json"
+    content = json.loads(path.read_text())
+    content["attributes"]["polhode_ensemble"]["layout"] |= changes
+    path.write_text(json.dumps(content))
+    with pytest.raises(ph.InvalidInput, match="must have the layout of its recipe"):
+        ph.load(copy)
+
+
 def test_damaged_metadata_is_refused(recipe, copy):
     (copy / "zarr.json").write_bytes((copy / "zarr.json").read_bytes()[:-200])
     with pytest.raises(ph.InvalidInput, match="zarr.json is damaged, or is not that of an ensemble"):
@@ -321,8 +332,7 @@ def test_a_full_disk_ends_the_run_at_once_and_is_resumable(tmp_path, small_disk,
     assert len(vain) <= 2 and not {event["chunk"] for event in vain} & done
     assert kind == "metadata" or 0 < len(ensembles.marks(store)) < 16
     assert resize("64m")
-    status, _, err = ensembles.run(path, "-o", store, "--workers", 2, "--resume")
-    assert status == 0, err
+    ph.ensemble(path, out=store, resume=True, executor=0)
     assert ensembles.content(store) == ensembles.content(whole)
 
 

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .. import _core
+from .._core import InvalidInput
 from .distributions import Floats
 from .draw import draw
 from .recipe import EnsembleRecipe
@@ -72,6 +73,7 @@ def _power(value: float, least: int, most: int) -> int:
 
 def make(recipe: EnsembleRecipe) -> Layout:
     """Return the layout of a recipe."""
+    check_memory(recipe)
     states = recipe.times.size
     if recipe.chunk is not None:
         chunk = recipe.chunk
@@ -83,6 +85,37 @@ def make(recipe: EnsembleRecipe) -> Layout:
         lanes = {"rtol", "atol"} & recipe.options.keys() and recipe.options.get("method", "rk45") in LANES
         chunk = _power((LANE_STEPS if lanes else CHUNK_STEPS) / max(steps, 1), 8, MOST_CHUNK)
     return Layout(recipe.count, len(recipe.points), chunk, min(_power(SLAB_STATES / states, 1, 2**16), chunk))
+
+
+MOST_BYTES = 2**31       # of the summaries of all points, and of a record
+
+
+def check_memory(recipe: EnsembleRecipe) -> None:
+    """Refuse a recipe whose histograms need more memory than a worker should have."""
+    bins = 0
+    for wanted in recipe.wanted:
+        of = "value" if wanted.of == "function" else wanted.of
+        unit = {"angle": {"nominal": np.array([0.0, 0.0, 0.0, 1.0])},
+                "axis_angle": {"axis": np.array([0.0, 0.0, 1.0]), "target": np.array([0.0, 0.0, 1.0])}}
+        alone = new_summary([{"of": of, **wanted.bounds, **unit.get(of, {})}], 1)
+        bins += 20 if of == "attitude" else alone.edges(0).size
+    needed = 8 * bins * recipe.times.size * len(recipe.points)
+    if needed > MOST_BYTES:
+        raise InvalidInput(f"times, sweep: must be fewer: the histograms of {recipe.times.size} times at "
+                           f"{len(recipe.points)} points need {needed} bytes, of {MOST_BYTES}; least and largest "
+                           f"narrow a histogram")
+
+
+def _is_power(value: Any) -> bool:
+    return type(value) is int and 0 < value <= 2**30 and value & (value - 1) == 0
+
+
+def check(recipe: EnsembleRecipe, layout: Layout, where: str) -> None:
+    """Refuse a layout from a file that is none of the recipe."""
+    check_memory(recipe)
+    fits = layout.number == recipe.count and layout.points == len(recipe.points)
+    if not (fits and _is_power(layout.chunk) and _is_power(layout.slab) and layout.slab <= layout.chunk):
+        raise InvalidInput(f"{where}: must have the layout of its recipe, got {tuple(layout)}")
 
 
 HEAD = ("bodies", "failed", "redrawn", "impossible", "solved", "certified", "steps", "worst_error")

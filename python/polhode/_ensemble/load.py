@@ -7,6 +7,7 @@ import zipfile
 from typing import Any
 
 from .._core import InvalidInput
+from . import layout as layouts
 from . import recipe as recipes
 from . import store
 from .ensemble import Ensemble
@@ -38,6 +39,7 @@ def from_arrays(path: pathlib.Path, about: dict[str, Any], arrays: Any) -> Ensem
     try:
         recipe = recipes.from_content(about["recipe"], about["folder"], str(path))
         stamp, layout = about["stamp"], Layout(**about["layout"])
+        layouts.check(recipe, layout, str(path))
         task = Task(recipes.to_message(recipe), layout, {}, None)
         store.check_stamp(str(path), stamp, {**store.stamp(task), "functions": stamp.get("functions", {})})
         chunks, records = arrays["chunks"], arrays["records"]

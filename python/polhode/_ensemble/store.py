@@ -22,6 +22,7 @@ import numpy as np
 
 from .._build import build_info
 from .._core import InvalidInput, __version__
+from . import layout as layouts
 from . import states
 from .distributions import Floats
 from .layout import Layout
@@ -192,7 +193,9 @@ def recipe_of(out: str) -> tuple[EnsembleRecipe, Layout, dict[str, Any]]:
     if content is None:
         raise InvalidInput(f"{out}: must be a store of an ensemble, got none that has begun")
     recipe = from_content(content["recipe"], content.get("folder", "."), out)
-    return recipe, Layout(**content["layout"]), content["stamp"]
+    layout = Layout(**content["layout"])
+    layouts.check(recipe, layout, out)
+    return recipe, layout, content["stamp"]
 
 
 def check_stamp(out: str, found: dict[str, Any], wanted: dict[str, Any]) -> None:
