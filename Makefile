@@ -17,7 +17,7 @@ inputs := build/.names $(shell find CMakeLists.txt pyproject.toml cpp python/CMa
             tests/cpp/CMakeLists.txt scenes -type f 2>/dev/null)
 
 .PHONY: help demo test same-bits check-long install module clang sanitize valgrind fuzz mutants \
-        aarch64 debian13 free-threaded wheels stubs docs docs-pictures clean web web-pictures
+        aarch64 debian13 free-threaded wheels stubs docs docs-pictures browser web web-pictures clean
 .NOTPARALLEL:
 # An environment whose Python has gone is made anew.
 ifneq ($(shell $(VENV)/bin/python -c 'import pip; print("there")' 2>/dev/null),there)
@@ -136,6 +136,10 @@ web: install
 # The playground in a headless Chromium: two widths, light and dark. Pictures in build/web/pictures.
 web-pictures: install
 	@$(PYTHON) tests/support/web_pictures.py build/web/playground.html build/web/pictures
+
+# The pages that polhode writes, in a headless Chromium: films of motions, and the report.
+browser: install
+	@$(PYTHON) -m pytest -q tests/python/test_film.py tests/python/test_report.py
 
 stubs: install
 	@$(PYTHON) tests/support/make_stubs.py

@@ -8,6 +8,7 @@ import matplotlib.figure
 import numpy
 import numpy.typing
 import polhode
+import polhode._plot.film.film
 import typing
 
 from polhode._sensitivity.sensitivity import Sensitivity
@@ -588,6 +589,27 @@ class Gyrostat:
         ...
     def __setstate__(self: Gyrostat, arg0: tuple[typing.Any, ...]) -> None:
         ...
+    def animate(self, t: typing.Any = None, *, body: typing.Any = 'box', axis: typing.Any = None) -> polhode._plot.film.film.Film:
+        """
+        Make a film of the motion: the body turns, beside the polhode on the ellipsoid of its energy.
+
+        Parameters
+        ----------
+        t : array_like, shape (n,), or float, optional
+            As for `plot`: the times, or the end of the span [s].
+        body, axis
+            As for :meth:`Motion.animate`.
+
+        Returns
+        -------
+        Film
+            A notebook plays it; ``.save(path)`` writes .html, .gif or .mp4.
+
+        Raises
+        ------
+        InvalidInput
+            As :meth:`Motion.animate`.
+        """
     def at(self: Gyrostat, t: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
         Angular velocity and attitude at the given times.
@@ -743,6 +765,27 @@ class DampedFree:
         ...
     def __setstate__(self: DampedFree, arg0: tuple[typing.Any, ...]) -> None:
         ...
+    def animate(self, t: typing.Any = None, *, body: typing.Any = 'box', axis: typing.Any = None) -> polhode._plot.film.film.Film:
+        """
+        Make a film of the motion: the body turns, beside the polhode on the ellipsoid of its energy.
+
+        Parameters
+        ----------
+        t : array_like, shape (n,), or float, optional
+            As for `plot`: the times, or the end of the span [s].
+        body, axis
+            As for :meth:`Motion.animate`.
+
+        Returns
+        -------
+        Film
+            A notebook plays it; ``.save(path)`` writes .html, .gif or .mp4.
+
+        Raises
+        ------
+        InvalidInput
+            As :meth:`Motion.animate`.
+        """
     def at(self: DampedFree, t: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
         Angular velocity and attitude at the given times.
@@ -880,6 +923,27 @@ class HeavyTop:
         ...
     def __setstate__(self: HeavyTop, arg0: tuple[typing.Any, ...]) -> None:
         ...
+    def animate(self, t: typing.Any = None, *, body: typing.Any = 'box', axis: typing.Any = None) -> polhode._plot.film.film.Film:
+        """
+        Make a film of the motion: the body turns, beside the polhode on the ellipsoid of its energy.
+
+        Parameters
+        ----------
+        t : array_like, shape (n,), or float, optional
+            As for `plot`: the times, or the end of the span [s].
+        body, axis
+            As for :meth:`Motion.animate`.
+
+        Returns
+        -------
+        Film
+            A notebook plays it; ``.save(path)`` writes .html, .gif or .mp4.
+
+        Raises
+        ------
+        InvalidInput
+            As :meth:`Motion.animate`.
+        """
     def at(self: HeavyTop, t: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
         Angular velocity and attitude at the given times.
@@ -1038,6 +1102,27 @@ class Pendulum:
         ...
     def __setstate__(self: Pendulum, arg0: tuple[typing.Any, ...]) -> None:
         ...
+    def animate(self, t: typing.Any = None, *, body: typing.Any = 'box', axis: typing.Any = None) -> polhode._plot.film.film.Film:
+        """
+        Make a film of the motion: the body turns, beside the polhode on the ellipsoid of its energy.
+
+        Parameters
+        ----------
+        t : array_like, shape (n,), or float, optional
+            As for `plot`: the times, or the end of the span [s].
+        body, axis
+            As for :meth:`Motion.animate`.
+
+        Returns
+        -------
+        Film
+            A notebook plays it; ``.save(path)`` writes .html, .gif or .mp4.
+
+        Raises
+        ------
+        InvalidInput
+            As :meth:`Motion.animate`.
+        """
     def at(self: Pendulum, t: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
         Angular velocity and attitude at the given times.

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     import matplotlib.axes
     import matplotlib.figure
 
+    import polhode._plot.film.film
+
     from .track import Track
 
 TURNS = 10          # of a motion without a period, or with a long one
@@ -91,7 +93,8 @@ def plot(self: Any, t: Any = None, *parts: str, ax: matplotlib.axes.Axes | None 
     InvalidInput
         As :meth:`Motion.plot`.
     """
-    from .motion import draw, need_matplotlib
+    from .motion import draw
+    from .style import need_matplotlib
 
     need_matplotlib("plot")
     if isinstance(t, str):
@@ -99,10 +102,37 @@ def plot(self: Any, t: Any = None, *parts: str, ax: matplotlib.axes.Axes | None 
     return draw(make_track(self, t), parts, ax, marks, dark)
 
 
+def animate(self: Any, t: Any = None, *, body: Any = "box", axis: Any = None) -> polhode._plot.film.film.Film:
+    """Make a film of the motion: the body turns, beside the polhode on the ellipsoid of its energy.
+
+    Parameters
+    ----------
+    t : array_like, shape (n,), or float, optional
+        As for `plot`: the times, or the end of the span [s].
+    body, axis
+        As for :meth:`Motion.animate`.
+
+    Returns
+    -------
+    Film
+        A notebook plays it; ``.save(path)`` writes .html, .gif or .mp4.
+
+    Raises
+    ------
+    InvalidInput
+        As :meth:`Motion.animate`.
+    """
+    from .film.film import Film
+
+    return Film(make_track(self, t), body, axis)
+
+
 def attach() -> None:
     """Give the compiled classes their methods."""
-    plot.__doc__ = inspect.getdoc(plot)   # without the indent, for the stubs
+    for method in (plot, animate):
+        method.__doc__ = inspect.getdoc(method)   # without the indent, for the stubs
     for cls in (FreeMotion, Gyrostat, DampedFree, HeavyTop, Pendulum):
         setattr(cls, "plot", plot)
+        setattr(cls, "animate", animate)
         setattr(cls, "_repr_html_", html.of_closed_form)
     setattr(InertiaTensor, "_repr_html_", html.of_tensor)

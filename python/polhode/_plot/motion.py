@@ -9,6 +9,7 @@ import numpy as np
 from .._core import InvalidInput
 from .._solve.motion import Floats, Motion
 from . import style
+from .film.film import Film
 from .panels import DRAW, WITHOUT_ATTITUDE, Drawing, angles
 from .track import Track, of_motion, to_times
 
@@ -43,18 +44,15 @@ def _find_marks(marks: Any, track: Track) -> Floats:
     return to_times(marks, "marks")
 
 
-def need_matplotlib(what: str) -> None:
-    """Refuse without matplotlib."""
-    try:
-        import matplotlib  # noqa: F401
-    except ImportError:
-        raise InvalidInput(f"{what}: needs matplotlib: pip install 'polhode[plot]'") from None
-
-
 def plot(motion: Motion, *parts: str, ax: Axes | None = None, marks: Any = None, dark: bool = False) -> Figure:
     """Draw a motion; see `Motion.plot`."""
-    need_matplotlib("plot")
+    style.need_matplotlib("plot")
     return draw(of_motion(motion), parts, ax, marks, dark)
+
+
+def animate(motion: Motion, body: Any, axis: Any) -> Film:
+    """Make a film of a motion; see `Motion.animate`."""
+    return Film(of_motion(motion), body, axis)
 
 
 def draw(track: Track, parts: tuple[str, ...], ax: Axes | None, marks: Any, dark: bool) -> Figure:

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .. import _files
+from .._core import InvalidInput
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -68,6 +69,14 @@ def line(name: str, family: str, pale: bool = False) -> dict[str, Any]:
             "linewidth": 0 if family == "plan" else 0.9 if pale else 1.3 if peer else 2.0,
             "linestyle": (0, (4, 2)) if peer else "-", "solid_capstyle": "round",
             "zorder": 5 if family == "plan" else 2.5 if pale else 3 if peer else 4} | edge
+
+
+def need_matplotlib(what: str) -> None:
+    """Refuse without matplotlib."""
+    try:
+        import matplotlib  # noqa: F401
+    except ImportError:
+        raise InvalidInput(f"{what}: needs matplotlib: pip install 'polhode[plot]'") from None
 
 
 @contextmanager

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from .._plot.film.film import Film
     from .._sensitivity.sensitivity import Sensitivity
 
 Floats = npt.NDArray[np.float64]
@@ -283,6 +284,31 @@ class Motion:
             For another suffix, and for a scene with a torque that is a function.
         """
         _export.save(_export.check_path(path), self._about(), {"t": self.t, **self._arrays()})
+
+    def animate(self, *, body: Any = "box", axis: npt.ArrayLike | None = None) -> Film:
+        """Make a film of the motion: the body turns, beside the polhode on the ellipsoid of its energy.
+
+        Parameters
+        ----------
+        body : {"box", "ellipsoid"}, path, (vertices, faces) or a mesh object
+            What turns: a uniform box or ellipsoid with the inertia of the scene, or a mesh in body axes.
+        axis : array_like, shape (3,), optional
+            The body axis whose path in space is drawn. By default the arm of gravity, or the principal axis nearest to
+            omega at the start.
+
+        Returns
+        -------
+        Film
+            A notebook plays it; ``.save(path)`` writes .html, .gif or .mp4.
+
+        Raises
+        ------
+        InvalidInput
+            Without attitudes, for a mesh that cannot be read, and for one of more than 60 000 triangles.
+        """
+        from .._plot.motion import animate
+
+        return animate(self, body, axis)
 
     def __len__(self) -> int:
         return int(self.t.size)

@@ -97,6 +97,8 @@ def run(
     picture: Annotated[
         pathlib.Path | None, typer.Option("--plot",
                                           help="Draw polhode, angles and invariants: .png, .svg or .pdf.")] = None,
+    animate: Annotated[
+        pathlib.Path | None, typer.Option(help="Write a film of the turning body: .html, .gif or .mp4.")] = None,
     as_json: Json = False,
 ) -> int:
     """Compute the rotational motion of a scene at its sample times.
@@ -108,6 +110,8 @@ def run(
     if picture is not None:
         _need_matplotlib("pictures")
         files.check(picture, (".png", ".svg", ".pdf"), "plot")
+    if animate is not None:
+        files.check(animate, (".html", ".gif", ".mp4"), "animate")
     with show.Bar("solving") as bar:
         motion = solve(Scene.load(scene), accuracy, method=method, rtol=rtol, atol=atol, step=step, max_steps=max_steps,
                        certify="proof" if proof else True, progress=bar.fraction)
@@ -116,11 +120,15 @@ def run(
     if picture is not None:
         with _files.whole(picture) as draft:
             motion.plot().savefig(draft, dpi=160)
+    if animate is not None:
+        from .body import find_mesh
+
+        motion.animate(body=find_mesh(scene) or "box").save(animate)
     if as_json:
         _print_json(files.to_json(motion))
     else:
         show.motion(motion)
-    for written in filter(None, (output, picture)):
+    for written in filter(None, (output, picture, animate)):
         print(f"wrote {written}", file=sys.stderr if as_json else sys.stdout)
     return 0 if motion.success else 1
 

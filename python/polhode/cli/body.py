@@ -9,6 +9,12 @@ from .._scene.bodies import body_inertia, body_properties, is_solid
 from .._scene.files import load_body
 
 
+def find_mesh(source: str) -> str | None:
+    """Return the mesh file of a scene's body, or None."""
+    mesh: str | None = load_body(source).mesh
+    return mesh
+
+
 def examine(source: str) -> dict[str, Any]:
     """Return moments, axes, symmetry and verdict of a [body] table.
 
