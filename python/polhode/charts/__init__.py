@@ -6,5 +6,6 @@
 from __future__ import annotations
 
 from .chart import chart as chart
+from .entrant import Entrant as Entrant
 
-__all__ = ["chart"]
+__all__ = ["Entrant", "chart"]

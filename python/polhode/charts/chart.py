@@ -17,9 +17,10 @@ from .._scene.scene import Scene
 from . import pictures
 from .candidates import candidates
 from .engines import find_errors_per_turn
+from .entrant import read_entrants
 from .measure import SceneResult, measure
 from .results import document
-from .runners import make_runner
+from .runners import Both, Runner, make_runner
 
 DRAWING = 1.5    # seconds a scene's picture takes, about
 GENEROUS = 1.5   # times an equal share of the time left is what a scene may use
@@ -48,6 +49,7 @@ def chart(
     *,
     budget: float = 130.0,
     peers: bool = True,
+    entrants: Iterable[Any] = (),
     progress: Callable[[int, str], object] = lambda done, text: None,
     show: Callable[[SceneResult], object] = lambda result: None,
 ) -> tuple[list[SceneResult], dict[str, Any]]:
@@ -64,6 +66,9 @@ def chart(
         Approximate time limit [s]. Runs that do not fit are left out, slow programs first, and listed.
     peers : bool
         Also run other programs that are installed. Missing programs are listed.
+    entrants : iterable of Entrant, callables or peers
+        Solvers of your own. A function ``f(scene, rtol)`` returns omega and attitude; `Entrant` tells more of it. A
+        module of `polhode.charts.peers` adds that program alone. Functions run in this process.
     progress : callable
         ``progress(finished scenes, present task)``.
     show : callable
@@ -99,7 +104,11 @@ def chart(
     _check_folder(output)
 
     taking_part = candidates(peers)
+    mine = read_entrants(entrants, taking_part)
+    runner: Runner
     runner, together = make_runner(taking_part, [scene for scene, _ in loaded])
+    if mine:
+        runner, taking_part = Both(mine, runner), [*taking_part, *mine]
     results: list[SceneResult] = []
     try:
         runner.enter(loaded[0][0])   # a process apart takes a moment to be there

@@ -14,7 +14,7 @@ from .. import _core
 from .._harness.truth import Truth, compute_errors, find_truth
 from .._scene.scene import Scene
 from .candidate import Answer, Candidate, Failure
-from .runners import InProcess, Subprocess
+from .runners import InProcess, Runner
 
 ROUNDS = 5
 SHORTEST = 2e-3   # seconds of calls behind one reading of the clock
@@ -83,7 +83,7 @@ def compute_drift(scene: Scene, answer: Answer) -> dict[str, float]:
     return dict(_core.drift(scene, scene.times, answer.omega, attitude))
 
 
-def _first(point: Point, runner: InProcess | Subprocess, scene: Scene, truth: Truth, limit: float) -> float:
+def _first(point: Point, runner: Runner, scene: Scene, truth: Truth, limit: float) -> float:
     """Run once; a crash, a NaN and a run past its limit are answers too. Returns the seconds of warm-up."""
     try:
         answer, point.seconds, warm_up = runner.run(point.candidate, point.value, limit)
@@ -111,7 +111,7 @@ def _prediction(done: list[Point], value: float) -> float:
 
 
 def _sweep(
-    candidate: Candidate, runner: InProcess | Subprocess, scene: Scene, truth: Truth, share: float,
+    candidate: Candidate, runner: Runner, scene: Scene, truth: Truth, share: float,
     startups: dict[str, float]
 ) -> Iterable[Point]:
     """Run a candidate from its loosest setting to its tightest within a share of time; what would not end is left out,
@@ -144,7 +144,7 @@ def _sweep(
         yield point
 
 
-def _repeat(points: list[Point], runner: InProcess | Subprocess, deadline: float) -> None:
+def _repeat(points: list[Point], runner: Runner, deadline: float) -> None:
     """Time all points again, in turn, so that a slow minute of the machine hits all of them alike."""
     readings: dict[int, list[float]] = {}
     plans = []
@@ -169,7 +169,7 @@ def _repeat(points: list[Point], runner: InProcess | Subprocess, deadline: float
 
 def measure(
     scene: Scene, title: str, candidates: list[Candidate], budget: float, report: Report,
-    runner: InProcess | Subprocess | None = None
+    runner: Runner | None = None
 ) -> SceneResult:
     """Measure a scene within about `budget` seconds.
 
@@ -184,7 +184,7 @@ def measure(
         is for repeats.
     report : callable
         Called with the present task in a few words.
-    runner : InProcess or Subprocess, optional
+    runner : InProcess, Subprocess or Both, optional
         Where the candidates run; this process without it.
     """
     start = time.perf_counter()

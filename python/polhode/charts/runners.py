@@ -142,6 +142,41 @@ class Subprocess:
         return process.end(kill) if process else ""
 
 
+class Both:
+    """Runs entrants in this process, and the other candidates by another runner."""
+
+    def __init__(self, entrants: list[Candidate], others: InProcess | Subprocess) -> None:
+        self._names = {candidate.name for candidate in entrants}
+        self._here, self._others = InProcess(entrants), others
+
+    def _of(self, name: str) -> InProcess | Subprocess:
+        return self._here if name in self._names else self._others
+
+    def enter(self, scene: Scene) -> None:
+        """Forget the last scene and take this one."""
+        self._here.enter(scene)
+        self._others.enter(scene)
+
+    def start(self, name: str) -> float:
+        """Get a candidate ready; return the seconds of wall time this took."""
+        return self._of(name).start(name)
+
+    def run(self, name: str, value: float, limit: float) -> Reply:
+        """Answer once; an entrant's run is not ended by the limit."""
+        return self._of(name).run(name, value, limit)
+
+    def clock(self, name: str, value: float, calls: int) -> float:
+        """Run without a limit; return the mean seconds of a call."""
+        return self._of(name).clock(name, value, calls)
+
+    def close(self) -> None:
+        """End the other runner."""
+        self._others.close()
+
+
+Runner = InProcess | Subprocess | Both
+
+
 def make_handler() -> Callable[[tuple[Any, ...]], Iterator[Any]]:
     """Return what a `Subprocess` does with a message: it calls a method of `InProcess` with arguments."""
     runner = InProcess(candidates())
