@@ -52,7 +52,8 @@ def has_python(page):
     return re.search(r"^```(?:\{code-cell\} )?python$", page.read_text(), flags=re.M)
 
 
-@pytest.mark.parametrize("page", [page for page in PAGES if "docs" in page.parts and has_python(page)],
+@pytest.mark.parametrize("page", [page for page in PAGES if "docs" in page.parts and has_python(page)
+                                  and page.name != "ensemble.md"],   # it has a recipe, and a test of its own
                          ids=lambda p: str(p.relative_to(ROOT / "docs")))
 def test_the_python_examples_of_a_page_run_in_their_order(page, tmp_path, monkeypatch):
     text, names = page.read_text(), {}

@@ -371,6 +371,27 @@ class FreeMotion:
         ...
     def __setstate__(self: FreeMotion, arg0: tuple[typing.Any, ...]) -> None:
         ...
+    def animate(self, t: typing.Any = None, *, body: typing.Any = 'box', axis: typing.Any = None) -> polhode._plot.film.film.Film:
+        """
+        Make a film of the motion: the body turns, beside the polhode on the ellipsoid of its energy.
+
+        Parameters
+        ----------
+        t : array_like, shape (n,), or float, optional
+            As for `plot`: the times, or the end of the span [s].
+        body, axis
+            As for :meth:`Motion.animate`.
+
+        Returns
+        -------
+        Film
+            A notebook plays it; ``.save(path)`` writes .html, .gif or .mp4.
+
+        Raises
+        ------
+        InvalidInput
+            As :meth:`Motion.animate`.
+        """
     def at(self: FreeMotion, t: typing.Any, *, progress: typing.Any = None) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
         Angular velocity and attitude at the given times.

@@ -60,9 +60,9 @@ def picture(run: Ensemble, name: str, point: int = 0) -> str:
         _draw(axes, found, run.times[order], pick)
         axes.set_xlabel("time [s]")
         axes.legend(frameon=False, fontsize=8)
-        text = io.StringIO()
-        figure.savefig(text, format="svg", metadata={"Date": None})
-    return text.getvalue()[text.getvalue().index("<svg"):]
+        held = io.StringIO()
+        figure.savefig(held, format="svg", metadata={"Date": None})
+    return held.getvalue()[held.getvalue().index("<svg"):]
 
 
 def _table(rows: dict[str, Any]) -> str:

@@ -180,10 +180,10 @@ def solve(
     options |= {"formulation": formulation} if formulation != "euler" else {}
     motion = Motion(scene, answer, asked, options)
     if sensitivity is not None:
-        for name, given in (("events", events), ("rtol", rtol), ("atol", atol), ("step", step)):
-            if given is not None and given != ():
+        for name, value in (("events", events or None), ("rtol", rtol), ("atol", atol), ("step", step)):
+            if value is not None:
                 raise _core.InvalidInput(f"{name}: must be left out with sensitivity=, which has an accuracy and all "
-                                         f"times, got {given!r}")
+                                         f"times, got {value!r}")
         motion.sensitivity = differentiate(scene, sensitivity, 1e-9 if accuracy is None else accuracy, side, max_steps,
                                            bool(certify))
     return motion
