@@ -49,8 +49,8 @@ install: $(VENV)/.ready build/.installed
 
 # Half the usual time for the charts: fewer repeats, which they say. `polhode chart` alone takes two minutes.
 demo: build/.installed
-	@$(PYTHON) -m polhode plan scenes/S*.toml
-	@$(PYTHON) -m polhode chart scenes/S*.toml --budget 60s -o demo
+	@echo "charting scenes/S*.toml for a minute"
+	@$(PYTHON) -m polhode chart scenes/S*.toml --budget 60s --brief -o demo
 
 test: install
 	@cmake --build $(BUILD) -j $(JOBS) --target polhode_tests polhode_headers_alone | sed -n '/warning:\|error:/p'

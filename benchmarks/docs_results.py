@@ -53,7 +53,7 @@ def main(arguments):
         text = json.dumps(content, separators=(",", ":"))
         text = re.sub(r"(\{\"candidate\")", r"\n\1", text)   # a point a line, so that changes can be read
         (RESULTS / "charts.json").write_text(text + "\n")
-        for name in ("overview", "limits", *SCENES):
+        for name in ("which_method", "overview", "limits", *SCENES):
             if (folder / f"{name}.svg").is_file():
                 shutil.copy(folder / f"{name}.svg", PICTURES / f"{name}.svg")
     (RESULTS / "charts.md").write_text(page(json.loads((RESULTS / "charts.json").read_text())))

@@ -318,7 +318,7 @@ def charted(tmp_path_factory):
 def test_files_of_a_chart(charted):
     folder, _, content, said = charted
     assert sorted(p.name for p in folder.iterdir()) == sorted(content["files"])
-    assert {"S5.png", "S5.svg", "tiny.png", "overview.png", "results.json"} <= set(content["files"])
+    assert {"S5.png", "S5.svg", "tiny.png", "overview.png", "which_method.png", "results.json"} <= set(content["files"])
     assert all((folder / name).stat().st_size > 5000 for name in content["files"] if name.endswith(".png"))
     assert "S5: rk45" in said and "pictures: overview" in said
     text = (folder / "S5.svg").read_text()

@@ -15,6 +15,7 @@ from polhode.charts.candidates import candidates
 from polhode.report import report, tables
 from polhode.report.curves import GROUPS, figure
 from polhode.report.atlas_part import part
+from polhode.report.atlas_part import write as write_atlas
 from polhode.report.page import _in_script, picture, render
 
 pytest.importorskip("matplotlib")
@@ -170,6 +171,37 @@ def test_the_command_says_where_the_page_is(tmp_path, monkeypatch):
     result = CliRunner().invoke(app, ["report", "-o", str(tmp_path)])
     assert result.exit_code == 0 and result.stdout == f"{tmp_path}/12.html\n"
     assert CliRunner().invoke(app, ["report", "S1", "--budget", "soon"]).exit_code == 2
+
+
+@pytest.mark.skipif(browser.find() is None, reason="no Chromium: apt install chromium")
+def test_the_page_is_dark_where_the_system_is(made):
+    with browser.Browser(made[0].as_uri(), 1280, 800) as tab:
+        tab.wait("document.body && document.body.dataset.drawn === 'all'")
+        seen = {}
+        for theme in ("light", "dark"):
+            tab.ask("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": theme}])
+            seen[theme] = [tab.run(f"getComputedStyle({what}).{key}") for what, key in (
+                ("document.body", "backgroundColor"), ("document.body", "color"),
+                ("document.querySelector('figure img')", "filter"), ("document.querySelector('.curves')", "filter"))]
+        assert seen["light"] == ["rgb(255, 255, 255)", "rgb(0, 0, 0)", "none", "none"]
+        assert seen["dark"][:2] == ["rgb(19, 20, 22)", "rgb(207, 208, 208)"] and "invert" in seen["dark"][2]
+        assert seen["dark"][2] == seen["dark"][3]
+        tab.ask("Emulation.setEmulatedMedia", media="print",
+                features=[{"name": "prefers-color-scheme", "value": "dark"}])
+        assert tab.run("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
+
+
+def test_the_page_of_an_atlas_alone(tmp_path):
+    cell = {"level": "fails", "text": "at 1e-4", "why": "because <b>"}
+    content = {"families": {"racket": {"title": "The racket"}}, "matrix": {"rk45": {"racket": cell}}, "quick": True,
+               "polhode": {"version": "9.9"}, "machine": {"processor": "abacus"}, "made": "today"}
+    (tmp_path / "racket.svg").write_text("<svg xmlns='http://www.w3.org/2000/svg'/>")
+    text = write_atlas(content, tmp_path).read_text()
+    parser = Page()
+    parser.feed(text)
+    assert parser.open == [] and {s.partition(":")[0] for s in parser.sources} == {"data"}
+    assert 'class="fails" title="because &lt;b&gt;"' in text and "1 family of" in text
+    assert "polhode atlas racket --quick" in text
 
 
 @pytest.mark.skipif(browser.find() is None, reason="no Chromium: apt install chromium")

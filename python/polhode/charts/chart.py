@@ -14,7 +14,7 @@ from .. import _files
 from .._core import InvalidInput
 from .._scene.files import find_scene, read_toml
 from .._scene.scene import Scene
-from . import pictures
+from . import choice, pictures
 from .candidates import candidates
 from .engines import find_errors_per_turn
 from .entrant import read_entrants
@@ -60,8 +60,8 @@ def chart(
     scenes : iterable of Scene, paths or names
         Scenes whose `want` has omega and attitude.
     folder : path
-        Created if missing. It gets one picture for each scene, ``overview``, ``limits`` (if a tolerance does not help),
-        as .png and .svg, and ``results.json``.
+        Created if missing. It gets ``which_method`` (the fastest at each error), one picture for each scene,
+        ``overview``, ``limits`` (if a tolerance does not help), as .png and .svg, and ``results.json``.
     budget : float
         Approximate time limit [s]. Runs that do not fit are left out, slow programs first, and listed.
     peers : bool
@@ -126,7 +126,8 @@ def chart(
     finally:
         runner.close()
 
-    files: list[pathlib.Path] = []
+    progress(len(results), "pictures: which method")
+    files = choice.picture(results, output)   # first: it answers what most people ask
     for result in results:
         progress(len(results), f"pictures: {result.scene.name}")
         files += pictures.work_precision(result, output)

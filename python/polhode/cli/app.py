@@ -290,6 +290,7 @@ def chart(
                                "listed.")
     ] = "130s",
     peers: Annotated[bool, typer.Option(help="Also run other programs that are installed.")] = True,
+    brief: Annotated[bool, typer.Option("--brief", help="Print the fastest at each error alone.")] = False,
     as_json: Json = False,
 ) -> int:
     """Chart speed against accuracy.
@@ -301,11 +302,14 @@ def chart(
     from ..charts import chart as make_chart
 
     seconds = _seconds(budget)
-    with show.Bar("charting", len(scenes)) as bar:
-        _, content = make_chart(scenes, output, budget=seconds, peers=peers, progress=bar.step,
-                                show=(lambda result: None) if as_json else (lambda result: bar.print_above(result)))
+    with show.Bar("charting", len(scenes), quiet=brief) as bar:
+        quiet = as_json or brief
+        results, content = make_chart(scenes, output, budget=seconds, peers=peers, progress=bar.step,
+                                      show=(lambda result: None) if quiet else (lambda result: bar.print_above(result)))
     if as_json:
         _print_json(content)
+    elif brief:
+        show.choice(results, content, output)
     else:
         show.chart_end(content, output)
     return 0
@@ -363,6 +367,7 @@ def atlas(
     except ImportError:
         raise InvalidInput("the atlas needs matplotlib: pip install 'polhode[plot]'") from None
     from ..atlas import atlas as make_atlas
+    from ..report.atlas_part import write as write_page
     from . import atlas as tables
 
     def table(result: Any) -> None:
@@ -372,11 +377,13 @@ def atlas(
     with show.Bar("atlas") as bar:
         _, content = make_atlas(families or (), output, quick=quick, fresh=fresh, processes=processes, limit=limit,
                                 progress=bar.of, show=table)
+    page = write_page(content, output)
     if as_json:
         _print_json(content)
     else:
         tables.matrix(content)
         tables.end(content, output)
+        print(page)
     return 1 if content["broken_claims"] else 0
 
 

@@ -38,7 +38,8 @@ def console(stderr: bool = False) -> Console:
 class Bar:
     """Progress on stderr: a bar on a terminal, otherwise one line for each new task."""
 
-    def __init__(self, title: str, total: float = 1.0) -> None:
+    def __init__(self, title: str, total: float = 1.0, quiet: bool = False) -> None:
+        self._quiet = quiet   # no lines where there is no bar
         self._console = console(stderr=True)
         self._bar = Progress(TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), console=self._console,
                              transient=True, disable=not self._console.is_terminal)
@@ -67,7 +68,7 @@ class Bar:
             self._line(f"{time.monotonic() - self._start:5.0f} s  {text}")
 
     def _line(self, text: str) -> None:
-        if text != self._last:
+        if text != self._last and not self._quiet:
             with contextlib.suppress(OSError):   # a full disk is no reason to stop the work
                 print(text, file=sys.stderr, flush=True)
             self._last = text
@@ -243,6 +244,26 @@ def scene(result: SceneResult) -> None:
         out.print(Text(f"beaten everywhere, in grey: {', '.join(beaten)}"))
     for note in result.notes:
         out.print(Text(note))
+
+
+def choice(results: list[SceneResult], content: dict[str, Any], folder: pathlib.Path) -> None:
+    """Print the fastest at each error, what failed in numbers, and where the rest stands."""
+    from .._plot.text import to_error
+    from ..charts.choice import LEVELS, PICTURE, finding, rows
+
+    out, machine = console(), content["machine"]
+    table = _table("fastest", *(f"error <= {to_error(level)}" for level in LEVELS), left=1 + len(LEVELS))
+    for row in rows(results):
+        table.add_row(*row)
+    out.print(table)
+    out.print(Text(f"{finding(results)}"))
+    points = [point for result in results for point in result.points]
+    failed = sum(not point.answered and not point.left_out for point in points)
+    out.print(Text(f"{sum(point.answered for point in points):,} runs answered, {failed:,} failed, "
+                   f"{sum(point.left_out for point in points):,} were left out for want of time; "
+                   f"{folder / 'results.json'} has each with its reason"))
+    out.print(Text(f"{len(results)} scenes in {content['seconds']:.0f} s on {machine['processor']}"))
+    out.print(Text(f"look at {folder / PICTURE}.png, then at {folder / 'overview'}.png"))
 
 
 def chart_end(content: dict[str, Any], folder: pathlib.Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pathlib
 from typing import Any, NamedTuple
 
+from .. import _files
 from . import page
 
 SIGNS = {"holds": "●", "degrades": "◐", "fails": "✕", "unknown": "?", "none": "·"}
@@ -43,3 +44,14 @@ def part(content: dict[str, Any], folder: pathlib.Path, options: str = "") -> di
                      for name, family in content["families"].items() if "number" in family)
     return {"matrix": matrix(content), "said": said, "pictures": pictures, "command": f"polhode atlas{options}",
             "broken": content.get("broken_claims", [])}
+
+
+def write(content: dict[str, Any], folder: pathlib.Path) -> pathlib.Path:
+    """Write the page of an atlas beside its pictures: index.html, which opens from disk."""
+    options = " --quick" if content["quick"] else ""
+    count = len(content["families"])
+    lead = (f"{count} famil{'ies' if count != 1 else 'y'} of hard problems, polhode {content['polhode']['version']}, "
+            f"{content['machine']['processor']}, {content['made']}.")
+    path = folder / "index.html"
+    _files.write(path, page.render_atlas(part(content, folder, options), lead))
+    return path

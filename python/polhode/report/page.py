@@ -43,6 +43,26 @@ def _text(name: str) -> str:
     return resources.files(__package__).joinpath(name).read_text(encoding="utf-8")
 
 
+def _template(name: str) -> Any:
+    """Return a template; includes and macros stand in the same folder."""
+    try:
+        from jinja2 import Environment, FunctionLoader, StrictUndefined
+    except ImportError:
+        raise InvalidInput("report: needs jinja2: pip install 'polhode[cli]'") from None
+    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True,
+                              loader=FunctionLoader(_text))
+    return environment.get_template(name)
+
+
+def render_atlas(atlas: dict[str, Any], lead: str) -> str:
+    """Return the page of an atlas alone, from what `atlas_part.part` gives."""
+    template = _template("atlas.html.j2")
+    from markupsafe import Markup
+
+    return str(template.render(title="polhode: where methods fail", lead=lead, css=Markup(_text("page.css")),
+                               atlas=atlas))
+
+
 def _in_script(content: Any) -> str:
     """JSON that cannot end the script element it stands in."""
     return json.dumps(content, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
@@ -78,17 +98,19 @@ def render(
     seconds : float
         It took to make.
     """
-    try:
-        from jinja2 import Environment, StrictUndefined
-        from markupsafe import Markup
-    except ImportError:
-        raise InvalidInput("report: needs jinja2: pip install 'polhode[cli]'") from None
+    template = _template("page.html.j2")
+    from markupsafe import Markup
+
     all_names = " ".join(scene["name"] for scene in content["scenes"])
+    command_of_all = f"polhode chart {all_names}"
     overview = [picture(folder / "overview.svg", "time against error, a small chart a scene", "All scenes.",
-                        f"polhode chart {all_names}")]
+                        command_of_all)]
+    if (folder / "which_method.svg").is_file():   # first: it answers what most people ask
+        overview.insert(0, picture(folder / "which_method.svg", "the fastest method at each error, a row a scene",
+                                   "Which method for my scene, and how fast.", command_of_all))
     if (folder / "limits.svg").is_file():
         overview.append(picture(folder / "limits.svg", "where no tolerance helps", "Where no tolerance helps.",
-                                f"polhode chart {all_names}"))
+                                command_of_all))
     scenes = [{**scene, "command": f"polhode chart {scene['name']}",
                "picture": picture(folder / f"{scene['name'] or 'scene'}.svg", scene["finding"])}
               for scene in content["scenes"]]
@@ -98,12 +120,11 @@ def render(
     count = sum(point["status"] == "answered" for scene in content["scenes"] for point in scene["points"])
     lead = (f"{count} results on {len(content['scenes'])} scenes, each compared with a reference of more digits. "
             "Errors and times are from one run on one machine.")
-    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    return environment.from_string(_text("page.html.j2")).render(
+    return str(template.render(
         title="polhode: speed, accuracy, and where methods fail" if atlas else "polhode: speed and accuracy", lead=lead,
         css=Markup(_text("page.css")), script=Markup(_text("page.js")), sections=sections, overview=overview,
         winners=_kept_together(tables.winners(content)), scenes=scenes, scene_table=tables.scenes(content),
         best=tables.best(content),
         failures=tables.failures(content), atlas=atlas, motions=motions, machine=tables.machine(content),
         startups=tables.startups(content), measure=content["measure"], took=to_time(seconds), command=command,
-        figures=Markup(_in_script([curves.figure(scene) for scene in content["scenes"]])))
+        figures=Markup(_in_script([curves.figure(scene) for scene in content["scenes"]]))))
