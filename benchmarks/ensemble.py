@@ -105,15 +105,36 @@ def main(words):
             for workers in (1, 2):
                 show(f"heavy, taylor 1e-10, {workers} processes", count, 101, measure(HEAVY, count, workers, folder))
         if "overhead" in wanted:
-            count = 100_000 if small else 400_000
-            show("heavy, 2 processes", count, 101, measure(HEAVY, count, 2, folder))
-            from distributed import LocalCluster
+            few, many = (33_000, 100_000) if small else (33_000, 500_000)
+            overhead("2 processes", lambda count: measure(HEAVY, count, 2, folder), few, many)
+            overhead("Dask, 2 workers", lambda count: by_dask(count, folder), few, many)
+            overhead("Dask, quiet", lambda count: by_dask(count, folder, **QUIET), few, many)
 
-            start = cpu()
-            with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster:
-                found = measure(HEAVY, count, cluster.scheduler_address, folder)
-            found["cpu"] = cpu() - start   # the workers' CPU is known once they have ended
-            show("heavy, Dask, 2 workers", count, 101, found)
+
+# Without the profiler of Dask's workers, and with a slower clock of its event loops.
+QUIET = {"distributed.worker.profile.enabled": False, "distributed.admin.tick.interval": "1s",
+         "distributed.admin.system-monitor.interval": "5s"}
+
+
+def by_dask(count, folder, **options):
+    """Measure a run on a cluster of this machine; the workers' CPU is known once they have ended."""
+    import dask
+    from distributed import LocalCluster
+
+    start = cpu()
+    with dask.config.set(options), LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster:
+        found = measure(HEAVY, count, cluster.scheduler_address, folder)
+    return {**found, "cpu": cpu() - start}
+
+
+def overhead(name, run, few, many):
+    """What an engine costs for each chunk: what two runs of different size differ by, beside the chunks themselves."""
+    small, large = run(few), run(many)
+    chunks, work = large["chunks"] - small["chunks"], large["chunks_cpu"] - small["chunks_cpu"]
+    beside = large["cpu"] - small["cpu"] - work
+    print(f"overhead, {name:20s} {work:6.1f} s of CPU in {chunks} chunks; beside them {1e3 * beside / chunks:6.1f} ms a "
+          f"chunk of {work / chunks:.2f} s: {100 * beside / work:.1f} %; start and end "
+          f"{small['cpu'] - small['chunks_cpu'] - beside / chunks * small['chunks']:.1f} s", flush=True)
 
 
 if __name__ == "__main__":

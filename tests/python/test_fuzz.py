@@ -89,12 +89,45 @@ MJCF = b"""<mujoco model="m"><compiler angle="radian"/><default><geom density="2
 <body name="c"><geom type="capsule" fromto="0 0 0 1 1 1" size="0.1"/></body></body></worldbody></mujoco>"""
 
 
+RECIPE = b"""count = 5
+seed = 8
+draw = "by-body"
+[body]
+shape = "box"
+mass = 3.0
+half_sides = [0.1, 0.2, { uniform = [0.2, 0.3] }]
+[start]
+omega = { normal = [[0.0, 0.0, 0.2], 0.05] }
+attitude = { normal_deg = 3.0, about = [0.0, 0.0, 0.0, 1.0] }
+[[torques]]
+kind = "damping"
+diagonal = [0.1, 0.1, 0.1]
+diagonal_relative = { log_uniform = [0.1, 0.3], same = true }
+[times]
+span = 2.0
+samples = 3
+[[summary]]
+of = "axis_angle"
+axis = [0.0, 0.0, 1.0]
+target = [0.0, 1.0, 1.0]
+[sweep]
+"torques.0.diagonal" = [[0.1, 0.1, 0.1], [0.2, 0.2, 0.2]]
+"""
+
+
+def read_recipe(file):
+    from polhode._ensemble import draw, recipe
+
+    made = recipe.load(file)
+    return made if made.count > 5 else [len(draw.draw(made, point, 0, 2)) for point in made.points[:3]]
+
+
 def judge(file):
     return [link.diagnose() for link in robots.read(file).links]
 
 
 SEEDS = {"a.stl": (stl(), ph.mesh.read), "b.stl": (ascii_stl(), ph.mesh.read), "a.obj": (obj(), ph.mesh.read),
-         "a.ply": (ply(), ph.mesh.read), "a.glb": (glb(), ph.mesh.read), "a.toml": (SCENE, ph.Scene.load),
+         "a.ply": (ply(), ph.mesh.read), "a.glb": (glb(), ph.mesh.read), "a.toml": (SCENE, ph.Scene.load), "recipe.toml": (RECIPE, read_recipe),
          "a.urdf": (URDF, judge), "a.sdf": (SDF, judge), "a.xml": (MJCF, judge)}
 PIECES = [b"0", b"-1", b"1e400", b"nan", b"inf", b"9" * 30, b"\0", b"\xff", b"<", b">", b'"', b"[", b"]", b"{", b"=",
           b"\n", b" ", b"1e-320", b"mesh", b"''", b"&a;", b"<!--", b"\xef\xbb\xbf", b"4294967295", b"\xff" * 4]

@@ -25,7 +25,7 @@ LANE_STEPS = 2**21       # the same for methods that step eight bodies at once
 LANES = ("rk45", "taylor")
 TRIALS = 8               # bodies whose steps are counted
 MOST_CHUNK = 2**20       # bodies
-SLAB_STATES = 2**19      # states in memory at once: 29 MB
+SLAB_STATES = 2**18      # states in memory at once: 15 MB
 
 
 class Layout(NamedTuple):
