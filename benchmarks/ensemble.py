@@ -132,7 +132,7 @@ def overhead(name, run, few, many):
     small, large = run(few), run(many)
     chunks, work = large["chunks"] - small["chunks"], large["chunks_cpu"] - small["chunks_cpu"]
     beside = large["cpu"] - small["cpu"] - work
-    print(f"overhead, {name:20s} {work:6.1f} s of CPU in {chunks} chunks; beside them {1e3 * beside / chunks:6.1f} ms a "
+    print(f"overhead, {name:20s} {work:6.1f} s of CPU in {chunks} chunks; beside {1e3 * beside / chunks:6.1f} ms a "
           f"chunk of {work / chunks:.2f} s: {100 * beside / work:.1f} %; start and end "
           f"{small['cpu'] - small['chunks_cpu'] - beside / chunks * small['chunks']:.1f} s", flush=True)
 

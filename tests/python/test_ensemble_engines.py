@@ -117,7 +117,7 @@ def test_nannies_do_not_double_the_time_of_a_chunk(cluster):
 
     with Client(cluster) as client:
         (before, faults), = [found for found in client.run(measure_faults).values()][:1]
-    assert before and faults < 3000   # 60 arrays of 8 MB, mapped anew each time, have 120 000
+    assert before and faults < 3000   # 60 arrays of 8 MB, mapped anew each time, have 56 000
 
 
 def measure_faults():

@@ -127,7 +127,8 @@ def judge(file):
 
 
 SEEDS = {"a.stl": (stl(), ph.mesh.read), "b.stl": (ascii_stl(), ph.mesh.read), "a.obj": (obj(), ph.mesh.read),
-         "a.ply": (ply(), ph.mesh.read), "a.glb": (glb(), ph.mesh.read), "a.toml": (SCENE, ph.Scene.load), "recipe.toml": (RECIPE, read_recipe),
+         "a.ply": (ply(), ph.mesh.read), "a.glb": (glb(), ph.mesh.read), "a.toml": (SCENE, ph.Scene.load),
+         "recipe.toml": (RECIPE, read_recipe),
          "a.urdf": (URDF, judge), "a.sdf": (SDF, judge), "a.xml": (MJCF, judge)}
 PIECES = [b"0", b"-1", b"1e400", b"nan", b"inf", b"9" * 30, b"\0", b"\xff", b"<", b">", b'"', b"[", b"]", b"{", b"=",
           b"\n", b" ", b"1e-320", b"mesh", b"''", b"&a;", b"<!--", b"\xef\xbb\xbf", b"4294967295", b"\xff" * 4]
