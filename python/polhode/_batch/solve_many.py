@@ -25,9 +25,9 @@ class Motions:
 
     Attributes
     ----------
-    omega : ndarray, shape (bodies, times, 3), or None
+    omega : ndarray, shape (bodies, samples, 3), or None
         Angular velocity in body axes [rad/s]; NaN at times that a body did not reach.
-    attitude : ndarray, shape (bodies, times, 4), or None
+    attitude : ndarray, shape (bodies, samples, 4), or None
         Unit quaternions (x, y, z, w), body to space; NaN at times that a body did not reach.
     status, message, method : tuple of str
         As in `Motion`, for each body.
