@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 
 #include "bind_exact.hpp"
 #include "convert.hpp"
@@ -15,15 +16,38 @@
 namespace polhode::python {
 namespace {
 
-/// The output array of a batch, or null; the size is that of the result.
-template <class Batch>
-double* target(const Batch& batch, const py::object& out, std::size_t width) {
-  if (out.is_none()) return nullptr;
-  auto array = py::cast<py::array_t<double, py::array::c_style>>(out);
-  if (static_cast<std::size_t>(array.size()) != batch.bodies * batch.times * width) {
-    throw InvalidInput("out", "of the result's size", "another");
-  }
+/// The rows of an output array; the size is that of the result.
+template <class S>
+S* rows_of(py::handle out, std::size_t size) {
+  auto array = py::cast<py::array_t<S, py::array::c_style>>(out);
+  if (static_cast<std::size_t>(array.size()) != size) throw InvalidInput("out", "of the result's size", "another");
   return array.mutable_data();
+}
+
+/// What Python asks for: arrays by name, all of doubles or all of floats, written in place. `vectors` (bodies, 3) are
+/// what a direction follows, and must outlive the call.
+template <class Batch>
+MotionOutput make_output(const Batch& batch, const py::dict& results, const py::object& vectors,
+                         bool from_space) {
+  MotionOutput out;
+  const std::size_t states = batch.bodies * batch.times;
+  for (const auto& [name, array] : results) {
+    const auto key = py::cast<std::string>(name);
+    const std::size_t width = key == "attitude" ? 4 : 3;
+    const py::handle target = array;
+    const auto set = [&]<class S>(MotionRows<S>& rows) {
+      (key == "omega" ? rows.omega : key == "attitude" ? rows.attitude : rows.direction) =
+          rows_of<S>(target, width * states);
+    };
+    if (py::isinstance<py::array_t<float>>(target)) {
+      set(out.single);
+    } else {
+      set(out.rows);
+    }
+  }
+  if (out.has_direction()) out.vector = py::cast<Array>(vectors).data();
+  out.from_space = from_space;
+  return out;
 }
 
 /// Python brings everything to (bodies, ...) and (times,) or (bodies, times); outputs are written in place. `inertia`
@@ -45,43 +69,43 @@ Batch make_batch(const py::object& inertia, Array& moments, const Array& omega, 
 }
 
 template <class Batch>
-std::size_t run(Batch& batch, double* omega, double* attitude, int threads, bool refuse, const py::object& progress,
-                std::size_t (*motion)(const Batch&, double*, double*, int)) {
+std::size_t run(Batch& batch, const MotionOutput& out, int threads, bool refuse, const py::object& progress,
+                std::size_t (*motion)(const Batch&, const MotionOutput&, int)) {
   ReportedWork work(progress, batch.bodies * batch.times);
   batch.refuse = refuse, batch.done = work.done();
-  const std::size_t poisoned = motion(batch, omega, attitude, threads);
+  const std::size_t poisoned = motion(batch, out, threads);
   work.finish();
   return poisoned;
 }
 
 std::size_t batch_free_motion(const py::object& inertia, const Array& omega, const Array& attitude, const Array& t,
-                              const py::object& omega_out, const py::object& attitude_out, int threads,
-                           bool refuse, const py::object& progress) {
+                              const py::dict& results, const py::object& vectors, bool from_space, int threads,
+                              bool refuse, const py::object& progress) {
   Array moments;
   auto batch = make_batch<FreeMotionBatch>(inertia, moments, omega, attitude, t);
-  double *w = target(batch, omega_out, 3), *q = target(batch, attitude_out, 4);
-  return run(batch, w, q, threads, refuse, progress, &free_motion);
+  const MotionOutput out = make_output(batch, results, vectors, from_space);
+  return run(batch, out, threads, refuse, progress, &free_motion);
 }
 
 std::size_t batch_gyrostat(const py::object& inertia, const Array& momentum, const Array& omega, const Array& attitude,
-                           const Array& t, const py::object& omega_out, const py::object& attitude_out, int threads,
-                           bool refuse, const py::object& progress) {
+                           const Array& t, const py::dict& results, const py::object& vectors, bool from_space,
+                           int threads, bool refuse, const py::object& progress) {
   Array moments;
   auto batch = make_batch<GyrostatBatch>(inertia, moments, omega, attitude, t);
   batch.momentum = momentum.data();
-  double *w = target(batch, omega_out, 3), *q = target(batch, attitude_out, 4);
-  return run(batch, w, q, threads, refuse, progress, &gyrostat);
+  const MotionOutput out = make_output(batch, results, vectors, from_space);
+  return run(batch, out, threads, refuse, progress, &gyrostat);
 }
 
 std::size_t batch_heavy_top(const py::object& inertia, const Array& weight_arm, const Array& omega,
-                            const Array& attitude, const Array& t, const py::object& omega_out,
-                            const py::object& attitude_out, int threads,
-                           bool refuse, const py::object& progress) {
+                            const Array& attitude, const Array& t, const py::dict& results,
+                            const py::object& vectors, bool from_space, int threads, bool refuse,
+                            const py::object& progress) {
   Array moments;
   auto batch = make_batch<HeavyTopBatch>(inertia, moments, omega, attitude, t);
   batch.weight_arm = weight_arm.data();
-  double *w = target(batch, omega_out, 3), *q = target(batch, attitude_out, 4);
-  return run(batch, w, q, threads, refuse, progress, &heavy_top);
+  const MotionOutput out = make_output(batch, results, vectors, from_space);
+  return run(batch, out, threads, refuse, progress, &heavy_top);
 }
 
 /// Whether the value is n finite numbers: a plain float64 array, or a tuple or list of Python's numbers. Fills `numbers`.

@@ -126,6 +126,14 @@ void FreeBlock::evaluate(std::size_t i, const exact::TimeGrid& t, double* omega,
   found->second.at(t, omega, attitude);
 }
 
+void FreeBlock::evaluate(std::size_t i, const exact::TimeGrid& t, float* omega, float* attitude) {
+  exact::free_kernels().trig_single(trig_[i], frames_[i], t.t, t.n, omega, attitude);
+}
+
+bool FreeBlock::is_single(std::size_t i) const {
+  return std::ranges::find(singles_, i, &std::pair<std::size_t, FreeMotion>::first) != singles_.end();
+}
+
 FreeMotion FreeBlock::single(std::size_t body) const {
   const double *w = b_.omega + 3 * body, *q = b_.attitude + 4 * body;
   const Vector3d omega{w[0], w[1], w[2]};

@@ -80,8 +80,14 @@ class FreeBlock {
 
   /// Body i of the block at these times; nothing where `evaluate_once` did it.
   void evaluate(std::size_t i, const exact::TimeGrid& t, double* omega, double* attitude);
+  /// Whether `evaluate_once` did body i.
+  bool done(std::size_t i) const { return once_ && !is_single(i); }
+  /// Whether body i can be evaluated in floats.
+  bool takes_floats(std::size_t i) const { return !once_ && !is_single(i) && exact::suits_single(frames_[i]); }
+  void evaluate(std::size_t i, const exact::TimeGrid& t, float* omega, float* attitude);
 
  private:
+  bool is_single(std::size_t i) const;
   void find_starts();
   bool is_fit(std::size_t i) const;
   bool passes(std::size_t i) const;

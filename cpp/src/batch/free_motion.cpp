@@ -15,10 +15,9 @@ namespace {
 /// A range of bodies, evaluated on one thread.
 class Run {
  public:
-  Run(const FreeMotionBatch& batch, const exact::TimeGrid& shared, double reach, double* omega, double* attitude)
+  Run(const FreeMotionBatch& batch, const exact::TimeGrid& shared, double reach, const MotionOutput& out)
       : b_(batch),
-        rows_{batch.t, batch.times, batch.own_times ? nullptr : &shared, !batch.own_times && std::isfinite(reach),
-              omega,   attitude},
+        rows_{batch.t, batch.times, batch.own_times ? nullptr : &shared, !batch.own_times && std::isfinite(reach), out},
         reach_(reach),
         block_(batch) {}
 
@@ -36,8 +35,10 @@ class Run {
     block_.take(begin, end, [this](std::size_t body) {
       return b_.own_times ? exact::free_kernels().times.reach(rows_.times_of(body), b_.times) : reach_;
     });
-    if (!block_.rotated() && b_.times == 1 && (b_.own_times || b_.bodies == 1)) {
-      block_.evaluate_once(b_.t + begin, rows_.omega_of(begin), rows_.attitude_of(begin));
+    // A float has the same bits at one time as among many: it is never rounded from a double here.
+    const bool once = b_.times == 1 && (b_.own_times || b_.bodies == 1) && !rows_.out.single_states();
+    if (!block_.rotated() && once) {
+      rows_.once(begin, end - begin, [&](double* w, double* q) { block_.evaluate_once(b_.t + begin, w, q); });
     } else {
       block_.set_up();
     }
@@ -45,10 +46,16 @@ class Run {
     for (std::size_t body = begin; body < end; ++body) {
       if (block_.poor(body - begin)) {
         poisoned += rows_.poison(body, 0, b_.times);
+      } else if (block_.done(body - begin)) {
+        poisoned += rows_.after_once(body);
       } else {
-        poisoned += rows_.each_run(body, [&](const exact::TimeGrid& t, double* w, double* q) {
+        const auto at = [&](const exact::TimeGrid& t, double* w, double* q) {
           block_.evaluate(body - begin, t, w, q);
-        });
+        };
+        const auto single_at = [&](const exact::TimeGrid& t, float* w, float* q) {
+          block_.evaluate(body - begin, t, w, q);
+        };
+        poisoned += block_.takes_floats(body - begin) ? rows_.each_run(body, at, single_at) : rows_.each_run(body, at);
       }
     }
     if (b_.done) *b_.done += (end - begin) * b_.times;
@@ -63,7 +70,11 @@ class Run {
 
 }  // namespace
 
-std::size_t free_motion(const FreeMotionBatch& given, double* omega, double* attitude, int threads) {
+std::size_t free_motion(const FreeMotionBatch& batch, double* omega, double* attitude, int threads) {
+  return free_motion(batch, {.rows = {omega, attitude}}, threads);
+}
+
+std::size_t free_motion(const FreeMotionBatch& given, const MotionOutput& out, int threads) {
   if (given.bodies == 0 || given.times == 0) return 0;
   if (given.tensor) FreeMotion(*given.tensor, Vector3d::Zero());  // refuses a body without a moment about some axis
   FreeMotionBatch batch = given;
@@ -79,14 +90,13 @@ std::size_t free_motion(const FreeMotionBatch& given, double* omega, double* att
       FreeMotionBatch piece = batch;
       piece.t = batch.t + begin, piece.times = end - begin;
       const exact::TimeGrid times = shared.grid.piece(begin, end - begin);
-      double *w = omega ? omega + 3 * begin : nullptr, *q = attitude ? attitude + 4 * begin : nullptr;
-      poisoned += Run(piece, times, shared.reach, w, q)(0, 1);
+      poisoned += Run(piece, times, shared.reach, out.from(begin))(0, 1);
     });
     return poisoned;
   }
   const std::size_t workers = thread_count(threads, states, 2000);
   parallel_for(batch.bodies, workers, free_block, [&](std::size_t begin, std::size_t end) {
-    poisoned += Run(batch, shared.grid, shared.reach, omega, attitude)(begin, end);
+    poisoned += Run(batch, shared.grid, shared.reach, out)(begin, end);
   });
   return poisoned;
 }

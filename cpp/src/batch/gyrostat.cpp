@@ -7,6 +7,10 @@
 namespace polhode {
 
 std::size_t gyrostat(const GyrostatBatch& b, double* omega, double* attitude, int threads) {
+  return gyrostat(b, {.rows = {omega, attitude}}, threads);
+}
+
+std::size_t gyrostat(const GyrostatBatch& b, const MotionOutput& out, int threads) {
   const auto finite = [&b](std::size_t body) {
     return (b.tensor || within(b.moments + 3 * body, 3)) && within(b.momentum + 3 * body, 3) &&
            within(b.omega + 3 * body, 3) && within(b.attitude + 4 * body, 4);
@@ -19,7 +23,7 @@ std::size_t gyrostat(const GyrostatBatch& b, double* omega, double* attitude, in
     const double* I = b.moments + 3 * body;
     return {Vector3d{I[0], I[1], I[2]}, rotors, rates, start};
   };
-  return evaluate_motions(b, exact::gyrostat_kernels().times, omega, attitude, threads, finite, make);
+  return evaluate_motions(b, exact::gyrostat_kernels().times, out, threads, finite, make);
 }
 
 }  // namespace polhode

@@ -7,6 +7,10 @@
 namespace polhode {
 
 std::size_t heavy_top(const HeavyTopBatch& b, double* omega, double* attitude, int threads) {
+  return heavy_top(b, {.rows = {omega, attitude}}, threads);
+}
+
+std::size_t heavy_top(const HeavyTopBatch& b, const MotionOutput& out, int threads) {
   const auto finite = [&b](std::size_t body) {
     return (b.tensor || within(b.moments + 3 * body, 3)) && within(b.weight_arm + body, 1) &&
            within(b.omega + 3 * body, 3) && within(b.attitude + 4 * body, 4);
@@ -19,7 +23,7 @@ std::size_t heavy_top(const HeavyTopBatch& b, double* omega, double* attitude, i
     const double* I = b.moments + 3 * body;
     return {Vector3d{I[0], I[1], I[2]}, b.weight_arm[body], rates, start};
   };
-  return evaluate_motions(b, exact::heavy_top_kernels().times, omega, attitude, threads, finite, make);
+  return evaluate_motions(b, exact::heavy_top_kernels().times, out, threads, finite, make);
 }
 
 }  // namespace polhode

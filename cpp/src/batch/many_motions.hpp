@@ -13,7 +13,7 @@ namespace polhode {
 /// the input is; make(body) gives the motion. Its InvalidInput comes out with the number of the body. Returns the number
 /// of rows that are NaN. The bits do not depend on the number of threads.
 template <class Batch, class Finite, class Make>
-std::size_t evaluate_motions(const Batch& given, const exact::TimeKernels& kernels, double* omega, double* attitude,
+std::size_t evaluate_motions(const Batch& given, const exact::TimeKernels& kernels, const MotionOutput& out,
                              int threads, const Finite& is_finite, const Make& make) {
   if (given.bodies == 0 || given.times == 0) return 0;
   Batch batch = given;
@@ -45,13 +45,11 @@ std::size_t evaluate_motions(const Batch& given, const exact::TimeKernels& kerne
     parallel_for(batch.times, thread_count(threads, batch.times, 20000), 8 * exact::TimeGrid::block,
                  [&](std::size_t begin, std::size_t end) {
                    const exact::TimeGrid piece = shared.grid.piece(begin, end - begin);
-                   run(Rows{batch.t + begin, end - begin, &piece, finite, omega ? omega + 3 * begin : nullptr,
-                            attitude ? attitude + 4 * begin : nullptr},
-                       0, 1);
+                   run(Rows{batch.t + begin, end - begin, &piece, finite, out.from(begin)}, 0, 1);
                  });
     return poisoned;
   }
-  const Rows rows{batch.t, batch.times, batch.own_times ? nullptr : &shared.grid, finite, omega, attitude};
+  const Rows rows{batch.t, batch.times, batch.own_times ? nullptr : &shared.grid, finite, out};
   parallel_for(batch.bodies, thread_count(threads, batch.bodies * batch.times + 100 * batch.bodies, 5000), 16,
                [&](std::size_t begin, std::size_t end) { run(rows, begin, end); });
   return poisoned;

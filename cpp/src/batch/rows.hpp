@@ -5,10 +5,13 @@
 #include <cstddef>
 #include <limits>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "exact/time_parts.hpp"
+#include "polhode/batch/output.hpp"
 #include "polhode/core/interrupt.hpp"
+#include "polhode/exact/detail/free_kernels.hpp"
 #include "polhode/exact/detail/time_grid.hpp"
 
 namespace polhode {
@@ -53,39 +56,32 @@ class SharedTimes {
   std::vector<double> rest_, largest_;
 };
 
-/// The output rows of a batch: omega (bodies, times, 3) and attitude (bodies, times, 4); either may be null.
+/// The output rows of a batch.
 struct Rows {
   const double* t;
   std::size_t times;
   const exact::TimeGrid* shared;  ///< the times of all bodies; null where each has its own
   bool finite;                    ///< whether the shared times are
-  double *omega, *attitude;
+  MotionOutput out;
 
   const double* times_of(std::size_t body) const { return t + (shared ? 0 : body * times); }
-  double* omega_of(std::size_t body, std::size_t i = 0) const {
-    return omega ? omega + 3 * (body * times + i) : nullptr;
-  }
-  double* attitude_of(std::size_t body, std::size_t i = 0) const {
-    return attitude ? attitude + 4 * (body * times + i) : nullptr;
-  }
 
   std::size_t poison(std::size_t body, std::size_t from, std::size_t count) const {
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    if (omega) std::fill_n(omega_of(body, from), 3 * count, nan);
-    if (attitude) std::fill_n(attitude_of(body, from), 4 * count, nan);
+    const MotionOutput at = out.from(body * times + from);
+    poison(at.rows, count), poison(at.single, count);
     return count;
   }
 
   /// Calls evaluate(times, omega, attitude) for each run of finite times. Poisons the other rows and returns their
   /// number. Times that are not all finite are never taken as a grid: bits must not depend on how threads divide them.
-  template <class Evaluate>
-  std::size_t each_run(std::size_t body, const Evaluate& evaluate) const {
+  /// single(times, omega, attitude), if there is one, writes floats by itself.
+  template <class Evaluate, class Single = std::nullptr_t>
+  std::size_t each_run(std::size_t body, const Evaluate& evaluate, const Single& single = nullptr) const {
+    if (!follows(body)) return poison(body, 0, times);
     const double* own = times_of(body);
     if (finite || within(own, times)) {
       exact::each_part(shared ? *shared : exact::TimeGrid(own, times),
-                       [&](const exact::TimeGrid& part, std::size_t begin) {
-                         evaluate(part, omega_of(body, begin), attitude_of(body, begin));
-                       });
+                       [&](const exact::TimeGrid& part, std::size_t i) { run(body, i, part, evaluate, single); });
       return 0;
     }
     std::size_t poisoned = 0;
@@ -93,12 +89,74 @@ struct Rows {
       const bool good = std::isfinite(own[i]);
       for (end = i; end < times && std::isfinite(own[end]) == good;) ++end;
       if (good) {
-        evaluate(SharedTimes::any_times(own + i, end - i), omega_of(body, i), attitude_of(body, i));
+        run(body, i, SharedTimes::any_times(own + i, end - i), evaluate, single);
       } else {
         poisoned += poison(body, i, end - i);
       }
     }
     return poisoned;
+  }
+
+  /// Bodies at one time each: calls evaluate(omega, attitude) for n of them at once.
+  template <class Evaluate>
+  void once(std::size_t first, std::size_t n, const Evaluate& evaluate) const {
+    const MotionOutput at = out.from(first);
+    if (out.plain()) return evaluate(at.rows.omega, at.rows.attitude);
+    std::vector<double> omega(3 * n), attitude(4 * n);
+    evaluate(omega.data(), attitude.data());
+    for (std::size_t i = 0; i < n; ++i) write(first + i, first + i, 1, &omega[3 * i], &attitude[4 * i]);
+  }
+  /// Poisons what `once` could not know; returns its number.
+  std::size_t after_once(std::size_t body) const {
+    return follows(body) && std::isfinite(*times_of(body)) ? 0 : poison(body, 0, 1);
+  }
+
+ private:
+  template <class S>
+  static void poison(const MotionRows<S>& rows, std::size_t count) {
+    const S nan = std::numeric_limits<S>::quiet_NaN();
+    if (rows.omega) std::fill_n(rows.omega, 3 * count, nan);
+    if (rows.attitude) std::fill_n(rows.attitude, 4 * count, nan);
+    if (rows.direction) std::fill_n(rows.direction, 3 * count, nan);
+  }
+
+  /// Whether the body's vector can be turned.
+  bool follows(std::size_t body) const { return !out.has_direction() || within(out.vector + 3 * body, 3, 1e300); }
+
+  template <class Evaluate, class Single>
+  void run(std::size_t body, std::size_t begin, const exact::TimeGrid& part, const Evaluate& evaluate,
+           const Single& single) const {
+    const MotionOutput at = out.from(body * times + begin);
+    if (out.plain()) return evaluate(part, at.rows.omega, at.rows.attitude);
+    if constexpr (!std::is_same_v<Single, std::nullptr_t>) {
+      if (out.single_states()) return single(part, at.single.omega, at.single.attitude);
+    }
+    // By way of a cache's worth of doubles, which whole blocks of the grid fill.
+    constexpr std::size_t most = 4 * exact::TimeGrid::block;
+    double omega[3 * most], attitude[4 * most];
+    const bool rates = at.rows.omega || at.single.omega;
+    const bool turns = at.rows.attitude || at.single.attitude || out.has_direction();
+    for (std::size_t i = 0; i < part.n; i += most) {
+      const std::size_t n = std::min(most, part.n - i);
+      evaluate(part.piece(i, n), rates ? omega : nullptr, turns ? attitude : nullptr);
+      write(body, body * times + begin + i, n, omega, attitude);
+    }
+  }
+
+  /// Writes n states of a body to the outputs from a row on.
+  void write(std::size_t body, std::size_t row, std::size_t n, const double* omega, const double* attitude) const {
+    const exact::FreeKernels& kernels = exact::free_kernels();
+    const MotionOutput at = out.from(row);
+    if (at.rows.omega) std::copy_n(omega, 3 * n, at.rows.omega);
+    if (at.rows.attitude) std::copy_n(attitude, 4 * n, at.rows.attitude);
+    if (at.single.omega) kernels.narrow(omega, 3 * n, at.single.omega);
+    if (at.single.attitude) kernels.narrow(attitude, 4 * n, at.single.attitude);
+    if (at.rows.direction) kernels.turn(out.vector + 3 * body, attitude, n, out.from_space, at.rows.direction);
+    if (at.single.direction) {
+      std::vector<double> turned(3 * n);
+      kernels.turn(out.vector + 3 * body, attitude, n, out.from_space, turned.data());
+      kernels.narrow(turned.data(), 3 * n, at.single.direction);
+    }
   }
 };
 

@@ -15,7 +15,7 @@ from .._attitude.arrays import to_numbers
 from .._core import InvalidInput
 
 Array = npt.NDArray[np.float64]
-WIDTHS = {"omega": 3, "attitude": 4}
+WIDTHS = {"omega": 3, "attitude": 4, "direction": 3}
 
 
 def to_rows(value: Any, name: str, width: int | None) -> Array:
@@ -41,7 +41,7 @@ def check_want(want: str | Sequence[str]) -> tuple[str, ...]:
     names = (want,) if isinstance(want, str) else tuple(want) if isinstance(want, Iterable) else ()
     known = all(isinstance(name, str) and name in WIDTHS for name in names)
     if not names or not known or len(set(names)) != len(names):
-        raise InvalidInput(f"want: must be one or both of 'omega' and 'attitude', got {want!r}")
+        raise InvalidInput(f"want: must be one or more of 'omega', 'attitude' and 'direction', got {want!r}")
     return names
 
 
@@ -58,8 +58,16 @@ def require_memory(states: int, bytes_each: int) -> None:
         raise MemoryError(f"{states} states need {needed} bytes; this machine has {there}")
 
 
-def _require_memory(shape: tuple[int, ...], names: tuple[str, ...]) -> None:
-    require_memory(math.prod(shape), sum(8 * WIDTHS[name] for name in names))
+def _require_memory(shape: tuple[int, ...], names: tuple[str, ...], dtype: np.dtype[Any]) -> None:
+    require_memory(math.prod(shape), sum(dtype.itemsize * WIDTHS[name] for name in names))
+
+
+def check_dtype(dtype: Any) -> np.dtype[Any]:
+    """Return float64 or float32."""
+    for kind in (np.float64, np.float32):
+        if dtype is kind or (isinstance(dtype, (str, np.dtype)) and dtype == np.dtype(kind)):
+            return np.dtype(kind)
+    raise InvalidInput(f"dtype: must be 'float64' or 'float32', got {dtype!r}")
 
 
 def split_axes(shape: tuple[int, ...], loops: Sequence[tuple[int, ...]]) -> tuple[list[int], list[int]]:
@@ -69,7 +77,8 @@ def split_axes(shape: tuple[int, ...], loops: Sequence[tuple[int, ...]]) -> tupl
     return bodies, [k for k in range(len(shape)) if k not in bodies]
 
 
-def check_out(out: Any, names: tuple[str, ...], shape: tuple[int, ...]) -> dict[str, Any]:
+def check_out(out: Any, names: tuple[str, ...], shape: tuple[int, ...],
+              dtype: np.dtype[Any] = np.dtype(np.float64)) -> dict[str, Any]:
     """Return the caller's arrays by name; none if `out` is not given."""
     if out is None:
         return {}
@@ -79,10 +88,10 @@ def check_out(out: Any, names: tuple[str, ...], shape: tuple[int, ...]) -> dict[
     targets = {}
     for name, array in zip(names, given, strict=True):
         wanted = (*shape, WIDTHS[name])
-        if not (isinstance(array, np.ndarray) and array.dtype == np.float64 and array.shape == wanted
+        if not (isinstance(array, np.ndarray) and array.dtype == dtype and array.shape == wanted
                 and array.flags.writeable):
             found = f"{array.dtype} of shape {array.shape}" if isinstance(array, np.ndarray) else type(array).__name__
-            raise InvalidInput(f"out: must be a writeable float64 array of shape {wanted} for {name}, got {found}")
+            raise InvalidInput(f"out: must be a writeable {dtype} array of shape {wanted} for {name}, got {found}")
         targets[name] = array
     return targets
 
@@ -111,18 +120,19 @@ def _evaluate_one(
     want: str | Sequence[str],
     kernel: Callable[..., int],
     refuse: bool,
+    dtype: np.dtype[Any],
 ) -> Any:
     """Evaluate one body at all times, without the cost of broadcasting."""
-    _require_memory(t.shape, names)
+    _require_memory(t.shape, names, dtype)
     results: dict[str, Any] = {}
     for name in names:
         target = targets.get(name)
         fits = in_place(target, [*parameters, t, *targets.values()])
-        results[name] = target if fits else np.empty((*t.shape, WIDTHS[name]))
+        results[name] = target if fits else np.empty((*t.shape, WIDTHS[name]), dtype)
     flat = [array[None] for array in parameters]
-    poisoned = kernel(*flat, t.reshape(-1), results.get("omega"), results.get("attitude"))
+    poisoned = kernel(*flat, t.reshape(-1), results)
     if poisoned:
-        warn_poisoned(poisoned, 5, refuse)
+        warn_poisoned(poisoned, 6, refuse)
     for name, target in targets.items():
         if results[name] is not target:
             target[...] = results[name]
@@ -162,23 +172,24 @@ def evaluate(
     want: str | Sequence[str],
     kernel: Callable[..., int],
     refuse: bool = True,
+    dtype: np.dtype[Any] = np.dtype(np.float64),
 ) -> Any:
-    """Broadcast, call kernel(*flat parameters, t, omega, attitude), and return results in the caller's shape.
+    """Broadcast, call kernel(*flat parameters, t, results by name), and return results in the caller's shape.
 
     `parameters` are (array, how many of its last axes belong to one body).
     """
     names = check_want(want)
     loops = [array.shape[: array.ndim - core] for array, core in parameters]
     if all(loop == () for loop in loops) and t.size:
-        arrays = [array for array, _ in parameters]
-        return _evaluate_one(arrays, t, check_out(out, names, t.shape), names, want, kernel, refuse)
+        targets, arrays = check_out(out, names, t.shape, dtype), [array for array, _ in parameters]
+        return _evaluate_one(arrays, t, targets, names, want, kernel, refuse, dtype)
     try:
         shape = np.broadcast_shapes(*loops, t.shape)
     except ValueError:
         shapes = ", ".join(map(str, [*loops, t.shape]))
         raise InvalidInput(f"t: must broadcast with the bodies, got shapes {shapes}") from None
-    targets = check_out(out, names, shape)
-    _require_memory(shape, names)
+    targets = check_out(out, names, shape, dtype)
+    _require_memory(shape, names, dtype)
     bodies, times = split_axes(shape, loops)
     order = bodies + times
     body_shape, time_shape = [shape[k] for k in bodies], [shape[k] for k in times]
@@ -192,10 +203,10 @@ def evaluate(
         if order == sorted(order) and in_place(target, others):
             results[name] = target
         else:
-            results[name] = np.empty((*body_shape, *time_shape, WIDTHS[name]))
-    poisoned = kernel(*flat, flat_t, results.get("omega"), results.get("attitude")) if n_bodies and n_times else 0
+            results[name] = np.empty((*body_shape, *time_shape, WIDTHS[name]), dtype)
+    poisoned = kernel(*flat, flat_t, results) if n_bodies and n_times else 0
     if poisoned:
-        warn_poisoned(poisoned, 4, refuse)
+        warn_poisoned(poisoned, 5, refuse)
 
     inverse = [*np.argsort(order), len(shape)]
     for name in names:

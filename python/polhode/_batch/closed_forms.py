@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy.typing as npt
 
 from .. import _core
-from .._core import InertiaTensor
-from .broadcast import Array, check_errors, check_threads, evaluate, to_attitudes, to_rows
+from .._core import InertiaTensor, InvalidInput
+from .broadcast import (
+    Array,
+    check_dtype,
+    check_errors,
+    check_threads,
+    check_want,
+    evaluate,
+    to_attitudes,
+    to_rows,
+)
 from .progress import Report, reporter
 
-BOTH = ("omega", "attitude")
+BOTH, DOUBLE = ("omega", "attitude"), "float64"
 
 
 def _split(inertia: InertiaTensor | npt.ArrayLike) -> tuple[tuple[InertiaTensor, ...], list[tuple[Array, int]]]:
@@ -20,6 +29,37 @@ def _split(inertia: InertiaTensor | npt.ArrayLike) -> tuple[tuple[InertiaTensor,
     if isinstance(inertia, InertiaTensor):
         return (inertia,), []
     return (), [(to_rows(inertia, "inertia", 3), 1)]
+
+
+def _evaluate(
+    function: Callable[..., int],
+    inertia: InertiaTensor | npt.ArrayLike,
+    parameters: list[tuple[Array, int]],
+    times: Array,
+    out: Any,
+    want: str | Sequence[str],
+    axis: npt.ArrayLike | None,
+    frame: str,
+    dtype: Any,
+    workers: int,
+    refuse: bool,
+    report: Report | None,
+) -> Any:
+    """Evaluate a closed form, whose C++ function gets the inertia, the parameters, and what is wanted."""
+    common, own = _split(inertia)
+    if frame not in ("body", "space"):
+        raise InvalidInput(f"frame: must be 'body' or 'space', got {frame!r}")
+    follows = "direction" in check_want(want)
+    if follows != (axis is not None):
+        raise InvalidInput("axis: must be given with want='direction', and only with it")
+    vectors = [(to_rows(axis, "axis", 3), 1)] if follows else []
+
+    def kernel(*arguments: Any) -> int:
+        *flat, t, results = arguments
+        vector = flat.pop() if follows else None
+        return function(*common, *flat, t, results, vector, frame == "space", workers, refuse, report)
+
+    return evaluate([*own, *parameters, *vectors], times, out, want, kernel, refuse, check_dtype(dtype))
 
 
 def free_motion(
@@ -30,6 +70,9 @@ def free_motion(
     *,
     out: Any = None,
     want: str | Sequence[str] = BOTH,
+    axis: npt.ArrayLike | None = None,
+    frame: str = "body",
+    dtype: Any = DOUBLE,
     threads: int | None = None,
     errors: str = "raise",
     progress: bool | Report | None = None,
@@ -47,10 +90,18 @@ def free_motion(
     t : array_like, shape (...)
         Times [s]. Bodies (B, 1) and times (T,) give the full grid (B, T), each body set up once.
     out : ndarray or tuple of ndarray, optional
-        Where to write, float64, one for each of `want`. Saves the cost of fresh memory, which exceeds that of the
-        motion itself.
+        Where to write, of the `dtype`, one for each of `want`. Saves the cost of fresh memory, which exceeds that of
+        the motion itself.
     want : str or sequence of str
-        What is computed: 'omega', 'attitude' or both. A single name gives a single array.
+        What is computed: 'omega', 'attitude', 'direction', or some of them. A single name gives a single array.
+    axis : array_like, shape (..., 3)
+        With 'direction': the vector that is followed. It need not be unit; its length stays.
+    frame : str
+        Where `axis` is fixed: in the 'body', and the direction is in space; or in 'space', and the direction is in body
+        axes.
+    dtype : str or numpy.dtype
+        Of the results: 'float64', or 'float32' for errors below 1e-6 of the largest rate, and of the attitude [rad].
+        The phases are reduced in float64 either way.
     threads : int, optional
         At most this many; by default as many as the machine has. The bits of the result do not depend on it.
     errors : {"raise", "nan"}
@@ -65,6 +116,8 @@ def free_motion(
         In body axes [rad/s].
     attitude : ndarray, shape (..., 4)
         Body to space, unit, (x, y, z, w).
+    direction : ndarray, shape (..., 3)
+        The axis in the other frame, if it is wanted.
 
     Raises
     ------
@@ -83,19 +136,16 @@ def free_motion(
     -----
     The formulas of :class:`FreeMotion`; see docs/exact.md.
     """
-    if out is None and want is BOTH and threads is None and errors == "raise" and not progress:
+    plain = out is None and want is BOTH and axis is None and dtype is DOUBLE
+    if plain and threads is None and errors == "raise" and not progress:
         motion = _core._free_motion_of_one(inertia, omega, attitude, t)
         if motion is not None:
             return motion
     workers, refuse, report = check_threads(threads), check_errors(errors), reporter(progress)
     speeds, attitudes = to_rows(omega, "omega", 3), to_attitudes(attitude, 3)
     times = to_rows(t, "t", None)
-    common, own = _split(inertia)
-
-    def kernel(*arguments: Any) -> int:
-        return _core._free_motion(*(*common, *arguments, workers, refuse, report))
-
-    return evaluate([*own, (speeds, 1), (attitudes, 1)], times, out, want, kernel, refuse)
+    return _evaluate(_core._free_motion, inertia, [(speeds, 1), (attitudes, 1)], times, out, want, axis,
+                     frame, dtype, workers, refuse, report)
 
 
 def gyrostat(
@@ -106,7 +156,10 @@ def gyrostat(
     t: npt.ArrayLike,
     *,
     out: Any = None,
-    want: str | Sequence[str] = ("omega", "attitude"),
+    want: str | Sequence[str] = BOTH,
+    axis: npt.ArrayLike | None = None,
+    frame: str = "body",
+    dtype: Any = DOUBLE,
     threads: int | None = None,
     errors: str = "raise",
     progress: bool | Report | None = None,
@@ -125,7 +178,7 @@ def gyrostat(
         Attitude at t = 0, body to space, unit, (x, y, z, w).
     t : array_like, shape (...)
         Times [s]. Bodies (B, 1) and times (T,) give the full grid (B, T), each body set up once.
-    out, want, threads, errors, progress
+    out, want, axis, frame, dtype, threads, errors, progress
         As for :func:`free_motion`.
 
     Returns
@@ -134,6 +187,8 @@ def gyrostat(
         In body axes [rad/s].
     attitude : ndarray, shape (..., 4)
         Body to space, unit, (x, y, z, w).
+    direction : ndarray, shape (..., 3)
+        The axis in the other frame, if it is wanted.
 
     Raises
     ------
@@ -156,12 +211,8 @@ def gyrostat(
     speeds, attitudes = to_rows(omega, "omega", 3), to_attitudes(attitude, 3)
     times = to_rows(t, "t", None)
     rotors = to_rows(momentum, "momentum", 3)
-    common, own = _split(inertia)
-
-    def kernel(*arguments: Any) -> int:
-        return _core._gyrostat(*(*common, *arguments, workers, refuse, report))
-
-    return evaluate([*own, (rotors, 1), (speeds, 1), (attitudes, 1)], times, out, want, kernel, refuse)
+    return _evaluate(_core._gyrostat, inertia, [(rotors, 1), (speeds, 1), (attitudes, 1)], times, out, want, axis,
+                     frame, dtype, workers, refuse, report)
 
 
 def heavy_top(
@@ -172,7 +223,10 @@ def heavy_top(
     t: npt.ArrayLike,
     *,
     out: Any = None,
-    want: str | Sequence[str] = ("omega", "attitude"),
+    want: str | Sequence[str] = BOTH,
+    axis: npt.ArrayLike | None = None,
+    frame: str = "body",
+    dtype: Any = DOUBLE,
     threads: int | None = None,
     errors: str = "raise",
     progress: bool | Report | None = None,
@@ -192,7 +246,7 @@ def heavy_top(
         Attitude at t = 0, body to space, unit, (x, y, z, w).
     t : array_like, shape (...)
         Times [s]. Tops (B, 1) and times (T,) give the full grid (B, T), each top set up once.
-    out, want, threads, errors, progress
+    out, want, axis, frame, dtype, threads, errors, progress
         As for :func:`free_motion`.
 
     Returns
@@ -201,6 +255,8 @@ def heavy_top(
         In body axes [rad/s].
     attitude : ndarray, shape (..., 4)
         Body to space, unit, (x, y, z, w).
+    direction : ndarray, shape (..., 3)
+        The axis in the other frame, if it is wanted.
 
     Raises
     ------
@@ -223,10 +279,5 @@ def heavy_top(
     speeds, attitudes = to_rows(omega, "omega", 3), to_attitudes(attitude, 3)
     times = to_rows(t, "t", None)
     arms = to_rows(weight_arm, "weight_arm", None)
-
-    common, own = _split(inertia)
-
-    def kernel(*arguments: Any) -> int:
-        return _core._heavy_top(*(*common, *arguments, workers, refuse, report))
-
-    return evaluate([*own, (arms, 0), (speeds, 1), (attitudes, 1)], times, out, want, kernel, refuse)
+    return _evaluate(_core._heavy_top, inertia, [(arms, 0), (speeds, 1), (attitudes, 1)], times, out, want, axis,
+                     frame, dtype, workers, refuse, report)

@@ -5,6 +5,7 @@
 
 #include "polhode/batch/free_motion.hpp"
 #include "polhode/core/error.hpp"
+#include "polhode/core/quat.hpp"
 #include "polhode/exact/free_motion.hpp"
 
 using namespace polhode;
@@ -74,4 +75,43 @@ TEST_CASE("a batch counts rows that are not finite, and refuses impossible bodie
   many.moments[3] = 100.0;
   CHECK_THROWS_WITH_AS(free_motion(many.batch(), omega.data(), attitude.data(), 2),
                        doctest::Contains("inertia[1]"), InvalidInput);
+}
+
+TEST_CASE("directions are vectors turned by the attitudes, and floats are the doubles within 1e-6") {
+  const Many many;
+  FreeMotionBatch batch = many.batch();
+  std::vector<double> times(33), omega(9900), attitude(13200), direction(9900), axes(300);
+  for (std::size_t i = 0; i < times.size(); ++i) times[i] = 3e5 * std::sin(static_cast<double>(i));
+  for (std::size_t i = 0; i < axes.size(); ++i) axes[i] = std::cos(static_cast<double>(i));
+  batch.t = times.data(), batch.times = times.size(), batch.own_times = false;
+  std::vector<float> omega_single(9900), attitude_single(13200), direction_single(9900);
+  REQUIRE(free_motion(batch, omega.data(), attitude.data(), 1) == 0);
+  REQUIRE(free_motion(batch, {.single = {omega_single.data(), attitude_single.data(), nullptr}}, 2) == 0);
+  for (const bool from_space : {false, true}) {
+    const MotionOutput out{.rows = {nullptr, nullptr, direction.data()},
+                           .single = {nullptr, nullptr, direction_single.data()},
+                           .vector = axes.data(),
+                           .from_space = from_space};
+    REQUIRE(free_motion(batch, out, 1) == 0);
+    for (std::size_t row = 0; row < 3300; ++row) {
+      const double *q = &attitude[4 * row], *a = &axes[3 * (row / 33)];
+      const Quat turn{q[0], q[1], q[2], q[3]};
+      const Vector3d expected = rotate(from_space ? conjugate(turn) : turn, Vector3d(a[0], a[1], a[2]));
+      for (Eigen::Index k = 0; k < 3; ++k) {
+        const double found = direction[3 * row + static_cast<std::size_t>(k)];
+        CHECK(std::abs(found - expected[k]) <= 3e-15);
+        CHECK(direction_single[3 * row + static_cast<std::size_t>(k)] == static_cast<float>(found));
+      }
+    }
+  }
+  for (std::size_t row = 0; row < 3300; ++row) {
+    const double* w = &omega[3 * row];
+    const double largest = std::hypot(w[0], w[1], w[2]), *q = &attitude[4 * row];
+    const float *w1 = &omega_single[3 * row], *q1 = &attitude_single[4 * row];
+    for (std::size_t k = 0; k < 3; ++k) CHECK(std::abs(static_cast<double>(w1[k]) - w[k]) <= 1e-6 * largest);
+    double inner = 0.0;
+    for (std::size_t k = 0; k < 4; ++k) inner += static_cast<double>(q1[k]) * q[k];
+    for (std::size_t k = 0; k < 4; ++k)
+      CHECK(std::abs(static_cast<double>(q1[k]) * (inner < 0.0 ? -1.0 : 1.0) - q[k]) <= 5e-7);
+  }
 }

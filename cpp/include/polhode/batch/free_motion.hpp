@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstddef>
 
+#include "polhode/batch/output.hpp"
 #include "polhode/inertia/inertia_tensor.hpp"
 
 namespace polhode {
@@ -28,5 +29,7 @@ struct FreeMotionBatch {
 /// number of the body, for impossible moments, attitudes that are not unit and |omega t| > 1e25 rad, unless `refuse` is
 /// false: the rows of such a body become NaN, too.
 std::size_t free_motion(const FreeMotionBatch& batch, double* omega, double* attitude, int threads = 0);
+/// The same with directions, or as float32.
+std::size_t free_motion(const FreeMotionBatch& batch, const MotionOutput& out, int threads = 0);
 
 }  // namespace polhode

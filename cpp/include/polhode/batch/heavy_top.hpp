@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstddef>
 
+#include "polhode/batch/output.hpp"
 #include "polhode/inertia/inertia_tensor.hpp"
 
 namespace polhode {
@@ -27,5 +28,7 @@ struct HeavyTopBatch {
 /// A row with an input that is not finite becomes NaN; returns the number of such rows. Throws InvalidInput, with the
 /// number of the body, for what HeavyTop refuses, unless `refuse` is false.
 std::size_t heavy_top(const HeavyTopBatch& batch, double* omega, double* attitude, int threads = 0);
+/// The same with directions, or as float32.
+std::size_t heavy_top(const HeavyTopBatch& batch, const MotionOutput& out, int threads = 0);
 
 }  // namespace polhode

@@ -2,6 +2,7 @@
 
 #include "exact/lanes/damped_loops.hpp"
 #include "exact/lanes/free_loops.hpp"
+#include "exact/lanes/single_loops.hpp"
 #include "polhode/exact/detail/free_setup_hyper.hpp"
 
 // Many bodies at once: their set-up also runs in lanes.
@@ -218,6 +219,9 @@ inline void prepare(const exact::FreeStart<double>& start, exact::FreeConstants<
 inline constexpr exact::FreeKernels kernels = {.times = time_kernels,
                                                .trig = &on_times,
                                                .hyper = &on_times,
+                                               .trig_single = &on_times_single,
+                                               .turn = &turn,
+                                               .narrow = &narrow,
                                                .once = &once,
                                                .set_up = &set_up,
                                                .prepare = &prepare,

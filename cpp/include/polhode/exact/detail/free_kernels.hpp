@@ -17,6 +17,9 @@ struct FreeFrameOf {
 };
 using FreeFrame = FreeFrameOf<double>;
 
+/// Whether floats hold the rates of the frame.
+inline bool suits_single(const FreeFrame& frame) { return frame.time_scale > 0x1p-60 && frame.time_scale < 0x1p60; }
+
 /// Moments (3), omega (3) and attitude (4) of many bodies, row by row.
 struct FreeStarts {
   const double* moments;
@@ -32,6 +35,16 @@ struct FreeKernels {
   /// One body at many times. A row's bits depend neither on n nor, off a grid, on its place.
   void (*trig)(const FreeTrig<double>&, const FreeFrame&, const TimeGrid&, double* omega, double* attitude);
   void (*hyper)(const FreeHyper<double>&, const FreeFrame&, const TimeGrid&, double* omega, double* attitude);
+
+  /// `trig` in floats, with the phases reduced in double: within 1e-6 of the largest |omega| and of the attitude. The
+  /// frame must suit. A row's bits depend neither on n nor on its place.
+  void (*trig_single)(const FreeTrig<double>&, const FreeFrame&, const double* t, std::size_t n, float* omega,
+                      float* attitude);
+
+  /// What a vector (3) becomes by the turns of n attitudes, row by row, or by their inverses.
+  void (*turn)(const double* vector, const double* attitude, std::size_t n, bool inverse, double* turned);
+  /// n numbers, rounded to floats.
+  void (*narrow)(const double* numbers, std::size_t n, float* rounded);
 
   /// n bodies, each at its own time: set up and evaluated in lanes. `left` receives the indices of bodies that are not
   /// done (exactly on the separatrix or the unstable axis, at rest, out of range). Returns their number.
