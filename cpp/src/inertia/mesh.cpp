@@ -1,7 +1,11 @@
 #include "polhode/inertia/mesh.hpp"
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <memory>
 
+#include "core/parallel.hpp"
 #include "inertia/lanes/levels.hpp"
 #include "inertia/mesh_faces.hpp"
 #include "inertia/validation.hpp"
@@ -50,12 +54,40 @@ Vector3d reference_point(const Mesh& mesh) {
   return origin + sum / static_cast<double>(count);
 }
 
-void run(const MeshKernels& kernels, const Mesh& mesh, const Vector3d& reference, bool fine, MeshSums& sums) {
+/// Each thread sums blocks of its own. They are added up in their order, so the bits are those of one thread.
+template <class Index>
+bool run_threads(inertia::MeshRows<Index> rows_of, const MeshKernels& kernels,
+                 const inertia::MeshTriangles<Index>& mesh, std::size_t threads, MeshSums& sums) {
+  const std::size_t blocks = (mesh.face_count + inertia::mesh_block - 1) / inertia::mesh_block;
+  const std::size_t count = blocks + (mesh.face_count % 8 != 0);
+  const auto rows = std::make_unique_for_overwrite<double[]>(count * inertia::mesh_row);
+  std::atomic<bool> fits{true};
+  parallel_for(blocks, threads, 1, [&](std::size_t begin, std::size_t end) {
+    inertia::MeshTriangles<Index> part = mesh;
+    part.faces += 3 * inertia::mesh_block * begin;
+    part.face_count = std::min(mesh.face_count, inertia::mesh_block * end) - inertia::mesh_block * begin;
+    if (!rows_of(part, rows.get() + inertia::mesh_row * begin)) fits = false;
+  });
+  if (fits) kernels.add(rows.get(), count, sums);
+  return fits;
+}
+
+void run(const MeshKernels& kernels, const Mesh& mesh, const Vector3d& reference, bool fine, std::size_t threads,
+         MeshSums& sums) {
   const auto triangles = [&](const auto* faces) {
     return inertia::MeshTriangles<std::remove_cvref_t<decltype(*faces)>>{mesh.vertices, mesh.vertex_count, faces,
                                                                        mesh.face_count, reference.data()};
   };
   bool fits = false;
+  if (threads > 1 && !fine) {
+    if (const auto* narrow = std::get_if<const std::int32_t*>(&mesh.faces)) {
+      fits = run_threads(kernels.rows32, kernels, triangles(*narrow), threads, sums);
+    } else {
+      fits = run_threads(kernels.rows64, kernels, triangles(std::get<const std::int64_t*>(mesh.faces)), threads, sums);
+    }
+    if (!fits) inertia::require_indices(mesh);
+    return;
+  }
   if (const auto* narrow = std::get_if<const std::int32_t*>(&mesh.faces)) {
     fits = (fine ? kernels.fine32 : kernels.quick32)(triangles(*narrow), sums);
   } else {
@@ -149,7 +181,7 @@ MassProperties MeshIntegrals::with_mass(double mass, double unit) const {
 
 MeshIntegrals integrate_mesh(const Mesh& mesh) { return integrate_mesh(mesh, simd_level()); }
 
-MeshIntegrals integrate_mesh(const Mesh& mesh, SimdLevel level) {
+MeshIntegrals integrate_mesh(const Mesh& mesh, SimdLevel level, int threads) {
   if (mesh.face_count == 0) inertia::require_indices(mesh);
   const MeshKernels& kernels = mesh_kernels(level);
   const Vector3d reference = reference_point(mesh);
@@ -157,12 +189,14 @@ MeshIntegrals integrate_mesh(const Mesh& mesh, SimdLevel level) {
   MeshIntegrals found;
   bool refined = mesh.face_count <= few_triangles;
   if (!refined) {
-    run(kernels, mesh, reference, false, sums);
+    // Two threads read most of what the memory gives.
+    const std::size_t most = threads > 0 ? static_cast<std::size_t>(threads) : 2;
+    run(kernels, mesh, reference, false, std::min(most, thread_count(threads, mesh.face_count, 100000)), sums);
     found = integrals(sums, reference);
     refined = !plain_suffices(sums, found);
   }
   if (refined) {
-    run(kernels, mesh, reference, true, sums);
+    run(kernels, mesh, reference, true, 1, sums);
     found = integrals(sums, reference);
     clear_rounding(found);
   }

@@ -156,3 +156,21 @@ TEST_CASE("meshes: nothing is read beyond the last vertex") {
   munmap(place, (pages + 1) * page);
 }
 #endif
+
+TEST_CASE("meshes: the same bits by any number of threads, and a wrong index is seen by each") {
+  Surface egg = make_egg(500, 301);
+  for (const int cut : {0, 1, 7, 8, 250}) {
+    const Mesh mesh{egg.vertices.data(), egg.vertices.size() / 3, egg.faces.data(),
+                    egg.faces.size() / 3 - static_cast<std::size_t>(cut)};
+    for (const SimdLevel level : {SimdLevel::baseline, SimdLevel::avx2, SimdLevel::avx512}) {
+      const MeshIntegrals one = integrate_mesh(mesh, level, 1);
+      for (const int threads : {0, 2, 3}) CHECK(same_bits(one, integrate_mesh(mesh, level, threads)));
+    }
+  }
+  for (const std::size_t at : {std::size_t{0}, egg.faces.size() / 2 + 9, egg.faces.size() - 1}) {
+    const std::int32_t before = egg.faces[at];
+    egg.faces[at] = 1 << 30;
+    CHECK_THROWS_WITH_AS(integrate_mesh(egg.view(), simd_level(), 2), doctest::Contains("faces"), InvalidInput);
+    egg.faces[at] = before;
+  }
+}

@@ -26,11 +26,21 @@ struct MeshTriangles {
 template <class Index>
 using MeshLoop = bool (*)(const MeshTriangles<Index>&, MeshSums&);
 
+inline constexpr std::size_t mesh_block = 256;          ///< faces in a plain sum
+inline constexpr std::size_t mesh_row = 8 * mesh_sums;  ///< numbers in the sums of one block, eight lanes of each
+
+/// Writes one row for each block and one for the last faces that are not eight.
+template <class Index>
+using MeshRows = bool (*)(const MeshTriangles<Index>&, double* rows);
+
 /// `quick` in plain numbers with compensated sums of blocks, `fine` in double-double throughout. avx2 and avx512 give
-/// the same bits.
+/// the same bits. `rows` has the sums of blocks that `quick` adds up; `add` does that.
 struct MeshKernels {
   MeshLoop<std::int32_t> quick32, fine32;
   MeshLoop<std::int64_t> quick64, fine64;
+  MeshRows<std::int32_t> rows32;
+  MeshRows<std::int64_t> rows64;
+  void (*add)(const double* rows, std::size_t count, MeshSums&);
 };
 
 /// Null where the compiler could not build the level.

@@ -66,10 +66,11 @@ POLHODE_INLINE void add_triangles(const Wide (&A)[3], const Wide (&B)[3], const 
   sum[10] = madd(N(distance), N(square(e) * square(f)), sum[10]);
 }
 
-/// Adds `groups` times eight triangles. `last`: one of them has the last vertex, beyond which nothing may be read.
-template <bool last, class N, class Index>
-POLHODE_INLINE void add_block(const double* vertices, const Index* faces, int groups, const Wide (&r)[3],
-                              math::DoubleDouble<Wide> (&sums)[group / Wide::width][mesh_sums]) {
+/// Calls take(part, sums) with the sums of `groups` times eight triangles. `last`: one of them has the last vertex,
+/// beyond which nothing may be read.
+template <bool last, class N, class Index, class Take>
+POLHODE_INLINE void sum_block(const double* vertices, const Index* faces, int groups, const Wide (&r)[3],
+                              const Take& take) {
   for (int part = 0; part < group / Wide::width; ++part) {
     N partial[mesh_sums];
     for (N& p : partial) p = N(Wide(0.0));
@@ -81,19 +82,44 @@ POLHODE_INLINE void add_block(const double* vertices, const Index* faces, int gr
       load_rows<last>(vertices, corner + 2, C[0], C[1], C[2]);
       add_triangles(A, B, C, r, partial);
     }
-    for (int m = 0; m < mesh_sums; ++m) sums[part][m] = sums[part][m] + partial[m];
+    take(part, partial);
   }
 }
 
-/// Plain in the block, or double-double.
-template <class N, class Index>
-bool mesh_loop(const MeshTriangles<Index>& mesh, MeshSums& out) {
-  constexpr int parts = group / Wide::width;
+/// The sums of all blocks, compensated.
+struct MeshTotal {
+  math::DoubleDouble<Wide> sums[group / Wide::width][mesh_sums];
+
+  POLHODE_INLINE MeshTotal() {
+    for (auto& part : sums)
+      for (auto& sum : part) sum = math::DoubleDouble<Wide>(Wide(0.0));
+  }
+  template <class N>
+  POLHODE_INLINE void add(int part, const N (&partial)[mesh_sums]) {
+    for (int m = 0; m < mesh_sums; ++m) sums[part][m] = sums[part][m] + partial[m];
+  }
+  void write(MeshSums& out) const {
+    for (int m = 0; m < mesh_sums; ++m) {
+      math::DD total(0.0);
+      for (const auto& part : sums) {
+        double hi[Wide::width], lo[Wide::width];
+        part[m].hi.store(hi);
+        part[m].lo.store(lo);
+        for (int lane = 0; lane < Wide::width; ++lane) total = total + math::DD(hi[lane], lo[lane]);
+      }
+      out.hi[m] = total.hi;
+      out.lo[m] = total.lo;
+    }
+  }
+};
+
+/// Calls take(part, sums) for each block, in order, and for the faces left over, and done() after each of them. Plain
+/// in the block, or double-double. Returns false at an index out of range.
+template <class N, class Index, class Take, class Done>
+POLHODE_INLINE bool sum_blocks(const MeshTriangles<Index>& mesh, const Take& take, const Done& done) {
   const Wide r[3] = {Wide(mesh.reference[0]), Wide(mesh.reference[1]), Wide(mesh.reference[2])};
-  math::DoubleDouble<Wide> sums[parts][mesh_sums];
-  for (auto& part : sums)
-    for (auto& sum : part) sum = math::DoubleDouble<Wide>(Wide(0.0));
-  constexpr std::size_t block = std::size_t{group} * block_groups;
+  constexpr std::size_t block = inertia::mesh_block;
+  static_assert(block == std::size_t{group} * block_groups);
   for (std::size_t begin = 0; begin < mesh.face_count; begin += block) {
     const std::size_t rest = mesh.face_count - begin, count = rest < block ? rest : block;
     const Index* faces = mesh.faces + 3 * begin;
@@ -106,34 +132,60 @@ bool mesh_loop(const MeshTriangles<Index>& mesh, MeshSums& out) {
     const bool last = static_cast<std::size_t>(highest) + 1 == mesh.vertex_count;
     const int groups = static_cast<int>(count / group);
     if (last) {
-      add_block<true, N>(mesh.vertices, faces, groups, r, sums);
+      sum_block<true, N>(mesh.vertices, faces, groups, r, take);
     } else {
-      add_block<false, N>(mesh.vertices, faces, groups, r, sums);
+      sum_block<false, N>(mesh.vertices, faces, groups, r, take);
     }
+    done();
     if (const std::size_t left = count % group; left != 0) {
       Index padded[3 * group];  // padded with triangles that are points and add nothing
       for (std::size_t i = 0; i < 3 * group; ++i) {
         padded[i] = i < 3 * left ? faces[3 * group * static_cast<std::size_t>(groups) + i] : faces[0];
       }
-      add_block<true, N>(mesh.vertices, padded, 1, r, sums);
+      sum_block<true, N>(mesh.vertices, padded, 1, r, take);
+      done();
     }
-  }
-  for (int m = 0; m < mesh_sums; ++m) {
-    math::DD total(0.0);
-    for (const auto& part : sums) {
-      double hi[Wide::width], lo[Wide::width];
-      part[m].hi.store(hi);
-      part[m].lo.store(lo);
-      for (int lane = 0; lane < Wide::width; ++lane) total = total + math::DD(hi[lane], lo[lane]);
-    }
-    out.hi[m] = total.hi;
-    out.lo[m] = total.lo;
   }
   return true;
 }
 
+template <class N, class Index>
+bool mesh_loop(const MeshTriangles<Index>& mesh, MeshSums& out) {
+  MeshTotal total;
+  const auto add = [&total](int part, const N(&partial)[mesh_sums])
+                       __attribute__((always_inline)) { total.add(part, partial); };
+  if (!sum_blocks<N>(mesh, add, [] {})) return false;
+  total.write(out);
+  return true;
+}
+
+/// The sums of the blocks one after the other, for threads.
+template <class Index>
+bool mesh_rows(const MeshTriangles<Index>& mesh, double* rows) {
+  const auto keep = [&rows](int part, const Wide(&partial)[mesh_sums]) __attribute__((always_inline)) {
+    for (int m = 0; m < mesh_sums; ++m) partial[m].store(rows + group * m + part * Wide::width);
+  };
+  return sum_blocks<Wide>(mesh, keep, [&rows] { rows += inertia::mesh_row; });
+}
+
+/// Adds up rows as mesh_loop does.
+inline void add_rows(const double* rows, std::size_t count, MeshSums& out) {
+  static_assert(inertia::mesh_row == std::size_t{group} * mesh_sums);
+  MeshTotal total;
+  for (std::size_t i = 0; i < count; ++i, rows += inertia::mesh_row) {
+    for (int part = 0; part < group / Wide::width; ++part) {
+      Wide partial[mesh_sums];
+      for (int m = 0; m < mesh_sums; ++m) partial[m] = Wide::load(rows + group * m + part * Wide::width);
+      total.add(part, partial);
+    }
+  }
+  total.write(out);
+}
+
 inline constexpr inertia::MeshKernels mesh_kernels = {
     &mesh_loop<Wide, std::int32_t>, &mesh_loop<math::DoubleDouble<Wide>, std::int32_t>,  //
-    &mesh_loop<Wide, std::int64_t>, &mesh_loop<math::DoubleDouble<Wide>, std::int64_t>};
+    &mesh_loop<Wide, std::int64_t>, &mesh_loop<math::DoubleDouble<Wide>, std::int64_t>,  //
+    &mesh_rows<std::int32_t>,       &mesh_rows<std::int64_t>,                            //
+    &add_rows};
 
 }  // namespace polhode::POLHODE_ISA
