@@ -15,6 +15,7 @@ from .._attitude.arrays import to_numbers
 from .._core import InvalidInput
 
 Array = npt.NDArray[np.float64]
+_DTYPES = {name: np.dtype(name) for name in ("float64", "float32")}
 WIDTHS = {"omega": 3, "attitude": 4, "direction": 3}
 
 
@@ -64,9 +65,9 @@ def _require_memory(shape: tuple[int, ...], names: tuple[str, ...], dtype: np.dt
 
 def check_dtype(dtype: Any) -> np.dtype[Any]:
     """Return float64 or float32."""
-    for kind in (np.float64, np.float32):
-        if dtype is kind or (isinstance(dtype, (str, np.dtype)) and dtype == np.dtype(kind)):
-            return np.dtype(kind)
+    for name, kind in _DTYPES.items():
+        if dtype is kind.type or (isinstance(dtype, (str, np.dtype)) and dtype in (name, kind)):
+            return kind
     raise InvalidInput(f"dtype: must be 'float64' or 'float32', got {dtype!r}")
 
 

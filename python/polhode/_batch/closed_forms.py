@@ -49,7 +49,7 @@ def _evaluate(
     common, own = _split(inertia)
     if frame not in ("body", "space"):
         raise InvalidInput(f"frame: must be 'body' or 'space', got {frame!r}")
-    follows = "direction" in check_want(want)
+    follows = "direction" in (want if isinstance(want, (str, tuple)) else check_want(want))
     if follows != (axis is not None):
         raise InvalidInput("axis: must be given with want='direction', and only with it")
     vectors = [(to_rows(axis, "axis", 3), 1)] if follows else []
