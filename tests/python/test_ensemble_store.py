@@ -55,6 +55,17 @@ def test_the_store_is_zarr_with_names_and_units(recipe, whole):
     assert run.dataset.sizes == data.sizes and run.done == run.total == 500
 
 
+def test_a_swept_store_has_a_dimension_for_its_points(tmp_path):
+    text = ensembles.DRIVEN + '[sweep]\n"torques.0.weight" = [1.0, 2.0]\n'
+    run = ph.ensemble(ensembles.write(tmp_path, text), out=tmp_path / "a.zarr", executor=0, count=70)
+    data = ph.load(tmp_path / "a.zarr").dataset
+    assert data.omega.dims == ("point", "body", "state_time", "axis") and data.angle_mean.dims == ("point", "time")
+    for point in (0, 1):
+        assert np.array_equal(data.omega.values[point], run.states(range(70), point=point).omega)
+        assert np.array_equal(data.angle_mean.values[point], run.summary["angle"].mean[point])
+    assert ensembles.run("status", tmp_path / "a.zarr", "--verify")[0] == 0 and len(run.to_pandas()) == 22
+
+
 def test_float32_states_at_every_second_time(tmp_path):
     text = ensembles.FREE + 'states = "float32"\nevery = 2\n'
     run = ph.ensemble(ensembles.write(tmp_path, text), out=tmp_path / "a.zarr", executor=0, count=6000)
