@@ -325,7 +325,9 @@ def test_a_killed_scheduler_ends_the_run_and_the_store_goes_on_elsewhere(recipe,
         ensembles.wait_for(lambda: len(ensembles.marks(out)) >= moment, process)
         ensembles.kill(scheduler.pid, *ensembles.children(scheduler.pid))
         _, err = process.communicate(timeout=90)
-        assert process.returncode == 1 and "given up" in err and "Traceback" not in err, err
+        whole_already = len(ensembles.marks(out)) == 16   # the kill came after the last chunk
+        told = err.splitlines()[-1].startswith("polhode: chunk ") and "was given up: " in err   # beside Dask's own log
+        assert process.returncode == 1 and told or whole_already, err
     finally:
         ensembles.kill(scheduler.pid, *ensembles.children(scheduler.pid))
         scheduler.communicate()
