@@ -14,7 +14,8 @@ from matplotlib.figure import Figure  # noqa: E402
 
 from polhode._plot import style  # noqa: E402
 from polhode._plot.closed_forms import find_span, make_scene, make_track  # noqa: E402
-from polhode._plot.motion import PARTS  # noqa: E402
+from polhode._plot.motion import PARTS, draw  # noqa: E402
+from polhode._plot.track import of_motion  # noqa: E402
 
 BLOCK = (0.20, 0.40, 0.52)
 TILTED = ph.Rotation.from_euler("ZXZ", (0.3, 0.5, 0.1))
@@ -84,6 +85,11 @@ def test_rates_attitude_and_energy_show_the_numbers():
     shown = np.column_stack([drawn[name][:, 1] for name in "xyzw"])
     assert np.allclose(np.abs(np.sum(shown * motion.attitude, axis=1)), 1)
     assert np.abs(np.diff(shown, axis=0)).max() < 0.1   # q and -q are one attitude: the curve does not jump
+    track = of_motion(motion)
+    turned = track.curve.attitude * np.where(np.arange(201) % 7 < 3, -1, 1)[:, None]
+    drawn = lines(draw(track._replace(curve=track.curve._replace(attitude=turned)), ("attitude",), None, None,
+                       False).axes[0])
+    assert max(np.abs(np.diff(drawn[name][:, 1])).max() for name in "xyzw") < 0.1
     rough = ph.solve(motion.scene, method="euler", step=0.01)
     (line,) = rough.plot("energy").axes[0].get_lines()
     assert np.allclose(np.abs(line.get_ydata()).max(), rough.drift["energy"], rtol=0.2) and rough.drift["energy"] > 1e-3
