@@ -91,9 +91,10 @@ def events(store):
 
 
 def start(*arguments, env=None):
-    """Start the command, in a group of its own."""
+    """Start the command, in a group of its own. It minds Ctrl-C, which a job in the background of a shell does not."""
     return subprocess.Popen([sys.executable, "-m", "polhode", "ensemble", *map(str, arguments)], env=env,
-                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
+                            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
 
 
 def run(*arguments, env=None):
