@@ -129,6 +129,11 @@ def test_one_body_has_a_quick_way_with_the_same_bits():
         for one in ((moments, omega, attitude), (tuple(moments), list(omega), attitude), wheel):
             for got, usual in zip(ph.free_motion(*one, t), ph.free_motion(*one, t, threads=1), strict=True):
                 assert got.shape == usual.shape and got.tobytes() == usual.tobytes()
+            out = np.empty((*t.shape, 3)), np.empty((*t.shape, 4))
+            written = ph.free_motion(*one, t, out=out)
+            assert all(got is given for got, given in zip(written, out, strict=True))
+            for got, usual in zip(out, ph.free_motion(*one, t, threads=1), strict=True):
+                assert got.tobytes() == usual.tobytes()
 
 
 @pytest.mark.parametrize("change", [

@@ -97,6 +97,14 @@ def check_out(out: Any, names: tuple[str, ...], shape: tuple[int, ...],
     return targets
 
 
+def copy_out(results: Sequence[Array], out: Any, names: tuple[str, ...]) -> tuple[Any, ...]:
+    """Write results that were computed apart into the caller's arrays, and return those."""
+    targets = check_out(out, names, results[0].shape[:-1])
+    for target, values in zip(targets.values(), results, strict=True):
+        target[...] = values
+    return tuple(targets.values())
+
+
 def in_place(target: Any, others: Iterable[Any]) -> bool:
     """Return True if results can be written into `target` while the other arrays are read and written.
 

@@ -15,6 +15,7 @@ from .broadcast import (
     check_errors,
     check_threads,
     check_want,
+    copy_out,
     evaluate,
     to_attitudes,
     to_rows,
@@ -22,6 +23,7 @@ from .broadcast import (
 from .progress import Report, reporter
 
 BOTH, DOUBLE = ("omega", "attitude"), "float64"
+FEW = 2048   # times whose states cost less to copy than `out` costs to compare with all other arrays
 
 
 def _split(inertia: InertiaTensor | npt.ArrayLike) -> tuple[tuple[InertiaTensor, ...], list[tuple[Array, int]]]:
@@ -136,11 +138,11 @@ def free_motion(
     -----
     The formulas of :class:`FreeMotion`; see docs/exact.md.
     """
-    plain = out is None and want is BOTH and axis is None and dtype is DOUBLE
+    plain = want is BOTH and axis is None and dtype is DOUBLE and (out is None or getattr(t, "size", 0) <= FEW)
     if plain and threads is None and errors == "raise" and not progress:
         motion = _core._free_motion_of_one(inertia, omega, attitude, t)
         if motion is not None:
-            return motion
+            return motion if out is None else copy_out(motion, out, BOTH)
     workers, refuse, report = check_threads(threads), check_errors(errors), reporter(progress)
     speeds, attitudes = to_rows(omega, "omega", 3), to_attitudes(attitude, 3)
     times = to_rows(t, "t", None)
