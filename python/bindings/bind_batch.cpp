@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "bind_batch.hpp"
 #include "bind_exact.hpp"
 #include "convert.hpp"
 #include "gil.hpp"
@@ -48,24 +49,6 @@ MotionOutput make_output(const Batch& batch, const py::dict& results, const py::
   if (out.has_direction()) out.vector = py::cast<Array>(vectors).data();
   out.from_space = from_space;
   return out;
-}
-
-/// Python brings everything to (bodies, ...) and (times,) or (bodies, times); outputs are written in place. `inertia`
-/// is the InertiaTensor of all bodies or (bodies, 3) moments, and `moments` keeps the latter alive.
-template <class Batch>
-Batch make_batch(const py::object& inertia, Array& moments, const Array& omega, const Array& attitude, const Array& t) {
-  Batch batch;
-  batch.bodies = static_cast<std::size_t>(omega.shape(0));
-  batch.own_times = t.ndim() == 2;
-  batch.times = static_cast<std::size_t>(t.shape(t.ndim() - 1));
-  batch.omega = omega.data(), batch.attitude = attitude.data(), batch.t = t.data();
-  if (py::isinstance<InertiaTensor>(inertia)) {
-    batch.tensor = &inertia.cast<const InertiaTensor&>();
-  } else {
-    moments = inertia.cast<Array>();
-    batch.moments = moments.data();
-  }
-  return batch;
 }
 
 template <class Batch>

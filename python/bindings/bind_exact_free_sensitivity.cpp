@@ -1,3 +1,4 @@
+#include "bind_batch.hpp"
 #include "bind_exact.hpp"
 #include "polhode/batch/free_sensitivity.hpp"
 #include "polhode/core/error.hpp"
@@ -62,18 +63,8 @@ std::size_t batch_free_sensitivity(const py::object& inertia, const Array& omega
                                    py::array_t<double, py::array::c_style> q,
                                    py::array_t<double, py::array::c_style> d_w,
                                    py::array_t<double, py::array::c_style> d_q, int threads) {
-  FreeMotionBatch batch;
   Array moments;
-  batch.bodies = static_cast<std::size_t>(omega.shape(0));
-  batch.own_times = t.ndim() == 2;
-  batch.times = static_cast<std::size_t>(t.shape(t.ndim() - 1));
-  batch.omega = omega.data(), batch.attitude = attitude.data(), batch.t = t.data();
-  if (py::isinstance<InertiaTensor>(inertia)) {
-    batch.tensor = &inertia.cast<const InertiaTensor&>();
-  } else {
-    moments = inertia.cast<Array>();
-    batch.moments = moments.data();
-  }
+  const auto batch = make_batch<FreeMotionBatch>(inertia, moments, omega, attitude, t);
   const std::vector<SensitivityTo> to = to_wrt(wrt);
   const TurnSide which = to_side(side);
   double *a = w.mutable_data(), *b = q.mutable_data(), *c = d_w.mutable_data(), *d = d_q.mutable_data();
