@@ -13,12 +13,13 @@ const PRESETS = {
 };
 const REST = { weight: 0, arm: 0.1, tilt: 0, wheel: 0, rate: 60 };
 const METHODS = ["euler", "semi_euler", "catto", "jolt", "buss", "split", "dmv2", "rk4", "free"];
-const SPAN = 20, DENSITY = 900, FRAMES = 120;   // [g/cm^3 / 1000]: a mass of density times volume; seconds; times a second
+const SPAN = 20, FRAMES = 120;   // [s], and states a second
+const DENSITY = 900;             // [kg/m^3]
 const COLORS = ["#b3392f", "#e0584c", "#2f6fb3", "#4c8fe0", "#3f8f4f", "#58b36b"];
 
 const state = { ...REST, ...PRESETS.racket, method: "semi_euler" };
 const cores = {};
-let exact = null, other = null, clock = 0, playing = true, asked = 0;
+let exact = null, polhode = null, other = null, clock = 0, playing = true, asked = 0;
 const bodyView = new View(get("body")), ellipsoidView = new View(get("ellipsoid"));
 
 const times = Float64Array.from({ length: SPAN * FRAMES + 1 }, (_, i) => i / FRAMES);
@@ -64,6 +65,7 @@ function recompute() {
     exact = isFree() ? throwFree(cores.free, start(), times, SPAN) : solveScene(cores.solve, fullStart(), times);
   });
   state.cost = performance.now() - began;
+  polhode = exact && traceContact(exact.omega);
   tellFacts(), save();
   clearTimeout(asked), asked = setTimeout(compare, 60);
 }
@@ -113,9 +115,23 @@ function drawBody(t) {
   if (other) bodyView.box(half, quatAt(other, other.rate, t), shift, null, "--other");
 }
 
-/// The point of contact omega / sqrt(2 T) on the ellipsoid x.I.x = 1, in units that fill the picture.
+/// The half axes of the ellipsoid x.I.x = 1, and the largest, by which the picture is divided.
+function semiAxes() {
+  const semi = massAndMoments().map(m => 1 / Math.sqrt(m));
+  return { semi, most: Math.max(...semi) };
+}
+
+/// The point of contact omega / sqrt(2 T) at every time, in the picture's units.
+function traceContact(omega) {
+  const I = massAndMoments(), { most } = semiAxes();
+  return Array.from({ length: omega.length / 3 }, (_, i) => {
+    const w = omega.subarray(3 * i, 3 * i + 3), T2 = w[0] * w[0] * I[0] + w[1] * w[1] * I[1] + w[2] * w[2] * I[2];
+    return Array.from(w, x => T2 > 0 ? x / Math.sqrt(T2) / most : 0);
+  });
+}
+
 function drawEllipsoid(t) {
-  const I = massAndMoments(), semi = I.map(m => 1 / Math.sqrt(m)), most = Math.max(...semi);
+  const { semi, most } = semiAxes();
   const view = ellipsoidView;
   view.scale = 1.0, view.clear();
   for (let axis = 0; axis < 3; ++axis) for (const level of [-0.6, 0, 0.6]) {
@@ -128,12 +144,8 @@ function drawEllipsoid(t) {
     }
     view.line(ring, "--line", 1);
   }
-  const contact = i => {
-    const w = exact.omega.subarray(3 * i, 3 * i + 3), T2 = w[0] * w[0] * I[0] + w[1] * w[1] * I[1] + w[2] * w[2] * I[2];
-    return Array.from(w, x => T2 > 0 ? x / Math.sqrt(T2) / most : 0);
-  };
-  view.line(Array.from({ length: exact.omega.length / 3 }, (_, i) => contact(i)), "--accent", 2);
-  view.dot(contact(Math.round(t * FRAMES)), "--other");
+  view.line(polhode, "--accent", 2);
+  view.dot(polhode[Math.round(t * FRAMES)], "--other");
 }
 
 function frame(last) {
@@ -152,7 +164,7 @@ function show() {
   get("method").value = state.method;
 }
 
-/// The link holds the scene: what differs from a body at rest in nothing.
+/// The link holds the scene.
 function save() {
   const words = new URLSearchParams();
   for (const id of [...FIELDS, "method"]) words.set(id, state[id]);
@@ -215,7 +227,7 @@ function listen() {
 
 /// The spin from the point under the pointer: omega along it, with the energy unchanged.
 function pickSpin(event) {
-  const I = massAndMoments(), semi = I.map(m => 1 / Math.sqrt(m)), most = Math.max(...semi), view = ellipsoidView;
+  const I = massAndMoments(), { semi, most } = semiAxes(), view = ellipsoidView;
   const frame = view.canvas.getBoundingClientRect(), ratio = view.canvas.width / frame.width;
   const target = [(event.clientX - frame.left) * ratio, (event.clientY - frame.top) * ratio];
   let best = null, nearest = Infinity;
