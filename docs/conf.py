@@ -19,7 +19,7 @@ project, author, version = "polhode", "The polhode developers", polhode.__versio
 copyright = "The polhode developers, BSD-3-Clause"
 extensions = [
     "myst_nb", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "sphinx.ext.napoleon", "sphinx_gallery.gen_gallery",
-    "sphinxcontrib.bibtex", "sphinxcontrib.katex", "sphinx_copybutton", "sphinx_design", "_site",
+    "sphinxcontrib.bibtex", "sphinxcontrib.katex", "sphinx_copybutton", "_site",
 ]
 exclude_patterns = ["_static", "_site", "gallery/**", "auto_gallery/**.ipynb", "auto_gallery/**.py",
                     "auto_gallery/**.zip", "**/sg_execution_times.rst", "sg_execution_times.rst", "jupyter_execute"]
