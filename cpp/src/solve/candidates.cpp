@@ -101,8 +101,9 @@ Candidate evaluate_method(const Scene& scene, const Facts& facts, const SolveOpt
   if (options.certify && carries_error) {
     add_run(candidate.rtol, facts.is_stiff_for_series() ? carried_cost_stiff : carried_cost);
   } else {
-    add_run(candidate.rtol, 1.0);
-    if (options.certify) add_run(compared, 1.0);
+    const double share = options.certify && !record.implicit ? pair_cost : 1.0;
+    add_run(candidate.rtol, share);
+    if (options.certify) add_run(compared, share);
   }
   // The certificate will claim the error of the coarser run.
   const double shown = options.certify ? compared : candidate.rtol;

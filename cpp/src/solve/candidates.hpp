@@ -16,6 +16,8 @@ inline constexpr double solve_seconds = 7e-6;         ///< of any call of solve 
 inline constexpr double piece_seconds = 3e-6;         ///< to set up a run of one piece; the pilot run is one more
 /// The cost of a run that carries its error, as a multiple of the run without, by benchmarks/planner/fit.py.
 inline constexpr double carried_cost = 2.4, carried_cost_stiff = 3.0;
+/// The cost of a pair of explicit runs, as a multiple of what both take: the first pair often proves too little.
+inline constexpr double pair_cost = 1.6;
 inline constexpr double pair_ratio = 5.0;             ///< ratio of the tolerances of the two runs of a certificate
 
 double get_accuracy(const SolveOptions& options);

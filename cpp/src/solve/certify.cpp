@@ -17,6 +17,8 @@ namespace {
 constexpr int pilot_intervals = 48;        // of the span, to count the revolutions
 constexpr double chaotic_safety = 2.5;     // after a first run whose error exceeds the accuracy
 constexpr double give_up_factor = 30.0;    // times the accuracy: a run with a larger error is abandoned
+constexpr double unstable_factor = 1e6;    // the same, for a run at the least tolerance: its series may be unstable
+constexpr double near_least = 2.0;         // times the least tolerance: so close to it, a second run gains nothing
 
 /// Repeats the run of one scene until its error is known and small enough.
 class Certifier {
@@ -38,7 +40,9 @@ class Certifier {
     double coarse = forecast.known() ? forecast.find_rtol(accuracy_, turns) : accuracy_ / 10;
     coarse = std::clamp(coarse, ratio_ * record().least_rtol, 1e-2);
     if (!decision_.plan.certify) return expect(turns);
-    return carries_error() ? certify_carried(coarse / ratio_) : certify_by_pairs(coarse);
+    if (!carries_error()) return certify_by_pairs(coarse);
+    const double least = record().least_rtol, rtol = coarse / ratio_;
+    return certify_carried(rtol < near_least * least ? least : rtol);
   }
 
  private:
@@ -104,9 +108,10 @@ class Certifier {
     const double least = record().least_rtol;
     bool all_terms = decision_.facts.is_stiff_for_series();
     for (bool first = true;; first = false) {
-      const bool last = rtol <= least;
+      const bool finest = rtol <= least, last = finest && (all_terms || !first);
       double given_up = 0.0;
-      Attempt attempt = run_carried(runs_, rtol, safety_, all_terms, last ? unknown_error : give_up_factor, given_up);
+      const double most = last ? unknown_error : finest ? unstable_factor : give_up_factor;
+      Attempt attempt = run_carried(runs_, rtol, safety_, all_terms, most, given_up);
       if (given_up > 0) {
         // The error may grow by the same factor in each further part of the span.
         const double parts = std::min(decision_.facts.span() / given_up, 4.0);
@@ -118,7 +123,7 @@ class Certifier {
       const double error = attempt.error;
       const bool ended = !attempt.finished(), stalled = !first && error > 0.5 * best_.error;
       if (best_.motion.t.empty() || is_better(attempt) || ended) best_ = std::move(attempt);
-      if (ended || error <= accuracy_ || last) return conclude();
+      if (ended || error <= accuracy_ || finest) return conclude();
       // The run measures how much the motion amplifies errors, but only approximately: the safety factor grows.
       const double wider = std::max(1.0, chaotic_safety / safety_);
       safety_ *= wider;
