@@ -4,7 +4,7 @@
 
 Who takes part is what `polhode chart` knows: the methods of the list and the programs that are installed, a missing one
 named as missing. A time is the least CPU time of the thread over interleaved repeats, all samples included, since the
-machine may be busy; start-up and compilation are not in it. --calls: what a torque of the user's own costs per call.
+machine may be busy. Start-up and compilation are not in it: each setting runs once before the clock. --calls: what a torque of the user's own costs per call.
 """
 
 import argparse
@@ -38,8 +38,9 @@ def sweep(one, reference, taking_part):
             continue
         for label, value in candidate.settings(one):
             try:
+                answer = run(value, LONGEST)   # what is compiled at the first run is compiled here
                 begin = time.thread_time()
-                answer = run(value, LONGEST)
+                run(value, LONGEST)
                 seconds = time.thread_time() - begin
             except Exception as why:
                 points.setdefault(candidate.name, []).append([label, str(why), None, None])
