@@ -2,6 +2,7 @@
 
 #include "bind.hpp"
 #include "calls.hpp"
+#include "reduce.hpp"
 #include "uninitialised.hpp"
 
 namespace polhode::python {
@@ -46,5 +47,6 @@ PYBIND11_MODULE(_core, m, pybind11::mod_gil_not_used()) {
   bind_batch_solve_many(m);
   const std::vector<py::type> classes = list_classes(m);
   refuse_wrong_calls(classes);
+  reduce_by_state(classes);
   guard_uninitialised(classes, m.attr("InvalidInput"));
 }

@@ -246,6 +246,31 @@ def test_docstrings_and_overloads_are_those_of_the_signature():
     assert pickle.loads(pickle.dumps(ph.FreeMotion(BLOCK, OMEGA))) == ph.FreeMotion(BLOCK, OMEGA)
 
 
+PICKLED = {
+    "tensor": lambda: ph.InertiaTensor.from_moments((1, 2, 2.5)),
+    "free motion": lambda: ph.FreeMotion(BLOCK, OMEGA),
+    "top": lambda: ph.HeavyTop((1, 1, 0.5), 1.3, (0.1, 0.2, 5), (0.6, 0, 0, 0.8)),
+    "torque": lambda: ph.torques.During(ph.torques.Constant((1, 2, 3)), (1, 2)),
+    "rotor": lambda: ph.Rotor((0, 0, 1), momentum=0.5),
+    "scene": lambda: ph.Scene.load("S5"),
+}
+
+
+@pytest.mark.parametrize("name", PICKLED)
+def test_every_protocol_of_pickle_brings_an_object_back(name):
+    # Protocols 0 and 1 call __reduce__, whose inherited form ended the process for compiled classes.
+    one = PICKLED[name]()
+    for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
+        assert pickle.loads(pickle.dumps(one, protocol)) == one
+
+
+def test_what_has_no_state_to_pickle_says_so_at_every_protocol():
+    factors = ph._core.CostFactors.__new__(ph._core.CostFactors)
+    for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
+        with pytest.raises((TypeError, ph.InvalidInput)):
+            pickle.dumps(factors, protocol)
+
+
 # ---- quaternions that may be (w, x, y, z)
 
 HALF = (1, 0, 0, 0)

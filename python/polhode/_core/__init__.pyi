@@ -30,6 +30,10 @@ class PrincipalAxes:
         ...
     def __hash__(self: PrincipalAxes) -> int:
         ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
     def __repr__(self: PrincipalAxes) -> str:
         ...
     def __setstate__(self: PrincipalAxes, arg0: tuple[typing.Any, ...]) -> None:
@@ -106,6 +110,10 @@ class InertiaTensor:
         ...
     def __init__(self: InertiaTensor, matrix: typing.Any, *, physical: bool = True) -> None:
         ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
     def __repr__(self: InertiaTensor) -> str:
         ...
     def __setstate__(self: InertiaTensor, arg0: tuple[typing.Any, ...]) -> None:
@@ -285,6 +293,10 @@ class MassProperties:
         ...
     def __init__(self: MassProperties, mass: typing.Any, com: typing.Any, inertia: typing.Any) -> None:
         ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
     def __repr__(self: MassProperties) -> str:
         ...
     def __setstate__(self: MassProperties, arg0: tuple[typing.Any, ...]) -> None:
@@ -367,6 +379,10 @@ class FreeMotion:
         ...
     def __init__(self: FreeMotion, inertia: typing.Any, omega: typing.Any, attitude: typing.Any = (0, 0, 0, 1)) -> None:
         ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
     def __repr__(self: FreeMotion) -> str:
         ...
     def __setstate__(self: FreeMotion, arg0: tuple[typing.Any, ...]) -> None:
@@ -606,6 +622,10 @@ class Gyrostat:
         ...
     def __init__(self: Gyrostat, inertia: typing.Any, *, rotors: typing.Any = None, momentum: typing.Any = None, omega: typing.Any, attitude: typing.Any = (0, 0, 0, 1)) -> None:
         ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
     def __repr__(self: Gyrostat) -> str:
         ...
     def __setstate__(self: Gyrostat, arg0: tuple[typing.Any, ...]) -> None:
@@ -782,6 +802,10 @@ class DampedFree:
         ...
     def __init__(self: DampedFree, inertia: typing.Any, damping: typing.Any, omega: typing.Any, attitude: typing.Any = (0, 0, 0, 1)) -> None:
         ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
     def __repr__(self: DampedFree) -> str:
         ...
     def __setstate__(self: DampedFree, arg0: tuple[typing.Any, ...]) -> None:
@@ -940,6 +964,10 @@ class HeavyTop:
         ...
     def __init__(self: HeavyTop, inertia: typing.Any, weight_arm: typing.Any, omega: typing.Any, attitude: typing.Any = (0, 0, 0, 1), rotor: typing.Any = 0.0) -> None:
         ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
     def __repr__(self: HeavyTop) -> str:
         ...
     def __setstate__(self: HeavyTop, arg0: tuple[typing.Any, ...]) -> None:
@@ -1119,6 +1147,10 @@ class Pendulum:
         ...
     def __init__(self: Pendulum, inertia: typing.Any, weight: typing.Any, arm: typing.Any, omega: typing.Any, attitude: typing.Any = (0, 0, 0, 1)) -> None:
         ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
     def __repr__(self: Pendulum) -> str:
         ...
     def __setstate__(self: Pendulum, arg0: tuple[typing.Any, ...]) -> None:
@@ -1278,6 +1310,10 @@ class Rotor:
         ...
     def __init__(self, axis: typing.Any, *, momentum: typing.Any = None, inertia: typing.Any = None, speed: typing.Any = None, free: typing.Any = False, during: typing.Any = None) -> None:
         ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
     def __repr__(self) -> str:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
@@ -1315,6 +1351,10 @@ class Rotor:
 class Scene:
     def __init__(self, inertia: typing.Any, omega: typing.Any, attitude: typing.Any, torques: collections.abc.Iterable[typing.Any], times: typing.Any, want: typing.Any, t0: typing.Any, name: typing.Any, rotors: collections.abc.Iterable[typing.Any]) -> None:
         ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
     @property
     def attitude(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
@@ -1355,9 +1395,17 @@ class CostFactors:
     """
     def __init__(self, factors: collections.abc.Mapping[str, typing.SupportsFloat | typing.SupportsIndex]) -> None:
         ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
 class Answer:
     def __call__(self, arg0: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
     @property
     def asked(self) -> float:
         ...
@@ -1415,6 +1463,10 @@ class _Summary:
         ...
     def __init__(self, quantities: list[typing.Any], times: typing.SupportsInt | typing.SupportsIndex) -> None:
         ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
     def add_free(self, first: typing.SupportsInt | typing.SupportsIndex, inertia: typing.Any, omega: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], attitude: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], times: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], threads: typing.SupportsInt | typing.SupportsIndex = 0) -> None:
         ...
     def add_states(self, first: typing.SupportsInt | typing.SupportsIndex, omega: typing.Any = None, attitude: typing.Any = None, inertia: typing.Any = None, values: typing.Any = None) -> None:

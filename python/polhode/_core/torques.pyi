@@ -35,6 +35,10 @@ class Constant:
         ...
     def __init__(self, torque: numpy.typing.ArrayLike, frame: str = 'body') -> None:
         ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
     def __repr__(self) -> str:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
@@ -80,6 +84,10 @@ class Gravity:
         ...
     def __init__(self, weight: float, arm: numpy.typing.ArrayLike) -> None:
         ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
     def __repr__(self) -> str:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
@@ -125,6 +133,10 @@ class GravityGradient:
         ...
     def __init__(self, mean_motion: float, phase: float = 0.0) -> None:
         ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
     def __repr__(self) -> str:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
@@ -168,6 +180,10 @@ class Damping:
         ...
     def __init__(self, matrix: numpy.typing.ArrayLike) -> None:
         ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
     def __repr__(self) -> str:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
@@ -208,6 +224,10 @@ class AngularDamping:
         ...
     def __init__(self, rate: float) -> None:
         ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
     def __repr__(self) -> str:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
@@ -255,6 +275,10 @@ class Custom:
         ...
     def __init__(self, function: typing.Any, *, uses_time: bool = True, uses_attitude: bool = True, uses_rates: bool = True, potential: typing.Any = None, data: typing.Any = None) -> None:
         ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
     def __repr__(self) -> str:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
@@ -294,6 +318,10 @@ class During:
         ...
     def __init__(self, torque: typing.Any, windows: typing.Any) -> None:
         ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
     def __repr__(self) -> str:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
