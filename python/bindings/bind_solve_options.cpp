@@ -19,10 +19,11 @@ Formulation to_formulation(py::handle value) {
 /// From a polhode.Event. The closure holds a plain pointer, since it is copied without the GIL.
 SceneEvent to_event(py::handle event) {
   return {[event](const State& state) {
-            const WithGil gil;
-            const py::object value = event.attr("function")(state.t, from_vector3(state.omega),
-                                                            from_quat(state.attitude));
-            return to_real(value, "the event's function");
+            return with_gil([&] {
+              const py::object value = event.attr("function")(state.t, from_vector3(state.omega),
+                                                              from_quat(state.attitude));
+              return to_real(value, "the event's function");
+            });
           },
           event.attr("direction").cast<int>(), event.attr("terminal").cast<bool>()};
 }
@@ -89,11 +90,12 @@ SolveOptions to_solve_options(const py::dict& given) {
 
 Progress make_progress(py::handle callback) {
   return [callback](double reached, double last) {
-    const WithGil gil;
-    check_signals();
-    if (callback.is_none()) return true;
-    const py::object answer = callback(reached, last);
-    return answer.is_none() || py::bool_(answer);
+    return with_gil([&] {
+      check_signals();
+      if (callback.is_none()) return true;
+      const py::object answer = callback(reached, last);
+      return answer.is_none() || static_cast<bool>(py::bool_(answer));
+    });
   };
 }
 

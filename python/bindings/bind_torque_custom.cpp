@@ -32,9 +32,7 @@ bool read_plainly(py::handle result, double* torque) {
   return true;
 }
 
-void call_python(double t, const double* omega, const double* attitude, double* torque, void* data) {
-  const WithGil gil;
-  OwnCustom& owner = *static_cast<OwnCustom*>(data);
+void call_with_gil(double t, const double* omega, const double* attitude, double* torque, OwnCustom& owner) {
   py::object w = owner.omega.take(omega), q = owner.attitude.take(attitude);
   const py::float_ time(t);
   PyObject* arguments[] = {nullptr, time.ptr(), w.ptr(), q.ptr()};
@@ -54,12 +52,17 @@ void call_python(double t, const double* omega, const double* attitude, double* 
   owner.attitude.give_back(std::move(q));
 }
 
+void call_python(double t, const double* omega, const double* attitude, double* torque, void* data) {
+  with_gil([&] { call_with_gil(t, omega, attitude, torque, *static_cast<OwnCustom*>(data)); });
+}
+
 double call_python_potential(double t, const double* attitude, void* data) {
-  const WithGil gil;
-  const OwnCustom& owner = *static_cast<const OwnCustom*>(data);
-  Array q(4);
-  std::copy_n(attitude, 4, q.mutable_data());
-  return to_real(owner.potential(t, q), "the torque's potential");
+  return with_gil([&] {
+    const OwnCustom& owner = *static_cast<const OwnCustom*>(data);
+    Array q(4);
+    std::copy_n(attitude, 4, q.mutable_data());
+    return to_real(owner.potential(t, q), "the torque's potential");
+  });
 }
 
 /// The address of a compiled function: numba's cfunc has `.address`, ctypes' function types are cast; 0 for anything

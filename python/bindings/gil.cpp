@@ -4,13 +4,10 @@
 #include <thread>
 
 namespace polhode::python {
-namespace {
 
-[[noreturn]] void wait_for_the_end() {
+void wait_for_the_end() {
   for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
 }
-
-}  // namespace
 
 // catch (...) takes the unwinding of pthread_exit, too. It is never left.
 WithGil::WithGil() {
@@ -34,8 +31,9 @@ WithoutGil::~WithoutGil() {
 }
 
 void check_signals() {
-  const WithGil gil;
-  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  with_gil([] {
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  });
 }
 
 }  // namespace polhode::python

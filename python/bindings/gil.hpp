@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <exception>
 
 #include "bind.hpp"
 #include "polhode/core/interrupt.hpp"
@@ -11,7 +12,9 @@
 // as it does from Python 3.14 on.
 namespace polhode::python {
 
-/// Holds the lock, on any thread.
+[[noreturn]] void wait_for_the_end();
+
+/// Holds the lock, on any thread. See with_gil.
 class WithGil {
  public:
   WithGil();
@@ -22,6 +25,20 @@ class WithGil {
  private:
   PyGILState_STATE state_;
 };
+
+/// Calls work() with the lock, on any thread. What unwinds a thread when Python ends is no exception of the standard
+/// library's kind: `work` loses the lock as soon as it runs a line of Python, and must not give it back then.
+template <class Work>
+auto with_gil(const Work& work) {
+  const WithGil gil;
+  try {
+    return work();
+  } catch (const std::exception&) {
+    throw;
+  } catch (...) {
+    wait_for_the_end();
+  }
+}
 
 /// Work without the lock. Where that work calls check_interrupt, Ctrl-C ends it with KeyboardInterrupt.
 class WithoutGil {

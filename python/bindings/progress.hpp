@@ -28,9 +28,10 @@ class ReportedWork {
 
  private:
   void report(std::size_t done) const {
-    const WithGil gil;
-    check_signals();
-    callback_(done, total_);
+    with_gil([&] {
+      check_signals();
+      callback_(done, total_);
+    });
   }
 
   const py::object& callback_;
