@@ -215,3 +215,14 @@ def test_scenes_of_the_tree_and_names_are_the_same():
     file = Path(__file__).parents[2] / "scenes/S1.toml"
     by_path, by_name = (json.loads(call("run", scene, "--json").stdout) for scene in (file, "S1"))
     assert by_path["omega"] == by_name["omega"]
+
+
+def test_control_c_ends_a_command_with_one_line_and_status_130(monkeypatch, capsys):
+    def interrupted(*_arguments, **_named):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("polhode.cli.app.solve", interrupted)
+    with pytest.raises(SystemExit) as ended:
+        main(["run", "S1"])
+    assert ended.value.code == 130
+    assert capsys.readouterr().err == "polhode: interrupted\n"

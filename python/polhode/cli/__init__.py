@@ -34,7 +34,8 @@ def _run(arguments: Sequence[str] | None) -> int:
         from .app import app
 
         given = list(sys.argv[1:] if arguments is None else arguments)
-        return app(args=given or ["--help"], prog_name="polhode", standalone_mode=False) or 0
+        status = app(args=given or ["--help"], prog_name="polhode", standalone_mode=False) or 0
+        return _say("interrupted", 130) if status == 130 else status   # typer's status for Ctrl-C
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] not in EXTRA:
             raise
