@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import polhode as ph
-from polhode.atlas import FAMILIES, atlas, claims, scenes
+from polhode.atlas import FAMILIES, atlas, claims, pictures, scenes
 from polhode.atlas import atlas as atlas_function
 from polhode.atlas.entrants import entrants
 from polhode.atlas.families import step
@@ -86,6 +86,7 @@ def test_what_takes_too_long_is_foreseen_by_a_power_law():
     assert too_long([(1e2, 0.01), (1e3, 0.05)], 1e4, 1e-3) == ""   # too short to go by
     assert too_long([(1e2, 0.4), (1e3, 0.2)], 1e4, 0.1) == "would take about 0 s"
     assert "the one before" in too_long([(1e2, math.inf)], 1e3, 1.0)
+    assert too_long([(1e2, 2e-4), (1e3, 0.2)], 1e4, 100.0) == "would take about 200 s"   # 0.2 * 1000
 
 
 def test_unnormalised_runge_kutta_falls_as_the_fifth_power():
@@ -93,6 +94,20 @@ def test_unnormalised_runge_kutta_falls_as_the_fifth_power():
 
     assert (math.log2(rk4_without_normalising(0.04, 10.0) / rk4_without_normalising(0.02, 10.0))
             == pytest.approx(5, abs=0.2))
+
+
+@pytest.mark.parametrize("name", ["rk4", "rk45"])
+@pytest.mark.parametrize("family", ["racket", "gimbal", "long", "spin-up", "chaos", "near", "sleeping", "wheel"])
+def test_the_quick_sweep_is_a_part_of_the_whole_one(name, family, monkeypatch):
+    """Of three values or more: two make no curve. Only the thruster's whole sweep has no more than three."""
+    def burst(*_, **__):
+        raise Failed("burst")
+
+    for module in [module for place, module in sys.modules.items() if place.startswith("polhode.atlas.")]:
+        if getattr(module, "run", None) is run:
+            monkeypatch.setattr(module, "run", burst)
+    quick, whole = ([(p.series, p.x) for p in BY_NAME[family].measure(WHO[name], short, 9.0)] for short in (True, False))
+    assert set(quick) < set(whole) and len(quick) >= min(3, len(whole) - 1)
 
 
 # workers
@@ -184,6 +199,25 @@ def test_pictures_name_everyone_and_every_level(made):
     for symbol in "●✕":
         assert symbol in text
     assert "rk4 plain" in (folder / "norm.svg").read_text()
+
+
+def test_a_picture_goes_from_easy_to_hard_on_panels_broader_than_high(tmp_path, monkeypatch):
+    """A throw close to the axis is hard, as is a long time: the one stands at the right as the other does."""
+    figures = []
+    monkeypatch.setattr(pictures.style, "save", lambda figure, *_: figures.append(figure) or [])
+    for name, values in (("racket", scenes.RACKET), ("long", scenes.LONG)):
+        found = [Point(x, BY_NAME[name].series[0][0], {"error": 1e-9, "flip": 1e-9, "energy": 1e-9,
+                                                       "angular_momentum": 1e-9}) for x in values]
+        pictures.draw_family(FamilyResult(BY_NAME[name], False, 2.0, {"rk4": found, "dmv8": found[:2]}), tmp_path)
+    for figure, (easy, hard) in zip(figures, ((1e-1, 1e-12), (1e2, 1e6)), strict=True):
+        for axes in [axes for axes in figure.axes if axes.get_visible()]:
+            left, right = axes.transData.transform([(easy, 1e-9), (hard, 1e-9)])[:, 0]
+            assert axes.bbox.x0 <= left < right <= axes.bbox.x1 and axes.get_xscale() == "log"
+            assert 1 < axes.bbox.width / axes.bbox.height < 2
+
+
+def test_the_least_departure_of_a_norm_from_one_is_in_its_picture():
+    assert BY_NAME["norm"].y_limits[0] < 2.0**-53 < 1e-15   # of doubles just below 1
 
 
 def test_what_is_finished_is_kept(made, monkeypatch):

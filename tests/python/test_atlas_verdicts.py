@@ -272,6 +272,30 @@ def test_the_three_of_the_longest_step_tell_conserving_from_being_right():
                      "rk4": {"bounded", "kept", "right"}}
 
 
+@pytest.mark.parametrize(("faster", "held"), [(1.04, {"bounded", "kept"}), (1.06, {"bounded"}), (1.4, {"bounded"}),
+                                              (1.45, set()), (0.96, {"bounded", "kept"}), (0.94, {"bounded"})])
+def test_kept_is_within_ten_per_cent_and_bounded_within_a_factor_two(faster, held, monkeypatch):
+    """Rates k times as large have k times the momentum and k^2 times the energy; the attitude is lost in any case."""
+    times = 2 * math.pi * np.arange(1, 21)
+    scene = ph.Scene(inertia=(0.2, 0.4, 0.52), omega=np.ones(3) / math.sqrt(3), times=times)
+    rates, attitudes = ph.FreeMotion((0.2, 0.4, 0.52), scene.omega).at(times)
+    truth = truth_of("racket", scenes.racket(1e-1))._replace(omega=rates, attitude=attitudes)
+    lost = attitudes @ np.array([[0, 0, 0, 1], [0, 0, 1, 0], [0, -1, 0, 0], [-1, 0, 0, 0]])   # half a turn away
+    motion = type("M", (), {"omega": faster * rates, "attitude": lost})
+    monkeypatch.setattr(step, "run", lambda *_: motion)
+    assert step.passes(WHO["rk4"], scene, truth, 0.1, 1.0) == held
+
+
+def test_an_attitude_is_lost_where_it_is_off_by_more_than_a_tenth(monkeypatch):
+    """A tenth of a radian itself is not lost yet: the atlas says "off by more"."""
+    case = scenes.racket(1e-1)
+    off = np.zeros(case.scene.times.size)
+    off[40], off[60] = 0.1, 0.1001
+    monkeypatch.setattr(racket, "attitude_errors", lambda *_: off)
+    points = list(racket.measure(WHO["exact"], True, 60.0))
+    assert points[0].values["lost"] == case.scene.times[60]
+
+
 @pytest.mark.parametrize("what", ["inertia", "rates"])
 def test_scaled_scenes_are_the_same_motion(what):
     plain, far = scales.scaled("S4", what, 0), scales.scaled("S4", what, 12)

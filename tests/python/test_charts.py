@@ -246,7 +246,7 @@ def test_time_to_reach_is_a_power_law_along_the_front():
     points = curve("a", "method", [1e-2, 1e-4, 1e-5], [1e-2, 1e-6, 1e-4], [1.0, 100.0, 1000.0])
     assert [p.seconds for p in front(points)] == [1.0, 100.0]
     assert time_to_reach(points, 1e-4) == pytest.approx(10.0)
-    assert time_to_reach(points, 1e-2) == 1
+    assert time_to_reach(points, 1e-2) == 1 and time_to_reach(points, 1e-6) == pytest.approx(100)   # at its ends too
     assert np.isnan(time_to_reach(points, 1e-7)) and time_to_reach(points, 1.0) == 1
 
 
@@ -325,6 +325,23 @@ def test_files_of_a_chart(charted):
     assert "rk45" in text and "input rounding 2e-14" in text
 
 
+def test_no_scene_gets_more_than_what_is_left_of_the_budget(tmp_path, monkeypatch):
+    """The first of six may take more than its sixth, but leaves most of the time to the others."""
+    module, shares = sys.modules["polhode.charts.chart"], []
+
+    def measured(scene, title, taking_part, share, *_):
+        shares.append(share)
+        return made_up([])
+
+    monkeypatch.setattr(module, "measure", measured)
+    monkeypatch.setattr(module, "candidates", three)
+    for drawing, names in (("choice", ["picture"]), ("pictures", ["work_precision", "overview", "limits"])):
+        for name in names:
+            monkeypatch.setattr(getattr(module, drawing), name, lambda *_: [])
+    chart([TINY.replace(name=f"t{i}") for i in range(6)], tmp_path, budget=60.0, peers=False)
+    assert len(shares) == 6 and 1.0 < shares[0] < 60.0 / 2 and max(shares) <= 60.0
+
+
 def test_results_json(charted):
     folder, results, content, _ = charted
     assert json.loads((folder / "results.json").read_text()) == json.loads(json.dumps(content, allow_nan=False))
@@ -386,6 +403,7 @@ def test_the_command_prints_tables_uncut(tmp_path, monkeypatch):
     ({"scenes": []}, "none given"),
     ({"scenes": [TINY, TINY]}, "'tiny' is given twice"),
     ({"scenes": [TINY], "budget": float("nan")}, "budget: must be positive"),
+    ({"scenes": [TINY], "budget": 0.0}, "budget: must be positive"),
     ({"scenes": [TINY.replace(want=["omega"])]}, "want: must be omega and attitude"),
 ])  # fmt: skip
 def test_bad_input(arguments, words, tmp_path):

@@ -10,7 +10,7 @@ import pytest
 
 import polhode as ph
 from polhode.charts import equations, peers
-from polhode.charts.candidate import Answer, Candidate, Failure, tolerances
+from polhode.charts.candidate import Answer, Candidate, Failure, refuses_times, tolerances
 from polhode.charts.candidates import candidates
 from polhode.charts.measure import measure
 from polhode.charts.runners import InProcess, Subprocess, make_runner
@@ -104,6 +104,12 @@ def test_scipys_counts_do_not_depend_on_the_unit_of_time():
     slow = fast.replace(omega=1e-3 * fast.omega, times=1e3 * fast.times)
     counts = [peer.run(scene, 1e-6, None).stats["derivatives"] for scene in (fast, slow)]
     assert counts[1] == pytest.approx(counts[0], rel=0.05)   # SciPy's first step is not free of the unit
+
+
+def test_times_from_the_start_on_are_in_order():
+    assert refuses_times(TINY) == refuses_times(TINY.replace(t0=-1.0)) == ""   # a sample may be at the start
+    assert "in order" in refuses_times(TINY.replace(t0=0.1)) and "in order" in refuses_times(TINY.replace(
+        times=[1.0, 0.5]))
 
 
 def test_peers_want_their_times_in_order():

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import polhode as ph
+from polhode._plot.film import writer
 from polhode._plot.film.film import MOST
 from polhode._plot.film.solid import choose_axis, find_arm, make_solid, sphere
 
@@ -77,6 +78,9 @@ def test_a_mesh_is_taken_as_it_is(tmp_path):
         solid = make_solid(scene(BLOCK), body)
         assert np.allclose(np.ptp(solid.corners.reshape(-1, 3), axis=0) * np.sqrt(14) / 2, (1, 2, 3), rtol=1e-6)
         assert np.allclose(solid.corners.reshape(-1, 3).mean(axis=0), 0, atol=1e-6)
+    block.faces = block.faces[:-1]   # open: it has no volume, and is drawn about its middle
+    corners = make_solid(scene(BLOCK), block).corners.reshape(-1, 3)
+    assert np.allclose(corners.min(axis=0), -corners.max(axis=0), atol=1e-6)
     many = np.zeros((60_001, 3), int)
     for wrong, why in (("cube", "cube"), (([[0, 0, 0]], [[0, 0, 7]]), "must be 'box'"), (3, "must be 'box'"),
                        (([[0, 0, 0]], many), "60,000")):
@@ -152,6 +156,25 @@ def test_a_gif_has_frames_that_move(tmp_path):
     half = frames[0].shape[1] // 2
     moved = np.abs(frames[1] - frames[0]).sum(axis=2) > 60
     assert moved[40:, :half].mean() > 0.02 and 0 < moved[40:, half:].mean() < 0.02   # the body, and the dot of omega
+
+
+def test_a_film_has_its_panels_side_by_side_and_room_for_its_title(monkeypatch):
+    """A title of fifty letters beside the time; neither the body nor the ellipsoid reaches into the other panel."""
+    from polhode._plot import picture
+
+    figures = []
+
+    class Kept(picture.Picture):
+        def __init__(self, **options):
+            super().__init__(**options)
+            figures.append(self)
+
+    monkeypatch.setattr(picture, "Picture", Kept)
+    film = ph.solve(scene(BLOCK, name="A block thrown about its axis, seen from the side")).animate()
+    (frame,) = writer._frames(film, [0])
+    left, right = (axes.bbox for axes in figures[0].axes)
+    assert 0 <= left.x0 < left.x1 <= right.x0 < right.x1 <= figures[0].bbox.x1
+    assert (frame[:, -4:] == 255).all()   # nothing is cut off at the edge
 
 
 def test_an_mp4_by_ffmpeg_or_a_plain_refusal(tmp_path, monkeypatch):

@@ -1,5 +1,7 @@
 """Fits of free bodies to made measurements: derivatives, global starts, covariances, and what no data can tell."""
 
+from statistics import NormalDist
+
 import numpy as np
 import pytest
 
@@ -120,6 +122,7 @@ def test_principal_axes_that_are_turned_in_the_body_are_found():
     assert found.success, found.message
     assert found.inertia.matrix == pytest.approx(tensor.matrix / 0.62, abs=0.02)
     assert any("relabelled" in text for text in found.twins)
+    assert found.scene.inertia.matrix == pytest.approx(found.inertia.matrix)   # not the moments alone
 
 
 def test_intervals_cover_the_truth_as_often_as_they_say():
@@ -215,7 +218,34 @@ def test_samples_with_nan_are_left_out_and_counted():
     y[3, 1], y[50] = np.nan, np.nan
     found = ph.fit(measured.Rates(t, y, 0.01), fit=("omega", "inertia"))
     assert found.success and found.left_out == 2 and "2 samples were left out" in found.message
+    for (low, high), value, error in zip(found.interval().values(), found.x, found.stderr, strict=True):
+        half = NormalDist().inv_cdf(0.975) * error   # of 95 % of a normal distribution
+        assert (low, high) == pytest.approx((value - half, value + half), rel=1e-4)
+    low, high = found.interval(1.0)["omega_x"]
+    assert (high - low) / 2 == pytest.approx(found.stderr[0])
     assert found.dof == 3 * 98 - 5
+
+
+def test_the_picture_of_a_fit_has_its_panels_apart():
+    """The ellipses of each pair of five parameters, the motion, the residuals and the spread."""
+    pytest.importorskip("matplotlib")
+    rng = np.random.default_rng(20)
+    found = ph.fit(seen(motion_of(), np.linspace(0, 2 * TURN, 60), "rates", 0.01, rng), fit=("omega", "inertia"))
+    panels = [axes.get_position() for axes in found.plot().axes]
+    assert len(panels) == 3 + 5 * 4 / 2
+    for i, a in enumerate(panels):
+        assert 0 <= a.x0 < a.x1 <= 1 and 0 <= a.y0 < a.y1 <= 1
+        for b in panels[:i]:
+            assert min(a.x1, b.x1) <= max(a.x0, b.x0) or min(a.y1, b.y1) <= max(a.y0, b.y0)
+
+
+def test_the_inertia_alone_is_fitted_with_the_rates_of_the_scene():
+    rng = np.random.default_rng(21)
+    t = np.linspace(0, 3 * TURN, 100)
+    scene = ph.Scene(inertia=(0.28, 0.5, 0.63), omega=tuple(OMEGA), attitude=START, times=t)
+    found = ph.fit(seen(motion_of(), t, "rates", 0.01, rng), scene, fit="inertia")
+    assert found.success and np.array_equal(found.omega, OMEGA)
+    assert found.inertia / found.inertia.max() == pytest.approx(INERTIA / 0.62, abs=0.02)
 
 
 @pytest.mark.parametrize(("make", "text"), [

@@ -58,6 +58,8 @@ def test_the_default_span_is_two_periods_or_ten_turns():
     between = ph.FreeMotion(BLOCK, (0, 5, 1e-250))
     assert np.isclose(find_span(between), 4 * np.pi)   # its period is hundreds of turns, or endless
     assert find_span(ph.FreeMotion(BLOCK, (0, 0, 0))) == 1.0
+    assert np.isclose(find_span(ph.DampedFree(BLOCK, 0.0, (0, 0, 3))), 10 * 2 * np.pi / 3)   # nothing damps it
+    assert find_span(ph.DampedFree(BLOCK, 20.0, (0, 0, 3))) < 10 * 2 * np.pi / 3
 
 
 def test_given_times_are_those_of_the_samples():
@@ -109,6 +111,28 @@ def test_the_momentum_lies_on_its_sphere_and_marks_on_the_curves():
     for wrong in (-1, [np.inf]):
         with pytest.raises(ph.InvalidInput, match="marks"):
             motion.plot(marks=wrong)
+
+
+@pytest.mark.parametrize("part", ["polhode", "momentum", "herpolhode", "axis"])
+def test_the_motion_is_the_broadest_line_and_its_start_the_largest_dot(part):
+    lines = FORMS["FreeMotion"].plot(part, marks=[0.5]).axes[0].get_lines()
+    curves = [line for line in lines if line.get_marker() == "None"]
+    motion = [line for line in curves if line.get_color() in (style.LIGHT.accent, style.LIGHT.path)]
+    others = [line.get_linewidth() for line in curves if line not in motion]
+    assert motion and min(line.get_linewidth() for line in motion) > max(others, default=0.0)
+    dots = [line for line in lines if line.get_marker() == "o"]
+    start, *marks = sorted(dots, key=lambda line: line.get_color() != style.LIGHT.ink)
+    assert len(marks) == 1 and marks[0].get_markersize() < start.get_markersize()
+
+
+def test_the_circles_of_latitude_lie_alike_above_and_below():
+    axes = FORMS["FreeMotion"].plot("axis").axes[0]
+    points = np.vstack([np.column_stack(line.get_data()) for line in axes.get_lines()
+                        if line.get_color() == style.LIGHT.floor])
+    points = points[np.isfinite(points).all(axis=1)]
+    assert len(points) == 5 * 181
+    apart = np.abs(points[:, None] + points[None]).sum(axis=2).min(axis=1)
+    assert apart.max() < 1e-9   # each point has its opposite
 
 
 def test_one_part_is_drawn_into_axes_of_the_callers():

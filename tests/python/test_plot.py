@@ -92,6 +92,15 @@ def test_coarse_samples_are_drawn_as_curves_and_fine_ones_as_they_are():
     assert not find_curve(ph.solve(scene.replace(times=np.linspace(0, 5000, 26)), accuracy=1e-3)).whole
 
 
+def test_a_motion_that_cannot_be_solved_again_is_drawn_by_its_samples(monkeypatch):
+    """Its samples are all there is, and they are the whole motion: the heading must not say "the first turns"."""
+    motion = ph.solve(ph.Scene(inertia=BLOCK, omega=(1, 2, 3), times=np.linspace(0, 5, 11)), method="rk4", step=0.01)
+    from polhode._plot import track
+    monkeypatch.setattr(track, "solve", lambda *_, **__: type("M", (), {"status": "stopped", "omega": None}))
+    curve = find_curve(motion)
+    assert np.array_equal(curve.t, motion.t) and curve.whole
+
+
 def test_what_should_hold_is_what_drift_says():
     for name in ("S1", "S5", "S6"):
         scene = ph.Scene.load(name)

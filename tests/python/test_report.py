@@ -134,6 +134,36 @@ def test_curves_hold_every_point_that_answers_something(made):
             assert all(p["setting"] in text for p, text in zip(shown, trace["text"], strict=True))
 
 
+def test_all_points_of_the_curves_lie_within_their_axes(made):
+    """Log axes, accuracy to the right: a point off by nearly pi is the last that is drawn, half as much beside it."""
+    _, content = made
+    for scene in content["scenes"]:
+        shown = figure(scene)
+        (left, right), (low, high) = (shown["layout"][axis]["range"] for axis in ("xaxis", "yaxis"))
+        for trace in shown["data"]:
+            assert all(right < np.log10(x) < left for x in trace["x"])
+            assert all(low < np.log10(y) < high for y in trace["y"])
+        assert np.log10(np.pi) < left < np.log10(10)   # an attitude is never further off than pi
+        for line in shown["layout"]["shapes"]:
+            assert line["yref"] == "paper" and (line["y0"], line["y1"]) == (0, 1)   # from the bottom to the top
+            assert right < np.log10(line["x0"]) < left
+
+
+def test_the_budget_is_a_few_minutes_and_more_for_everything(tmp_path, monkeypatch):
+    given = []
+
+    def charted(*_, budget, **__):
+        given.append(budget)
+        raise ph.InvalidInput("enough")
+
+    monkeypatch.setattr(sys.modules["polhode.report.report"], "chart", charted)
+    for options in ({}, {"full": True}, {"budget": 7.0}):
+        with pytest.raises(ph.InvalidInput, match="enough"):
+            report(tmp_path, **options)
+    quick, full, own = given
+    assert 60 <= quick <= 180 < full and own == 7.0   # the docs: a few minutes, the quick atlas among them
+
+
 def test_the_atlas_has_its_matrix_and_pictures(made, tmp_path):
     def verdict(level, text):
         return {"level": level, "text": text, "number": 1.0, "why": "because"}
