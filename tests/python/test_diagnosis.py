@@ -237,3 +237,90 @@ def test_products_at_the_level_of_rounding_say_nothing():
     clean, rounded, full = (np.diag((1.0, 2.0, 2.5)) + part * (1 - np.eye(3)) for part in (0.0, 1e-7, 0.1))
     count = [evidence._informative(matrix[None], mass, geometry) for matrix in (clean, rounded, full)]
     assert count == [3.0, 3.0, 6.0]
+
+
+GRAM, MM, CM, POUND, INCH = 1e-3, 1e-3, 1e-2, 0.45359237, 0.0254
+UNITS = {   # the units of mass, tensor and centre in which the numbers were written, in kg, kg m^2 and m
+    "g": (GRAM, 1, 1), "t": (1e3, 1, 1), "kg mm^2": (1, MM**2, 1), "kg mm^2, mm": (1, MM**2, MM),
+    "g mm^2": (1, GRAM * MM**2, 1), "g mm^2, mm": (1, GRAM * MM**2, MM), "g, g mm^2": (GRAM, GRAM * MM**2, 1),
+    "g, g mm^2, mm": (GRAM, GRAM * MM**2, MM), "kg cm^2": (1, CM**2, 1), "kg cm^2, cm": (1, CM**2, CM),
+    "g cm^2": (1, GRAM * CM**2, 1), "g cm^2, cm": (1, GRAM * CM**2, CM), "g, g cm^2, cm": (GRAM, GRAM * CM**2, CM),
+    "mm": (1, 1, MM), "cm": (1, 1, CM), "lb in^2": (1, POUND * INCH**2, 1),
+}
+TWICE = {name: tuple(1 / k for k in UNITS[name]) for name in (   # taken for these, but in SI already
+    "kg mm^2", "kg mm^2, mm", "g mm^2", "g mm^2, mm", "kg cm^2", "g cm^2", "mm")}
+
+
+@pytest.mark.parametrize("units", [*UNITS.values(), *TWICE.values()], ids=[*UNITS, *(f"twice {n}" for n in TWICE)])
+def test_numbers_in_other_units_are_taken_back(units):
+    """Mass and tensor up to one factor: that of the mass and the inverse of the tensor's cannot be told apart."""
+    link = Link(np.random.default_rng(5))
+    mass, com, matrix = numbers(link.props)
+    kilograms, tensor, metres = units
+    (finding, *_) = diagnose(mass / kilograms, com / metres, matrix / tensor, geometry=link.props).findings
+    assert finding.cause == "units"
+    np.testing.assert_allclose(finding.com, com, rtol=1e-9)
+    np.testing.assert_allclose(finding.matrix / finding.mass, matrix / mass, rtol=1e-6)
+
+
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize("sign", [1, -1])
+def test_mirrored_axes_are_named_and_the_centre_with_them(axis, sign):
+    """A mirror turns one component of the centre; or the two others, if the frame was turned right-handed again."""
+    link = Link(np.random.default_rng(5))
+    mirror = np.diag(np.where(np.arange(3) == axis, -1.0, 1.0))
+    mass, com, matrix = numbers(link.props)
+    (finding,) = diagnose(mass, sign * mirror @ com, mirror @ matrix @ mirror, geometry=link.props).findings
+    assert finding.advice.startswith(f"mirrored or left-handed axes: {'xyz'[axis]} points the other way")
+    np.testing.assert_allclose(finding.com, com, rtol=1e-12)
+    np.testing.assert_allclose(finding.matrix, matrix, rtol=1e-12)
+
+
+@pytest.mark.parametrize("factor", [0.1, 0.01])
+def test_the_mass_that_is_advised_is_the_mass_that_is_given_back(factor):
+    link = Link(np.random.default_rng(5))
+    mass, com, matrix = numbers(link.props)
+    (finding,) = diagnose(mass * factor, com, matrix, geometry=link.props).findings
+    assert finding.cause == "decimal" and finding.mass == pytest.approx(mass)
+    assert f"{mass:.6g} instead of {mass * factor:.6g} kg" in finding.advice
+
+
+def test_two_faults_at_once_are_both_told():
+    """A decimal point, which no body can have, in a tensor that is in g m^2 besides."""
+    box = ph.shapes.box(12.0, (0.1, 0.2, 0.3))
+    wrong = 1e3 * box.inertia.matrix
+    wrong[0, 0] *= 10
+    first, second = diagnose(box.mass, box.com, wrong, geometry=box).findings
+    assert (first.what, first.cause, second.what, second.cause) == ("triangle", "decimal", "size", "units")
+    np.testing.assert_allclose(first.matrix, 1e3 * box.inertia.matrix)
+    np.testing.assert_allclose(second.matrix, box.inertia.matrix)
+
+
+@pytest.mark.parametrize(("factor", "broken"), [(19.9, False), (20.1, True), (1 / 99, False), (1 / 101, True)])
+def test_a_size_is_broken_beyond_twenty_and_below_a_hundredth(factor, broken):
+    box = ph.shapes.box(12.0, (0.1, 0.2, 0.3))
+    sizes = [f for f in diagnose(box.mass, box.com, factor * box.inertia.matrix, geometry=box).findings
+             if f.what == "size"]
+    assert bool(sizes) == broken
+    for finding in sizes:
+        assert finding.per_cent == pytest.approx(100 * abs(factor - 1))
+
+
+@pytest.mark.parametrize(("limit", "outward"), [(2.0, -1), (40_000.0, 1)])
+def test_an_unlikely_density_costs_forty_nats(limit, outward):
+    """Of mass over a volume of 1 m^3, just beyond the limit and just within it."""
+    geometry = evidence.Geometry((), None, 1.0)
+    beyond, within = (float(evidence.weigh(evidence.single(mass, np.zeros(3), 0.1 * mass * np.eye(3)), geometry).score[0])
+                      for mass in (limit * (1 + outward * 1e-9), limit * (1 - outward * 1e-9)))
+    assert beyond - within == pytest.approx(40.0, abs=1e-6)
+
+
+def test_what_no_body_can_have_costs_sixty_nats_and_what_its_box_forbids_forty():
+    def score(matrix, geometry):
+        return float(evidence.weigh(evidence.single(1.0, np.zeros(3), matrix), geometry).score[0])
+
+    flat = [np.diag((1.0, 1.0, 2.0 * (1 + slack))) for slack in (0.9e-3, 1.1e-3)]   # rounding to three digits is let
+    assert score(flat[1], evidence.Geometry()) - score(flat[0], evidence.Geometry()) == pytest.approx(60, abs=1e-2)
+    box = evidence.Geometry((), np.array([[-1.0] * 3, [1.0] * 3]), None, 0.0)
+    ends = [s * np.diag((2.0, 2.0, 2.0)) for s in (1 - 1e-9, 1 + 1e-9)]   # second moments of 1: all mass at the corners
+    assert score(ends[1], box) - score(ends[0], box) == pytest.approx(40, abs=1e-6)

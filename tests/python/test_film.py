@@ -159,7 +159,7 @@ def test_a_gif_has_frames_that_move(tmp_path):
 
 
 def test_a_film_has_its_panels_side_by_side_and_room_for_its_title(monkeypatch):
-    """A title of fifty letters beside the time; neither the body nor the ellipsoid reaches into the other panel."""
+    """A title of seventy letters beside the time; neither the body nor the ellipsoid reaches into the other panel."""
     from polhode._plot import picture
 
     figures = []
@@ -170,7 +170,8 @@ def test_a_film_has_its_panels_side_by_side_and_room_for_its_title(monkeypatch):
             figures.append(self)
 
     monkeypatch.setattr(picture, "Picture", Kept)
-    film = ph.solve(scene(BLOCK, name="A block thrown about its axis, seen from the side")).animate()
+    name = "A block thrown about its intermediate axis, as it is seen at the side"
+    film = ph.solve(scene(BLOCK, name=name)).animate()
     (frame,) = writer._frames(film, [0])
     left, right = (axes.bbox for axes in figures[0].axes)
     assert 0 <= left.x0 < left.x1 <= right.x0 < right.x1 <= figures[0].bbox.x1

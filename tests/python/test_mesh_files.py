@@ -89,6 +89,16 @@ def test_gltf_places_what_it_holds(tmp_path):
     np.testing.assert_allclose(body.inertia.matrix, expected.inertia.matrix, atol=1e-15 * expected.inertia.moments[2])
 
 
+def test_points_and_lines_of_a_gltf_have_no_volume(tmp_path):
+    """Primitives of the modes 0 to 3, beside the triangles."""
+    triangles = {"attributes": {"POSITION": 0}, "indices": 1}
+    for mode in range(4):
+        file = tmp_path / f"mode{mode}.gltf"
+        file.write_bytes(gltf(MESH, meshes=[{"primitives": [triangles, {"attributes": {"POSITION": 0}, "mode": mode}]}],
+                              nodes=[{"mesh": 0}, {}]))
+        assert ph.MassProperties.from_file(file, density=2700).mass == BODY.mass
+
+
 def trimesh_judges(mesh):
     import trimesh
 

@@ -173,7 +173,7 @@ def test_mjcf_orientations_agree(write):
     assert judged(write("b.xml", degrees))[1]["b"]["misfit"] < 1e-9
 
 
-@pytest.mark.parametrize("sequence", ["xyz", "zyx", "XYZ", "ZYX"])
+@pytest.mark.parametrize("sequence", ["xyz", "zyx", "XYZ", "ZYX", "xYz", "ZxY"])
 def test_mjcf_euler_sequences(write, sequence):
     """MuJoCo's lower case turns with the body: the reverse of SciPy's."""
     angles = (0.3, -0.7, 1.1)

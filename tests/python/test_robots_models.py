@@ -42,6 +42,29 @@ def test_mjcf_frames_replicas_and_attached_models(write):
     assert set(links) == {"arm", "l_palm", "l_tip"} and links["l_palm"]["mass"] == pytest.approx(24)
 
 
+def test_a_thousand_copies_are_read_and_no_more(write):
+    text = ('<mujoco><worldbody><body name="a"><replicate count="{}" offset="0.5 0 0"><geom size="0.1"/></replicate>'
+            '</body></worldbody></mujoco>')
+    _, links = judged(write("a.xml", text.format(1000)))
+    assert links["a"]["mass"] == pytest.approx(1000 * 1000 * 4 / 3 * np.pi * 0.1**3)
+    refused = call("inertia", write("b.xml", text.format(1001)))
+    assert refused.exit_code == 2 and "must be from 0 to 1000 to be read, got 1001" in refused.stderr
+
+
+@pytest.mark.parametrize("merge", ["", " merge='true'"])
+def test_models_in_models_are_read_twenty_deep(write, merge):
+    """Each includes the next: twenty are read, with a link each, and the next one is named."""
+    for k in reversed(range(22)):
+        more = f"<include{merge}><uri>m{k + 1}.sdf</uri></include>" if k < 21 else ""
+        file = write(f"m{k}.sdf", model(f"<link name='l{k}'>{INERTIAL}</link>", f"m{k}", more))
+    longest = robots.read(file)
+    assert {found.name.rpartition("::")[2] for found in longest.links} == {f"l{k}" for k in range(20)}
+    (note,) = longest.notes
+    assert "m20.sdf" in note and "nested more than 20 deep" in note
+    whole = robots.read(write("m1.sdf", (file.parent / "m2.sdf").read_text()))
+    assert len(whole.links) == 20 and not whole.notes
+
+
 def test_mjcf_agrees_with_mujoco(write):
     """Mass, centre and tensor of bodies from geoms, against the compiled model."""
     mujoco = pytest.importorskip("mujoco")

@@ -112,6 +112,10 @@ def test_a_mass_raised_to_a_floor_is_told(write):
     body = f'<mass value="0.001"/>{tensor(small.inertia.matrix)}'
     (finding,) = judged(write("a.urdf", robot(link(body, '<box size="0.01 0.014 0.002"/>'))))[1]["a"]["findings"]
     assert finding["cause"] == "floor" and finding["mass"] == pytest.approx(2e-4, rel=1e-6)
+    foam = ph.shapes.box(2e-5, (0.005, 0.007, 0.001))   # 71 kg/m^3: no part of a robot, so no mass is proposed
+    body = f'<mass value="0.001"/>{tensor(foam.inertia.matrix)}'
+    (finding,) = judged(write("b.urdf", robot(link(body, '<box size="0.01 0.014 0.002"/>'))))[1]["a"]["findings"]
+    assert finding["mass"] == 0.001 and "raised to 0.001 kg" in finding["advice"]
 
 
 def test_a_centre_off_on_purpose_is_not_in_millimetres(write):

@@ -86,8 +86,6 @@ class Link:
         """Rotations of the inertial frame that should not be there, or the other way round."""
         turn, matrix = self.pose.turn, self.matrix
         assert matrix is not None and self.mass is not None
-        if np.abs(turn - np.eye(3)).max() < 1e-9:
-            return []
         com = turn.T @ self.pose.place
         once = turn.T @ matrix @ turn
         text = "the rotation of the inertial frame is "

@@ -96,13 +96,13 @@ def _include(node: Node, place: _Place, state: _Reading) -> None:
     except InvalidInput as error:
         state.notes.append(f"<include> {uri!r} is not read: {error}")
         return
-    inside = dataclasses.replace(place, file=model, depth=place.depth + 1, frames=None)
+    inside = dataclasses.replace(place, file=model, frames=None)
     static = entry(node, "static")
     if static is not None:
         inside = dataclasses.replace(inside, fixed=static in ("true", "1"))
     for part in root.children("model") if root.tag in ("sdf", "gazebo") else ():
         if (node.get("merge") or "") in ("true", "1") and place.path:   # its links become the model's own
-            _walk(part, dataclasses.replace(inside, frames=Frames(part)), state)
+            _walk(part, dataclasses.replace(inside, depth=place.depth + 1, frames=Frames(part)), state)
         else:
             _model(part, inside, state, entry(node, "name") or part.get("name") or "model")
 
