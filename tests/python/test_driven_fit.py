@@ -100,6 +100,12 @@ def test_weight_and_arm_together_are_not_observable():
     assert np.isnan(found.stderr[3])
 
 
+def test_a_weight_alone_is_fitted_from_the_start_of_the_scene():
+    guess = TRUE.replace(torques=[T.Gravity(1.7, (0.3, 0.2, 0.5)), TRUE.torques[1]])
+    found = ph.fit(seen(TRUE, np.random.default_rng(3), 0.003), guess, fit=("gravity.weight",))
+    assert found.success and abs(found.numbers["gravity.weight"] - 2.0) < 5 * found.stderr[0] < 0.05
+
+
 def test_bounds_hold_numbers_of_torques():
     data = seen(TRUE, np.random.default_rng(3), 0.01)
     found = ph.fit(data, TRUE, fit=("omega", "gravity.weight"), bounds={"gravity.weight": (2.2, 3.0)})

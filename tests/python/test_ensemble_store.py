@@ -5,6 +5,7 @@ import os
 import pathlib
 import shutil
 import subprocess
+import time
 
 import ensembles
 import numpy as np
@@ -53,6 +54,9 @@ def test_the_store_is_zarr_with_names_and_units(recipe, whole):
     bounds = summary.quantile(data["quantile"].values)
     assert np.array_equal(data.angle_quantile_upper.values, bounds.upper)
     assert run.dataset.sizes == data.sizes and run.done == run.total == 500
+    assert (np.diff(data["quantile"].values) > 0).all() and {0.01, 0.5, 0.99} <= set(data["quantile"].values)
+    least, most = summary.quantile(0.0), summary.quantile(1.0)   # of the first and of the last body
+    assert np.array_equal(least.lower, summary.min) and np.array_equal(most.upper, summary.max)
 
 
 def test_a_swept_store_has_a_dimension_for_its_points(tmp_path):
@@ -88,6 +92,21 @@ def test_a_resumed_store_computes_only_what_has_no_mark(recipe, whole, copy):
     assert ensembles.content(copy) == ensembles.content(whole) and run.done == 500
     assert {name: value for name, value in ensembles.marks(copy).items() if name in kept} == kept
     assert sorted(event["chunk"] for event in ensembles.events(copy) if event["event"] == "done") == [0, 3, 15]
+
+
+def test_the_time_that_is_left_is_told_while_a_run_goes_on(copy, monkeypatch):
+    """Two of sixteen chunks in ten seconds: fourteen more take seventy. Of a run that has ended nothing is foretold."""
+    from polhode._ensemble import log
+    from polhode._ensemble.status import status
+
+    remove_marks(copy, range(2, 16))
+    now = time.time()
+    events = [{"event": "begin", "at": now - 10}, {"event": "done", "chunk": 0, "seconds": 5.0, "at": now - 5},
+              {"event": "done", "chunk": 1, "seconds": 5.0, "at": now}]
+    for more, left in (([], pytest.approx(70.0)), ([{"event": "interrupted", "at": now}], None)):
+        monkeypatch.setattr(log, "read", lambda out, found=events + more: found)
+        told = status(ph.load(copy))
+        assert (told["running"], told["seconds_left"], told["chunks_done"]) == (left is not None, left, 2)
 
 
 def test_a_worker_computes_no_chunk_that_another_run_has_marked(recipe, copy):

@@ -10,6 +10,7 @@ from polhode import measured
 from polhode._sensitivity import turns
 from polhode._sensitivity.least_squares import rho
 from polhode._sensitivity.problem import Problem, State, ratios_of
+from polhode._sensitivity.result import covariance
 
 INERTIA, OMEGA = np.array([0.3, 0.5, 0.62]), np.array([1.0, -2.0, 0.7])
 START = np.array([0.5, -0.1, 0.7, 0.5])
@@ -110,6 +111,7 @@ def test_a_direction_and_rates_with_a_bias_are_fitted_together():
     assert found.success, found.message
     assert np.all(np.abs(found.bias - [0.05, -0.02, 0.03]) < 5 * found.stderr[-3:])
     assert found.parameters[-1] == "bias_z" and found.inertia == pytest.approx(INERTIA / 0.62, abs=0.02)
+    assert "a linear start from the rates and growing windows" in found.message   # no search was needed
 
 
 def test_principal_axes_that_are_turned_in_the_body_are_found():
@@ -197,6 +199,25 @@ def test_what_the_data_cannot_tell_is_said():
     found = ph.fit(seen(motion_of(), t, "rates", 0.01, rng), scene, fit=("omega", "inertia"), start="scene")
     assert not found.unobservable and found.inertia.max() == pytest.approx(6.2)
     assert found.scene.inertia.moments.max() == pytest.approx(6.2)
+
+
+@pytest.mark.parametrize(("angle", "seen_"), [(1.5e-10, False), (3e-10, True)])
+def test_columns_at_one_part_in_ten_thousand_million_are_one(angle, seen_):
+    """The singular values of two unit columns at a small angle are in the ratio of half of it."""
+    cov, hidden = covariance(np.array([[1.0, np.cos(angle)], [0.0, np.sin(angle)], [0.0, 0.0]]), ("a", "b"))
+    assert np.isfinite(cov).all() == seen_ and hidden == ([] if seen_ else ["a combination of a, b"])
+
+
+def test_a_motion_is_found_though_the_noise_is_larger_than_told(monkeypatch):
+    """Half as large again: chi2 is 2.25 for each number, which is no reason to go on searching."""
+    monkeypatch.setattr("polhode._sensitivity.start.STAGES", ((20_000, 5),))
+    rng = np.random.default_rng(9)
+    inertia, omega, q = random_body(rng)
+    times = np.sort(rng.uniform(0, 20 * 2 * np.pi / np.linalg.norm(omega), 50))
+    data = seen(ph.FreeMotion(inertia, omega, q), times, "attitudes", 0.015, rng)
+    found = ph.fit(measured.Attitudes(times, data.y, 0.01), seed=0)
+    assert found.inertia == pytest.approx(inertia / inertia.max(), abs=0.03)
+    assert found.chi2 / found.dof == pytest.approx(2.25, rel=0.3)
 
 
 def test_bounds_hold():

@@ -51,6 +51,12 @@ def test_the_picture_is_written(log, tmp_path):
     assert "predicted spread of the attitude" in picture.read_text()
 
 
+def test_a_table_of_one_row_is_read(log):
+    log.write_text(f"{HEADER}\n0,1,2,3\n")
+    done = call("fit", log, "--sigma", "omega=0.03", "--fit", "omega,inertia")
+    assert done.exit_code == 2 and "3 numbers cannot give 5 parameters" in done.output
+
+
 @pytest.mark.parametrize(("arguments", "text"), [
     (("--sigma", "omega"), "--sigma: must be such as"),
     (("--sigma", "axis=1"), "--sigma: must give omega"),
