@@ -100,6 +100,24 @@ def test_a_made_truth_of_what_has_no_series_is_checked_by_another_method():
     assert 0 < error <= made.uncertainty < 3e-11   # about 1e-11, by the cubic that radau draws between its steps
 
 
+def test_a_method_that_does_not_reach_the_end_is_no_truth(monkeypatch):
+    calls = []
+
+    def solve(scene, **options):
+        motion = ph.solve(scene, **options)
+        calls.append(options["method"])
+        if len(calls) > 1:
+            return motion
+        return type("M", (), {"status": "max_steps", "message": "", "omega": motion.omega[:1],
+                              "attitude": motion.attitude[:1]})
+
+    monkeypatch.setattr("polhode._harness.truth.solve", solve)
+    made = find_truth(TINY.replace(torques=[ph.torques.Custom(lambda t, w, q: (0.0, 0.0, 0.0))]))
+    omega, attitude = ph.FreeMotion(TINY.inertia, TINY.omega).at(TINY.times)
+    assert compute_errors(omega, attitude, made).largest <= made.uncertainty < 1e-10
+    assert made.source.startswith(f"{calls[1]} at 1e-14, checked by ") and f"{calls[0]} at 1e-14" not in made.source
+
+
 # candidates
 
 

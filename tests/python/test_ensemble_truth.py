@@ -1,5 +1,7 @@
 """Summaries of ensembles against NumPy and Python's exact sums on the raw states."""
 
+import json
+
 import ensemble_truth
 import ensembles
 import numpy as np
@@ -38,6 +40,16 @@ def compare(summary, values):
     inner = found.lower > 1e-12
     assert ((found.upper / np.where(inner, found.lower, 1))[inner] < 1.0157).all()
     assert (found.lower <= found.value).all() and (found.value <= found.upper).all()
+
+
+def test_a_start_that_is_not_drawn_is_that_of_every_body(tmp_path):
+    fixed = {"omega": "[0.0, 0.1, 0.2]", "attitude": "[0.0, 0.6, 0.0, 0.8]"}
+    for name in fixed:
+        path = ensembles.write(tmp_path, ensembles.FREE, **{name: fixed[name], "count": 50})
+        states = ph.ensemble(path, executor=0).states(range(50))
+        starts = {"omega": states.omega[:, 0], "attitude": states.attitude[:, 0]}
+        np.testing.assert_allclose(starts[name], np.tile(json.loads(fixed[name]), (50, 1)), atol=1e-15)
+        assert all(len(np.unique(starts[other], axis=0)) == 50 for other in fixed if other != name)
 
 
 def test_summaries_of_many_free_bodies_are_those_of_their_states(tmp_path):

@@ -241,6 +241,12 @@ def test_a_row_that_is_not_finite_becomes_nan():
     assert np.isfinite(s.d_attitude[~bad]).all()
 
 
+def test_the_warning_of_the_scalars_place_is_at_the_line_of_the_caller():
+    with pytest.warns(UserWarning, match="half turn about x") as caught:
+        ph.free_sensitivity(BLOCK, (1, 2, 3), (1, 0, 0, 0), 1.0)
+    assert [warning.filename for warning in caught] == [__file__]
+
+
 def test_refusals_name_what_is_wrong():
     motion = ph.FreeMotion(BLOCK, (1, 2, 3))
     for arguments, text in ((("mass",), "wrt: .*mass"), (((),), "wrt: "), ((("omega", "omega"),), "wrt: .*once"),

@@ -7,6 +7,7 @@ from test_robots_real import robot, write  # noqa: F401  a fixture
 
 import polhode as ph
 from polhode.inertia import robots
+from polhode.inertia.robots.paths import Search
 
 BODY = '<body name="{}"><geom type="box" size="0.1 0.2 0.3"/></body>'
 
@@ -112,6 +113,19 @@ def test_what_only_mujoco_makes_is_read_through_it(write):
                     '<body name="s"><geom type="box" size="0.1 0.2 0.3" shellinertia="true"/></body></worldbody>'
                     '</mujoco>')
     assert "not all read" in judged(outside)[1]["s"]["verdict"]
+
+
+def test_a_file_is_given_to_mujoco_only_if_its_folders_are_allowed(write):
+    """MuJoCo opens what the file names, so the folders of its meshes are looked at before."""
+    from polhode.inertia.robots import by_mujoco
+    from polhode.inertia.robots.xml import parse
+
+    write("part.stl", _binary(CORNERS, SIDES))
+    text = '<mujoco><compiler {}="{}"/><asset><mesh file="part.stl"/></asset></mujoco>'
+    for key in ("meshdir", "texturedir", "assetdir"):
+        for folder, allowed in (("meshes", True), (".", True), ("../../../..", False), ("/etc", False)):
+            file = write("one/two/three/a.xml", text.format(key, folder))
+            assert by_mujoco._allowed(file, parse(file), Search.of()) == allowed, (key, folder)
 
 
 ENTRIES = "<inertia><ixx>0.52</ixx><iyy>0.4</iyy><izz>0.2</izz></inertia>"

@@ -69,12 +69,12 @@ def layout(scene: dict[str, Any], drawn: list[dict[str, Any]]) -> dict[str, Any]
                    "line": {"color": style.FLOOR, "dash": "dot", "width": 1.5}}]
         notes = [{"x": math.log10(floor), "y": 0, "xref": "x", "yref": "paper", "text": f"{word} {to_error(floor)}",
                   "textangle": -90, "showarrow": False, "xanchor": "right", "yanchor": "bottom", "font": quiet}]
-    low = math.floor(math.log10(min([*x, floor or 1.0]))) - 0.4
+    least = min([*x, floor or 1.0])
+    low = math.floor(math.log10(least)) - 0.4
     words = {"x": "largest error, more accurate to the right", "y": "time for all samples"}
     return {
         "xaxis": axis | {"range": [math.log10(LOST * 2), low], "title": {"text": words["x"], "font": quiet},
-                         **_ticks([LOST, min(x), floor or 1.0],
-                                  lambda v: "1" if v == 1 else f"1e{round(math.log10(v))}", 3)},
+                         **_ticks([LOST, least], lambda v: "1" if v == 1 else f"1e{round(math.log10(v))}", 3)},
         "yaxis": axis | {"range": [math.log10(min(y)) - 0.4, math.log10(max(y)) + 0.4],
                          "title": {"text": words["y"], "font": quiet}, **_ticks([min(y) / 2, 2 * max(y)], to_time)},
         "shapes": shapes, "annotations": notes, "showlegend": False, "hovermode": "closest", "height": 460,

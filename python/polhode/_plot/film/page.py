@@ -47,7 +47,7 @@ def _poinsot(film: Film) -> dict[str, Any]:
 
 def _content(film: Film, start: float | None) -> dict[str, Any]:
     solid = film.solid
-    momentum: Floats = np.asarray(film.track.angular_momentum)[0] if film.track.attitude is not None else np.zeros(3)
+    momentum: Floats = film.track.angular_momentum[0]
     size = float(np.linalg.norm(momentum))
     return {
         "begin": float(film.t[0]), "end": float(film.t[-1]), "count": len(film.t), "seconds": film.seconds,
