@@ -1,8 +1,8 @@
 """Which tests belong to a word: files of Python tests, and folders of C++ tests."""
 
 SOLVE = ["solve", "plan", "plan_exact", "plan_limits", "plan_custom", "handover", "pieces", "certificates",
-         "certificates_hold", "events", "taylor_invariants", "torque_windows", "methods", "doors", "proof", "proof_rotors",
-         "rotors", "rotors_windows", "gyrostat_plan", "far_times"]
+         "certificates_hold", "events", "taylor_invariants", "torque_windows", "methods", "doors", "proof",
+         "proof_rotors", "rotors", "rotors_windows", "gyrostat_plan", "far_times"]
 
 # By the first parts of a path below python/polhode; the longest that fits holds.
 PYTHON = {
@@ -18,7 +18,7 @@ PYTHON = {
     "_keywords": ["doors", "solve"],
     "_saved": ["saved", "ensemble_store"],
     "_files": ["outputs", "hostile_files", "schema", "mesh_files"],
-    "_harness": ["workers", "charts", "atlas", "charts_limits"],
+    "_harness": ["workers", "charts", "charts_peers", "atlas", "charts_limits"],
     "_plot/film": ["film"],
     "_plot/fit": ["fit", "fit_cli"],
     "_plot": ["plot", "pictures", "charts", "charts_limits"],
@@ -34,8 +34,8 @@ PYTHON = {
                "certificates", "minimal", "cli", "scenes_reference"],
     "atlas": ["atlas_verdicts", "atlas_claims", "atlas"],
     "charts": ["charts_limits", "charts_peers", "charts_choice", "charts_engines", "charts_entrants", "charts"],
-    "cli": ["cli", "cli_mesh", "outputs", "charts_choice", "charts", "robots", "robots_ci", "atlas", "report", "fit_cli",
-            "ensemble_cli", "film", "readme"],
+    "cli": ["cli", "cli_mesh", "outputs", "charts_choice", "charts", "robots", "robots_ci", "atlas", "report",
+            "fit_cli", "ensemble_cli", "film", "readme"],
     "elliptic": ["elliptic", "doors"],
     "inertia/robots": ["robots", "robots_real", "robots_models", "robots_ci", "hostile_files", "fuzz"],
     "inertia": ["diagnosis", "inertia", "robots", "robots_real", "principal_axes", "shapes", "mesh", "doors"],
@@ -52,8 +52,9 @@ PYTHON = {
 # By the folder of a source in cpp/src.
 CPP = {
     "attitude": ["attitude", "attitude_euler", "attitude_fits", "attitude_refusals"],
-    "batch": ["batch", "batch_top", "directions", "summary", "draw", "solve_many", "solve_many_rk45", "solve_many_lanes",
-              "batch_errors", "interrupts", "step", "gyrostat", "free_sensitivity", "driven_sensitivity", "lyapunov"],
+    "batch": ["batch", "batch_top", "directions", "summary", "draw", "solve_many", "solve_many_rk45",
+              "solve_many_lanes", "batch_errors", "interrupts", "step", "gyrostat", "free_sensitivity",
+              "driven_sensitivity", "lyapunov"],
     "core": ["minimal", "interrupts", "attitude_refusals"],
     "exact": ["free_motion", "heavy_top", "time_grid", "batch", "batch_top", "plan_exact", "gyrostat", "heavy_gyrostat",
               "damped_free", "pendulum", "free_sensitivity"],

@@ -106,7 +106,8 @@ def test_the_quick_sweep_is_a_part_of_the_whole_one(name, family, monkeypatch):
     for module in [module for place, module in sys.modules.items() if place.startswith("polhode.atlas.")]:
         if getattr(module, "run", None) is run:
             monkeypatch.setattr(module, "run", burst)
-    quick, whole = ([(p.series, p.x) for p in BY_NAME[family].measure(WHO[name], short, 9.0)] for short in (True, False))
+    quick, whole = ([(p.series, p.x) for p in BY_NAME[family].measure(WHO[name], short, 9.0)]
+                    for short in (True, False))
     assert set(quick) < set(whole) and len(quick) >= min(3, len(whole) - 1)
 
 

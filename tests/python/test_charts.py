@@ -100,24 +100,6 @@ def test_a_made_truth_of_what_has_no_series_is_checked_by_another_method():
     assert 0 < error <= made.uncertainty < 3e-11   # about 1e-11, by the cubic that radau draws between its steps
 
 
-def test_a_method_that_does_not_reach_the_end_is_no_truth(monkeypatch):
-    calls = []
-
-    def solve(scene, **options):
-        motion = ph.solve(scene, **options)
-        calls.append(options["method"])
-        if len(calls) > 1:
-            return motion
-        return type("M", (), {"status": "max_steps", "message": "", "omega": motion.omega[:1],
-                              "attitude": motion.attitude[:1]})
-
-    monkeypatch.setattr("polhode._harness.truth.solve", solve)
-    made = find_truth(TINY.replace(torques=[ph.torques.Custom(lambda t, w, q: (0.0, 0.0, 0.0))]))
-    omega, attitude = ph.FreeMotion(TINY.inertia, TINY.omega).at(TINY.times)
-    assert compute_errors(omega, attitude, made).largest <= made.uncertainty < 1e-10
-    assert made.source.startswith(f"{calls[1]} at 1e-14, checked by ") and f"{calls[0]} at 1e-14" not in made.source
-
-
 # candidates
 
 
@@ -341,23 +323,6 @@ def test_files_of_a_chart(charted):
     assert "S5: rk45" in said and "pictures: overview" in said
     text = (folder / "S5.svg").read_text()
     assert "rk45" in text and "input rounding 2e-14" in text
-
-
-def test_no_scene_gets_more_than_what_is_left_of_the_budget(tmp_path, monkeypatch):
-    """The first of six may take more than its sixth, but leaves most of the time to the others."""
-    module, shares = sys.modules["polhode.charts.chart"], []
-
-    def measured(scene, title, taking_part, share, *_):
-        shares.append(share)
-        return made_up([])
-
-    monkeypatch.setattr(module, "measure", measured)
-    monkeypatch.setattr(module, "candidates", three)
-    for drawing, names in (("choice", ["picture"]), ("pictures", ["work_precision", "overview", "limits"])):
-        for name in names:
-            monkeypatch.setattr(getattr(module, drawing), name, lambda *_: [])
-    chart([TINY.replace(name=f"t{i}") for i in range(6)], tmp_path, budget=60.0, peers=False)
-    assert len(shares) == 6 and 1.0 < shares[0] < 60.0 / 2 and max(shares) <= 60.0
 
 
 def test_results_json(charted):

@@ -10,10 +10,13 @@ import polhode as ph
 from polhode._plot.text import to_time
 from polhode.charts import chart, choice
 from polhode.charts.candidates import candidates
+from polhode.charts.measure import SceneResult
+from polhode._harness.truth import Truth
 
 pytest.importorskip("matplotlib")
 
 TINY = ph.Scene(inertia=(1.0, 2.0, 2.5), omega=(1.0, 2.0, 3.0), times=np.linspace(0, 1, 5), name="tiny")
+TRUTH = Truth(np.ones((1, 3)), np.ones((1, 4)), "stored", "", 3e-16, 1e-13)
 
 
 @pytest.fixture(scope="module")
@@ -41,6 +44,23 @@ def test_the_first_picture_says_which_method_and_how_fast(charted):
                 assert time == to_time(min(slowest_of_all)) and name in times and f">{name}<" in text
     assert table[1][1].startswith("FreeMotion") and choice.finding(results).startswith("Fastest of 8 cases: ")
     assert choice.finding([]) == "No method reaches these errors"
+
+
+def test_no_scene_gets_more_than_what_is_left_of_the_budget(tmp_path, monkeypatch):
+    """The first of six may take more than its sixth, but leaves most of the time to the others."""
+    module, shares = sys.modules["polhode.charts.chart"], []
+
+    def measured(scene, title, taking_part, share, *_):
+        shares.append(share)
+        return SceneResult(TINY, "", TRUTH, [], [])
+
+    monkeypatch.setattr(module, "measure", measured)
+    monkeypatch.setattr(module, "candidates", lambda peers: candidates(False)[:1])
+    for drawing, names in (("choice", ["picture"]), ("pictures", ["work_precision", "overview", "limits"])):
+        for name in names:
+            monkeypatch.setattr(getattr(module, drawing), name, lambda *_: [])
+    chart([TINY.replace(name=f"t{i}") for i in range(6)], tmp_path, budget=60.0, peers=False)
+    assert len(shares) == 6 and 1.0 < shares[0] < 60.0 / 2 and max(shares) <= 60.0
 
 
 def test_the_brief_command_prints_few_lines_and_no_failures(tmp_path, monkeypatch):

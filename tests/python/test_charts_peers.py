@@ -58,6 +58,24 @@ def test_the_reference_solves_the_same_equations(torque, tensor):
     assert compute_errors(motion.omega, motion.attitude, truth).largest < 3e-12
 
 
+def test_a_method_that_does_not_reach_the_end_is_no_truth(monkeypatch):
+    calls = []
+
+    def solve(scene, **options):
+        motion = ph.solve(scene, **options)
+        calls.append(options["method"])
+        if len(calls) > 1:
+            return motion
+        return type("M", (), {"status": "max_steps", "message": "", "omega": motion.omega[:1],
+                              "attitude": motion.attitude[:1]})
+
+    monkeypatch.setattr("polhode._harness.truth.solve", solve)
+    made = find_truth(TINY.replace(torques=[ph.torques.Custom(lambda t, w, q: (0.0, 0.0, 0.0))]))
+    omega, attitude = ph.FreeMotion(TINY.inertia, TINY.omega).at(TINY.times)
+    assert compute_errors(omega, attitude, made).largest <= made.uncertainty < 1e-10
+    assert made.source.startswith(f"{calls[1]} at 1e-14, checked by ") and f"{calls[0]} at 1e-14" not in made.source
+
+
 def test_the_text_holds_nothing_that_is_not_used():
     steps, names = equations.source(ph.Scene.load("S4"))
     text = " ".join([*(t for _, t in steps), *names])

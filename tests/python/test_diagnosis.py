@@ -310,8 +310,11 @@ def test_a_size_is_broken_beyond_twenty_and_below_a_hundredth(factor, broken):
 def test_an_unlikely_density_costs_forty_nats(limit, outward):
     """Of mass over a volume of 1 m^3, just beyond the limit and just within it."""
     geometry = evidence.Geometry((), None, 1.0)
-    beyond, within = (float(evidence.weigh(evidence.single(mass, np.zeros(3), 0.1 * mass * np.eye(3)), geometry).score[0])
-                      for mass in (limit * (1 + outward * 1e-9), limit * (1 - outward * 1e-9)))
+
+    def score(mass):
+        return float(evidence.weigh(evidence.single(mass, np.zeros(3), 0.1 * mass * np.eye(3)), geometry).score[0])
+
+    beyond, within = (score(limit * (1 + side * outward * 1e-9)) for side in (1, -1))
     assert beyond - within == pytest.approx(40.0, abs=1e-6)
 
 
