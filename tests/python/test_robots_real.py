@@ -247,7 +247,40 @@ def test_files_outside_of_the_folders_are_not_opened(write, tmp_path):
     assert "outside" in robots.read(linked).links[0].notes[0]
 
 
-# ---- meshes
+# ---- shapes and meshes
+
+@pytest.mark.parametrize(("shape", "volume", "half"), [
+    ('<box size="0.2 0.4 0.6"/>', 0.2 * 0.4 * 0.6, (0.1, 0.2, 0.3)),
+    ('<sphere radius="0.3"/>', 4 / 3 * np.pi * 0.3**3, (0.3, 0.3, 0.3)),
+    ('<cylinder radius="0.3" length="0.8"/>', np.pi * 0.3**2 * 0.8, (0.3, 0.3, 0.4)),
+    ('<capsule radius="0.3" length="0.8"/>', np.pi * 0.3**2 * 0.8 + 4 / 3 * np.pi * 0.3**3, (0.3, 0.3, 0.7)),
+])
+def test_shapes_have_their_volume_and_their_box(write, shape, volume, half):
+    (found,) = robots.read(write("a.urdf", robot(link(GOOD, shape)))).links
+    assert found.geometry().volume == pytest.approx(volume, rel=1e-14)
+    np.testing.assert_allclose(found.geometry().box, [np.negative(half), half])
+
+
+@pytest.mark.parametrize("angles", [(0, 0, 0), (0, 0, np.pi / 2), (0.3, -0.7, 1.9)])
+def test_the_box_of_a_mesh_is_that_of_its_corners(write, angles):
+    write("part.stl", stl(CORNERS, SIDES))
+    scale, place = np.array([2.0, 0.5, -3.0]), np.array([0.4, 0.5, -0.6])
+    text = robot(link(GOOD, '<mesh filename="part.stl" scale="2 0.5 -3"/>')).replace(
+        "<visual>", f'<visual><origin xyz="0.4 0.5 -0.6" rpy="{" ".join(map(str, angles))}"/>')
+    (found,) = robots.read(write("a.urdf", text)).links
+    corners = ph.Rotation.from_euler("xyz", angles).apply(CORNERS * scale) + place
+    np.testing.assert_allclose(found.geometry().box, [corners.min(axis=0), corners.max(axis=0)], atol=1e-12)
+
+
+def test_one_line_tells_of_all_meshes_that_are_not_there(write):
+    gone, here = '<mesh filename="{}.stl"/>', '<box size="0.2 0.4 0.6"/>'
+    file = write("a.urdf", robot(link(GOOD, gone.format("one"), "a"), link(GOOD, here, "b"),
+                                 link(GOOD, gone.format("two"), "c")))
+    (report,) = robots.check(file)
+    (line,) = [note for note in report.notes if "meshes" in note]
+    assert line.startswith("2 meshes not found, in 2 links; the first: ") and "'one.stl'" in line
+
+
 
 def closed_off(corners, sides):
     rows = [f"{len(corners)} {len(sides)} 0", *(" ".join(map(str, c)) for c in corners.tolist()),

@@ -61,8 +61,8 @@ def _unlikely(found: Evidence, geometry: Geometry) -> list[Breach]:
                              "the geometry can have"))
     if size != 0 and not extent:
         ratio = np.exp(size)
-        text = f"{ratio:.3g} times as large" if size > 0 else f"{1 / ratio:.3g} times smaller"
-        broken.append(Breach("size", 100 * abs(ratio - 1), f"moments {text} than a uniform body's of its geometry"))
+        text = f"{ratio:.3g} times as large as" if size > 0 else f"{1 / ratio:.3g} times smaller than"
+        broken.append(Breach("size", 100 * abs(ratio - 1), f"moments {text} a uniform body's of its geometry"))
     if dense != 0 and not broken:
         factor = np.exp(abs(dense))
         if geometry.volume is not None:

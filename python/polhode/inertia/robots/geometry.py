@@ -56,8 +56,6 @@ class Assembly:
 
     def solid(self) -> MassProperties | None:
         """All parts as one uniform body of unit density; where they overlap, they count twice."""
-        if not self.parts or not self.whole:
-            return None
         total: MassProperties | None = None
         for part in self.parts:
             if part.solid is None:
