@@ -122,6 +122,10 @@ def test_the_page_holds_the_motion_and_asks_for_nothing():
     text, content = film.to_html(), page_of(film)
     assert not re.search(r'(src|href)="', text) and "MIT License" in text and "<script type=" in text
     assert np.allclose(unpack(content["attitude"]).reshape(-1, 4), film.attitude, atol=1e-6)
+    corners, normals, colours = (unpack(content["solid"][name]).reshape(-1, 3)
+                                 for name in ("corners", "normals", "colours"))
+    assert corners.shape == normals.shape == colours.shape and (0 <= colours).all() and (colours <= 1).all()
+    assert np.array_equal(colours[::3], colours[1::3])   # a triangle has one colour
     semi, path = np.array(content["poinsot"]["semi"]), unpack(content["poinsot"]["path"]).reshape(-1, 3)
     assert np.allclose(((path / semi) ** 2).sum(axis=1), 1, atol=1e-2)   # omega lies on its ellipsoid
     assert len(text) < 900_000

@@ -43,6 +43,21 @@ def test_mjcf_frames_replicas_and_attached_models(write):
     assert set(links) == {"arm", "l_palm", "l_tip"} and links["l_palm"]["mass"] == pytest.approx(24)
 
 
+def test_a_mesh_of_mjcf_is_placed_by_its_own_frame(write):
+    """MuJoCo takes refpos from the vertices, and then turns them back by refquat."""
+    write("part.stl", _binary(CORNERS, SIDES))
+    text = ('<mujoco><asset><mesh name="m" file="part.stl" {}/></asset><worldbody><body name="a"><geom type="mesh" '
+            'mesh="m" pos="0 0 1"/></body></worldbody></mujoco>')
+    quarter = 'refquat="0.7071067811865476 0 0 0.7071067811865476"'   # about z
+    back = ph.Rotation.from_euler("z", -np.pi / 2)
+    for k, (told, corners) in enumerate([("", CORNERS), ('refpos="0.1 0.2 0"', CORNERS - (0.1, 0.2, 0)),
+                                         (quarter, back.apply(CORNERS)),
+                                         (f'refpos="0.1 0.2 0" {quarter}', back.apply(CORNERS - (0.1, 0.2, 0)))]):
+        (found,) = robots.read(write(f"{k}.xml", text.format(told))).links
+        body = ph.shapes.tetrahedron(1.0, corners + (0, 0, 1))
+        np.testing.assert_allclose(found.pose.place, body.com, atol=1e-7)   # float32 in the file
+
+
 def test_a_thousand_copies_are_read_and_no_more(write):
     text = ('<mujoco><worldbody><body name="a"><replicate count="{}" offset="0.5 0 0"><geom size="0.1"/></replicate>'
             '</body></worldbody></mujoco>')
