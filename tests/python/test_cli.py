@@ -1,6 +1,7 @@
 """The command line: what it prints and writes, its status, and one clear line on bad input."""
 
 import csv
+import io
 import json
 import os
 import subprocess
@@ -67,6 +68,35 @@ def test_run_finds_an_invariant_that_moved():
     assert result.exit_code == 1
     assert "FINDING: " in result.stdout and "drifted by" in result.stdout
     assert call("run", "S1", "--method", "rk45", "--rtol", "1e-6", "--max-steps", 10).exit_code == 1
+
+
+def test_a_computation_that_fails_is_a_finding_and_no_bad_input(monkeypatch):
+    def fails(*_, **__):
+        raise ph.IntegrationFailure("t = 1 s: more than 10 steps")
+
+    monkeypatch.setattr("polhode.cli.app.solve", fails)
+    result = call("run", "S1")
+    assert (result.exit_code, result.stdout) == (1, "") and result.stderr == "polhode: t = 1 s: more than 10 steps\n"
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+@pytest.mark.parametrize("on", ["stderr", "stdout", ""])
+def test_progress_goes_to_stderr(on, monkeypatch):
+    """A bar if that is a terminal, else plain lines; never to stdout, be it a terminal or not."""
+    from polhode.cli import show
+
+    out, err = (Terminal() if on == name else io.StringIO() for name in ("stdout", "stderr"))
+    monkeypatch.setattr(sys, "stdout", out)
+    monkeypatch.setattr(sys, "stderr", err)
+    monkeypatch.setenv("TERM", "xterm")
+    with show.Bar("working", 2) as bar:
+        bar.step(1, "half of it")
+    assert out.getvalue() == "" and "half of it" in err.getvalue()
+    assert ("\x1b" in err.getvalue()) == (on == "stderr")
 
 
 def test_run_writes_every_bit(small, tmp_path):
