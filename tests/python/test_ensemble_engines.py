@@ -8,13 +8,14 @@ import pathlib
 import signal
 import subprocess
 import sys
+import threading
 
 import ensembles
 import numpy as np
 import pytest
 
 import polhode as ph
-from polhode._ensemble import engine, processes
+from polhode._ensemble import engine, processes, store
 
 zarr = pytest.importorskip("zarr")
 # Dask leaves sockets to the collector of garbage, also in tests that come later.
@@ -74,6 +75,46 @@ def test_executors_of_the_standard_library_give_the_same_bytes(recipe, whole, tm
     with concurrent.futures.ThreadPoolExecutor(2) as executor:
         ph.ensemble(recipe, out=tmp_path / "threads.zarr", executor=executor)
     assert ensembles.content(tmp_path / "pool.zarr") == whole == ensembles.content(tmp_path / "threads.zarr")
+
+
+def test_threads_that_open_an_array_together_write_its_chunks_of_nan(recipe, tmp_path, monkeypatch):
+    out = str(tmp_path / "out.zarr")
+    ph.ensemble(recipe, out=out, executor=0)
+    first_opens, second_opens, first_has_it = (threading.Event() for _ in range(3))
+    opened = store._group
+
+    def group(path, mode):
+        """The second thread begins while the first opens, and goes on when the first has its array."""
+        if threading.current_thread().name == "first":
+            first_opens.set()
+            assert second_opens.wait(20)
+        else:
+            second_opens.set()
+            assert first_has_it.wait(20)
+        return opened(path, mode)
+
+    found = {}
+
+    def first():
+        found["first"] = store._array(out, "error", "first")
+        first_has_it.set()
+
+    def second():
+        assert first_opens.wait(20)
+        found["second"] = store._array(out, "error", "second")
+
+    monkeypatch.setattr(store, "_group", group)
+    threads = [threading.Thread(target=target, name=target.__name__) for target in (first, second)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    chunk = store.file_of(out, "error", 0)
+    for array in found.values():
+        chunk.unlink()
+        array[:array.chunks[0]] = np.nan
+        assert chunk.is_file()
+    assert len(found) == 2 and not zarr.config.get("array.write_empty_chunks")
 
 
 def test_dask_gives_the_same_bytes_by_client_and_by_address(recipe, whole, cluster, tmp_path):

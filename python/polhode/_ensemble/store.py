@@ -273,10 +273,8 @@ def bytes_of(recipe: EnsembleRecipe, layout: Layout, chunk: int) -> int:
 @lru_cache(maxsize=16)
 def _array(out: str, name: str, made: str) -> Any:
     """Return an array for writing; `made` is the same for the same metadata. Chunks of NaN are written, too."""
-    import zarr
-
-    with zarr.config.set({"array.write_empty_chunks": True}):
-        return _group(out, "r+")[name]
+    # Of this array alone: Zarr's own setting is the process's, and a thread that restores it takes it from the others.
+    return _group(out, "r+")[name].with_config({"write_empty_chunks": True})
 
 
 class Writer:
