@@ -45,6 +45,8 @@ def test_the_mean_lies_between_and_does_not_see_signs(rng):
     signs = rng.choice([-1.0, 1.0], size=(20, 1))
     assert angle(R(quats).mean(), R(signs * quats).mean()) < 20 * EPS
     assert angle(R.concatenate([a, b]).mean([0.0, 2.0]), b) < 4 * EPS   # what has no weight is not seen
+    for alone in R.random(300, rng=3):
+        assert angle(R.concatenate([a, alone]).mean([0.0, 2.0]), alone) < 4 * EPS
     assert angle(a.mean(), a) < 4 * EPS and a.mean().single
 
 
