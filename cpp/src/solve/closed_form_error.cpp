@@ -13,7 +13,7 @@ namespace polhode {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-constexpr double unit = epsilon / 2;
+constexpr double unit_roundoff = epsilon / 2;
 constexpr double nudge = 0x1p-46;   // relative change of an input, to measure its effect
 constexpr std::size_t most_compared = 16;   // times at which two motions are compared
 const Vector3d signs{1, -1, 1};
@@ -37,14 +37,14 @@ class InputError {
     bool rounded = false;
     for (const double t : scene_.times()) rounded |= math::two_diff(t, scene_.t0()).lo != 0.0;
     if (!rounded) return 0.0;
-    return unit * (damping_ ? measure_damped_span() : 2 * std::numbers::pi * facts_.turns);
+    return unit_roundoff * (damping_ ? measure_damped_span() : 2 * std::numbers::pi * facts_.turns);
   }
 
   /// Of weight times arm.
   double measure_weight(const ClosedForm& form) const {
     if (axis_ < 0 || std::fma(gravity_->weight(), gravity_->arm()[axis_], -weight_arm_) == 0.0) return 0.0;
     const HeavyTop other(scene_.inertia_B(), weight_arm_ * (1 + nudge), scene_.omega(), scene_.attitude(), h_[axis_]);
-    return 4 * (unit / nudge) * compare(form, ClosedForm(other));
+    return 4 * (unit_roundoff / nudge) * compare(form, ClosedForm(other));
   }
 
   /// Of a damping matrix. Together all torques differ from -c I omega by half a unit of the momentum that they take.
@@ -53,7 +53,7 @@ class InputError {
     const auto kicked = [&](double sign) {
       return make(scene_.inertia_B(), scene_.omega().cwiseProduct(Vector3d::Ones() + sign * nudge * signs), h_);
     };
-    return 2 * (unit / nudge) * compare(kicked(1), kicked(-1));
+    return 2 * (unit_roundoff / nudge) * compare(kicked(1), kicked(-1));
   }
 
   /// Of the sum of the rotors' momenta.
@@ -67,7 +67,7 @@ class InputError {
       const double roundings = (rotor.momentum() ? 0.0 : rotor.free() ? 4.0 : 1.0) + (skew ? 2.0 : 0.0);
       for (int i = 0; i < 3; ++i) {
         sum[i] = sum[i] + math::DD(math::two_prod(momentum, rotor.axis()[i]));
-        lost[i] += roundings * unit * std::abs(momentum * rotor.axis()[i]);
+        lost[i] += roundings * unit_roundoff * std::abs(momentum * rotor.axis()[i]);
       }
     }
     for (int i = 0; i < 3; ++i) lost[i] += std::abs((sum[i] - math::DD(h_[i])).hi);
@@ -116,7 +116,7 @@ class InputError {
       const Vector3d up = Vector3d::Ones() + sign * nudge * signs, down = Vector3d::Ones() - sign * nudge * signs;
       return make(scene_.inertia_B(), scene_.omega().cwiseProduct(up), h_.cwiseProduct(down));
     };
-    return 4 * (unit / nudge) * compare(moved(1), moved(-1));
+    return 4 * (unit_roundoff / nudge) * compare(moved(1), moved(-1));
   }
 
   /// Of the rates of a gyrostat, whose two series cancel next to such a birth: the energy of a period shows it.

@@ -13,7 +13,7 @@
 namespace polhode {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double no_end = std::numeric_limits<double>::infinity();
 
 /// Changes numbers by some units in the last place, up or down at random.
 class Perturber {
@@ -21,7 +21,7 @@ class Perturber {
   explicit Perturber(int units, std::uint64_t seed = 2026) : units_(units), coin_(seed) {}
 
   double operator()(double x) {
-    const double end = coin_.toss() ? infinity : -infinity;
+    const double end = coin_.toss() ? no_end : -no_end;
     for (int i = 0; i < units_ && x != 0.0; ++i) x = std::nextafter(x, end);
     return x;
   }
@@ -94,7 +94,7 @@ AnyTorque perturb_windows(const AnyTorque& torque, double first, double last, do
     return first < t && t < last && t != t0 ? perturb_alone(t, 2) : t;
   };
   std::vector<torques::Window> windows = during->windows();
-  double before = -infinity;
+  double before = -no_end;
   for (torques::Window& window : windows) {
     window = {perturb_end(window.begin), perturb_end(window.end)};
     if (!(before <= window.begin && window.begin < window.end))
