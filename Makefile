@@ -107,13 +107,14 @@ aarch64: $(VENV)/.demo
 	@cmake --build build/aarch64 -j $(JOBS) --target polhode_tests | sed -n '/warning:\|error:/p'
 	@qemu-aarch64 -L /usr/aarch64-linux-gnu build/aarch64/tests/cpp/polhode_tests
 
-# Debian 13: GCC 14, Clang 19, Python 3.13, in a folder made by debootstrap (needs root).
+# Debian 13: GCC 14, Clang 19, Python 3.13, in a folder made by debootstrap (needs root). DEBIAN13 names another folder.
+DEBIAN13 ?= build/debian13
 debian13:
-	@.ci/machines/debian13
+	@.ci/machines/debian13 $(DEBIAN13)
 
 # Free-threaded Python 3.13 in that folder, built from Debian's source, and the Python tests by it.
 free-threaded:
-	@.ci/machines/free_threaded
+	@.ci/machines/free_threaded $(DEBIAN13)
 
 # A wheel for each Python at hand, checked and tested in a bare environment, and the sdist.
 wheels:
