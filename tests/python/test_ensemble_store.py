@@ -1,5 +1,6 @@
 """Stores of ensembles: the same bytes whoever computes them, marks, resuming, damage, and full disks."""
 
+import asyncio
 import json
 import os
 import pathlib
@@ -83,6 +84,22 @@ def test_no_file_of_a_store_tells_time_host_or_workers(whole):
     for word in (os.uname().nodename, "worker", "host", "pid", "seconds", "\"date", str(whole.parent)):
         assert word.encode() not in texts, word
     assert {event["event"] for event in ensembles.events(whole)} == {"begin", "done", "end"}
+
+
+def test_each_way_in_which_zarr_writes_leaves_the_file_whole(tmp_path):
+    """Newer versions of zarr write at once, older ones in a loop of events: no draft is left by either."""
+    from zarr.core.buffer import cpu
+
+    from polhode._ensemble.files import LastingStore
+
+    store = LastingStore(tmp_path)
+    asyncio.run(store.set("a/loop", cpu.Buffer.from_bytes(b"12")))
+    asyncio.run(store.set_if_not_exists("a/loop", cpu.Buffer.from_bytes(b"34")))
+    if hasattr(zarr.storage.LocalStore, "set_sync"):
+        store.set_sync("a/once", cpu.Buffer.from_bytes(b"56"))
+        assert (tmp_path / "a/once").read_bytes() == b"56"
+        (tmp_path / "a/once").unlink()
+    assert {path.name: path.read_bytes() for path in (tmp_path / "a").iterdir()} == {"loop": b"12"}
 
 
 def test_a_resumed_store_computes_only_what_has_no_mark(recipe, whole, copy):
