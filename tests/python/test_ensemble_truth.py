@@ -42,6 +42,16 @@ def compare(summary, values):
     assert (found.lower <= found.value).all() and (found.value <= found.upper).all()
 
 
+def test_certified_are_those_that_were_solved_with_a_known_error():
+    from polhode._ensemble import chunk
+
+    success, error = np.array([True, True, True, False, False]), np.array([1e-9, 3e-9, np.nan, 2e-9, np.nan])
+    found = type("S", (), {"success": success, "error": error, "steps": np.full(5, 7)})
+    head = dict.fromkeys(chunk.HEAD, 0.0)
+    chunk._count(head, [found, found])
+    assert (head["solved"], head["certified"], head["steps"], head["worst_error"]) == (6, 4, 70, 3e-9)
+
+
 def test_a_start_that_is_not_drawn_is_that_of_every_body(tmp_path):
     fixed = {"omega": "[0.0, 0.1, 0.2]", "attitude": "[0.0, 0.6, 0.0, 0.8]"}
     for name in fixed:

@@ -111,10 +111,3 @@ def _with_moments(recipe: EnsembleRecipe, point: Point, quantity: Quantity, firs
     impossible = np.zeros(len(moments), dtype=bool)
     impossible[left] = True
     return Bodies(first, values, moments, attempts, impossible)
-
-
-def take(bodies: Bodies, start: int, stop: int) -> Bodies:
-    """Return a part of the bodies."""
-    values = {path: array[start:stop] for path, array in bodies.values.items()}
-    inertia = bodies.inertia if isinstance(bodies.inertia, InertiaTensor) else bodies.inertia[start:stop]
-    return Bodies(bodies.first + start, values, inertia, bodies.attempts[start:stop], bodies.impossible[start:stop])
