@@ -125,6 +125,16 @@ def test_the_motion_is_the_broadest_line_and_its_start_the_largest_dot(part):
     assert len(marks) == 1 and marks[0].get_markersize() < start.get_markersize()
 
 
+@pytest.mark.parametrize("part", ["polhode", "momentum"])
+def test_the_names_of_the_axes_stand_alike_beyond_their_tips(part):
+    """Outward, and at one distance in points, whatever the length of the axis."""
+    names = {text.get_text(): text for text in FORMS["FreeMotion"].plot(part).axes[0].texts}
+    for name in ("axis 1", "axis 2", "axis 3"):
+        tip, offset = np.array(names[name].xy), np.array(names[name].xyann)
+        assert offset @ tip == pytest.approx(np.linalg.norm(offset) * np.linalg.norm(tip))
+        assert np.linalg.norm(offset) == pytest.approx(np.linalg.norm(names["axis 1"].xyann))
+
+
 def test_the_circles_of_latitude_lie_alike_above_and_below():
     axes = FORMS["FreeMotion"].plot("axis").axes[0]
     points = np.vstack([np.column_stack(line.get_data()) for line in axes.get_lines()
