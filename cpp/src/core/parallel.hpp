@@ -19,8 +19,9 @@ namespace polhode {
 /// The number of threads for so many pieces of work: as asked, else what the machine has, and fewer for little work.
 inline std::size_t thread_count(int asked, std::size_t pieces, std::size_t pieces_worth_a_thread) {
   const std::size_t useful = std::max<std::size_t>(1, pieces / std::max<std::size_t>(1, pieces_worth_a_thread));
-  const std::size_t available = std::max(1u, std::thread::hardware_concurrency());
-  return std::min(useful, asked > 0 ? static_cast<std::size_t>(asked) : available);
+  if (asked > 0) return std::min(useful, static_cast<std::size_t>(asked));
+  // To count the processors takes 5 us: the system's library reads a file each time.
+  return useful == 1 ? 1 : std::min<std::size_t>(useful, std::max(1u, std::thread::hardware_concurrency()));
 }
 
 /// Threads that work while this one waits and asks its InterruptGuard, if there is one.
