@@ -8,6 +8,20 @@
 #include "polhode/solve/closed_form.hpp"
 
 namespace polhode {
+namespace {
+
+/// A number times 0 is 0, or NaN if it is not finite: sums without branches, sixteen side by side.
+bool is_finite(const std::vector<double>& values) {
+  constexpr std::size_t width = 16;
+  double sums[width] = {};
+  std::size_t i = 0;
+  for (; i + width <= values.size(); i += width)
+    for (std::size_t k = 0; k < width; ++k) sums[k] += 0.0 * values[i + k];
+  for (; i < values.size(); ++i) sums[0] += 0.0 * values[i];
+  return std::all_of(sums, sums + width, [](double sum) { return sum == 0.0; });
+}
+
+}  // namespace
 
 std::string_view to_text(Status status) {
   switch (status) {
@@ -27,13 +41,7 @@ double Motion::omega_scale() const {
   return scale;
 }
 
-bool Motion::all_finite() const {
-  // A number times 0 is 0, or NaN if it is not finite: a sum without branches.
-  double sum = 0.0;
-  for (const double value : omega) sum += 0.0 * value;
-  for (const double value : attitude) sum += 0.0 * value;
-  return sum == 0.0;
-}
+bool Motion::all_finite() const { return is_finite(omega) && is_finite(attitude); }
 
 State Motion::at(double time) const {
   if (!has_dense) {
