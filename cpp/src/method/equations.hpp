@@ -63,7 +63,7 @@ Trajectory integrate_lagrangian(const Scene& scene, const RunOptions& options) {
   const SeveralTorques torques = scene.all_torques();
   const Problem problem(scene.inertia_B(), torques);
   Trajectory trajectory = integrate_problem<Method>(scene, problem, options);
-  if (trajectory.status == Status::failed) trajectory.message += std::string(": ") + cause;
+  if (trajectory.status == Status::failed) trajectory.message.append(": ").append(cause);
   trajectory.model = "lagrangian", trajectory.state = "phi, theta, psi and their rates";
   return trajectory;
 }
