@@ -91,7 +91,7 @@ float
       },
       [](const py::tuple& state) {
         return from_state("DampedFree", state, 4, [](const py::tuple& s) {
-          const auto& inertia = s[0].cast<const InertiaTensor&>();
+          const auto inertia = s[0].cast<InertiaTensor>();
           return DampedFree(inertia, to_real(s[1], "damping"), to_vector3(s[2], "omega"), stored_attitude(s[3]));
         });
       }));

@@ -165,7 +165,7 @@ ndarray, shape (n,)
       [](const FreeMotion& f) { return py::make_tuple(f.inertia(), from_vector3(f.omega()), from_quat(f.attitude())); },
       [](const py::tuple& state) {
         return from_state("FreeMotion", state, 3, [](const py::tuple& s) {
-          const auto& inertia = s[0].cast<const InertiaTensor&>();
+          const auto inertia = s[0].cast<InertiaTensor>();
           return FreeMotion(inertia, to_vector3(s[1], "omega"), stored_attitude(s[2]));
         });
       }));

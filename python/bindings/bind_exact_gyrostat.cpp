@@ -138,7 +138,7 @@ ndarray, shape (..., 3)
       },
       [](const py::tuple& state) {
         return from_state("Gyrostat", state, 4, [](const py::tuple& s) {
-          const auto& inertia = s[0].cast<const InertiaTensor&>();
+          const auto inertia = s[0].cast<InertiaTensor>();
           return Gyrostat(inertia, to_vector3(s[1], "momentum"), to_vector3(s[2], "omega"), stored_attitude(s[3]));
         });
       }));

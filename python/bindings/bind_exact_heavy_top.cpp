@@ -109,7 +109,7 @@ InvalidInput
       },
       [](const py::tuple& state) {
         return from_state("HeavyTop", state, 5, [](const py::tuple& s) {
-          const auto& inertia = s[0].cast<const InertiaTensor&>();
+          const auto inertia = s[0].cast<InertiaTensor>();
           return HeavyTop(inertia, to_real(s[1], "weight_arm"), to_vector3(s[2], "omega"), stored_attitude(s[3]),
                           to_real(s[4], "rotor"));
         });

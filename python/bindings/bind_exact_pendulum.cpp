@@ -93,7 +93,7 @@ InvalidInput
       },
       [](const py::tuple& state) {
         return from_state("Pendulum", state, 5, [](const py::tuple& s) {
-          const auto& inertia = s[0].cast<const InertiaTensor&>();
+          const auto inertia = s[0].cast<InertiaTensor>();
           return Pendulum(inertia, to_real(s[1], "weight"), to_vector3(s[2], "arm"), to_vector3(s[3], "omega"),
                           stored_attitude(s[4]));
         });
