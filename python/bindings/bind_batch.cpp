@@ -96,7 +96,7 @@ template <std::size_t n>
 bool read_numbers(py::handle value, std::array<double, n>& numbers) {
   PyObject* const object = value.ptr();
   if (Py_TYPE(object) == py::detail::npy_api::get().PyArray_Type_) {
-    if (!Array::check_(value)) return false;
+    if (!is_plain(value)) return false;
     const auto array = py::reinterpret_borrow<Array>(value);
     if (array.ndim() != 1 || array.shape(0) != py::ssize_t{n}) return false;
     std::copy_n(array.data(), n, numbers.begin());
@@ -123,7 +123,7 @@ py::object free_motion_of_one(py::handle inertia, py::handle omega, py::handle a
   constexpr py::ssize_t most_times = 16384;   // from here on the motion costs far more than the call
   std::array<double, 3> I{}, w{};
   std::array<double, 4> q{};
-  if (Py_TYPE(t.ptr()) != py::detail::npy_api::get().PyArray_Type_ || !Array::check_(t)) return py::none();
+  if (Py_TYPE(t.ptr()) != py::detail::npy_api::get().PyArray_Type_ || !is_plain(t)) return py::none();
   const auto times = py::reinterpret_borrow<Array>(t);
   if (flushes_to_zero() || times.size() == 0 || times.size() > most_times || !read_numbers(inertia, I) ||
       !read_numbers(omega, w) || !read_numbers(attitude, q) || q == std::array{1.0, 0.0, 0.0, 0.0}) {

@@ -13,6 +13,12 @@ namespace polhode::python {
 constexpr int plain = py::array::c_style | py::array::forcecast | py::detail::npy_api::NPY_ARRAY_ALIGNED_;
 using Array = py::array_t<double, plain>;
 
+/// Whether a value is such an array already. pybind11's own check does not look at the address.
+inline bool is_plain(py::handle value) {
+  return Array::check_(value) &&
+         py::detail::check_flags(value.ptr(), py::detail::npy_api::NPY_ARRAY_ALIGNED_);
+}
+
 /// Any array-like of real numbers as a C-contiguous float64 array (no copy when it is one already).
 /// Refused: complex, text, objects, ragged lists, masked values, and denormal numbers where the processor drops them.
 /// NaN and inf pass: see require_finite.

@@ -145,6 +145,15 @@ def test_the_core_gets_aligned_arrays_alone():
     assert len(asked) == 1 and "NPY_ARRAY_ALIGNED_" in asked[0]
 
 
+def test_the_quick_way_of_one_body_leaves_odd_addresses_to_the_other():
+    """Its loads would be undefined behaviour, which the processor forgives and the sanitizer does not."""
+    given = (np.array(BLOCK, float), np.array(OMEGA, float), np.array(Q), np.linspace(0, 1, 5))
+    assert _core._free_motion_of_one(*given) is not None
+    for i in range(4):
+        odd = [odd_address(part) if i == k else part for k, part in enumerate(given)]
+        assert _core._free_motion_of_one(*odd) is None
+
+
 # ---- masks and memory
 
 MASKED = np.ma.array([1.0, 777.0, 3.0], mask=[0, 1, 0])
