@@ -4,7 +4,8 @@
 
 Who takes part is what `polhode chart` knows: the methods of the list and the programs that are installed, a missing one
 named as missing. A time is the least CPU time of the thread over interleaved repeats, all samples included, since the
-machine may be busy. Start-up and compilation are not in it: each setting runs once before the clock. --calls: what a torque of the user's own costs per call.
+machine may be busy. Start-up and compilation are not in it: each setting runs once before the clock. --calls: what a
+torque of the user's own costs per call.
 """
 
 import argparse
