@@ -57,6 +57,16 @@ TEST_CASE("classes and arbitrary directions") {
   CHECK(InertiaTensor(make(1, 1 + 1e-9, 1.5)).principal(1e-6).arbitrary() == Arbitrary::plane);
 }
 
+TEST_CASE("a gap between moments that is as wide as the caller's counts as none, gaps of 0 included") {
+  CHECK(InertiaTensor::from_moments({2, 2.5, 4}).principal(0.125).symmetry == Symmetry::oblate);
+  CHECK(InertiaTensor::from_moments({2, 3.5, 4}).principal(0.125).symmetry == Symmetry::prolate);
+  CHECK(InertiaTensor::from_moments({3.5, 3.75, 4}).principal(0.125).symmetry == Symmetry::spherical);
+  CHECK(InertiaTensor::from_moments({1, 1, 1.5}).principal(0.0).symmetry == Symmetry::oblate);
+  CHECK(InertiaTensor::from_moments({1, 1.5, 1.5}).principal(0.0).symmetry == Symmetry::prolate);
+  CHECK(InertiaTensor::from_moments({2, 2, 2}).principal(0.0).symmetry == Symmetry::spherical);
+  CHECK(InertiaTensor::from_moments({1, 1 + 1e-15, 1.5}).principal(0.0).symmetry == Symmetry::triaxial);
+}
+
 TEST_CASE("rotating a tensor keeps its moments and rotates its axes") {
   const InertiaTensor t(make(4, 5, 6, -0.7, 0.3, 1.1));
   const Quat q = normalized({0.3, -0.2, 0.5, 0.7});

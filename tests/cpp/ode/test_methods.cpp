@@ -191,6 +191,8 @@ void conform() {
     CHECK(result.hits[0].t == doctest::Approx(M_PI / 2).epsilon(1e-9));
     CHECK(result.hits[1].t == doctest::Approx(3 * M_PI / 2).epsilon(1e-9));
     CHECK(result.hits[2].t == result.hits[1].t);
+    CHECK(result.hits[1].event == 0);   // at the same time, in the order in which they were given
+    CHECK(result.hits[2].event == 1);
     CHECK(y.empty());
   }
 
