@@ -60,3 +60,18 @@ TEST_CASE("jolt: |L| is kept, however light and slow the body") {
     CHECK(L.norm() / moments.cwiseProduct(omega).norm() == doctest::Approx(1.0).epsilon(1e-13));
   }
 }
+
+TEST_CASE("dmv: energy and |L| of a free body are kept over a span that is a small part of a step, too") {
+  const Vector3d moments{0.2, 0.4, 0.52}, omega{1, 2, 3};
+  for (const char* name : {"dmv2", "dmv4", "dmv6"}) {
+    for (const double span : {1e-6, 1e-3, 0.01, 0.02, 0.055}) {
+      CAPTURE(name);
+      CAPTURE(span);
+      SceneParts parts{.inertia_B = InertiaTensor::from_moments(moments), .omega = omega, .times = {span}};
+      const Motion motion = solve(Scene(std::move(parts)), {.method = name, .step = 1.0});
+      const Vector3d w(motion.omega[0], motion.omega[1], motion.omega[2]), L = moments.cwiseProduct(w);
+      CHECK(L.norm() == doctest::Approx(moments.cwiseProduct(omega).norm()).epsilon(1e-13));
+      CHECK(L.dot(w) == doctest::Approx(moments.cwiseProduct(omega).dot(omega)).epsilon(1e-13));
+    }
+  }
+}
