@@ -27,6 +27,11 @@ struct ColumnRun::Moment {
 
 namespace {
 
+/// The axis of a parameter's component; zero for those of a matrix beyond the third, which have no axis.
+Vector3d unit_vector(const SceneParameter& parameter) {
+  return parameter.component < 3 ? Vector3d(Vector3d::Unit(parameter.component)) : Vector3d(Vector3d::Zero());
+}
+
 /// Ends of windows of torques that vanish, at which nothing else cuts the span.
 std::vector<double> find_further_ends(const Scene& scene) {
   const auto [least, most] = std::minmax_element(scene.times().begin(), scene.times().end());
@@ -92,7 +97,7 @@ ColumnRun::ColumnRun(const Scene& scene, const std::vector<SceneParameter>& para
 
 Matrix3d ColumnRun::find_inertia_change(const SceneParameter& parameter) const {
   const InertiaTensor& given = scene_.given_inertia_B();
-  const Vector3d unit = Vector3d::Unit(parameter.component);
+  const Vector3d unit = unit_vector(parameter);
   if (parameter.of == Of::inertia) {
     const Vector3d axis = given.is_diagonal() ? unit : Vector3d(given.axes().col(parameter.component));
     return axis * axis.transpose();
@@ -156,7 +161,7 @@ std::vector<double> ColumnRun::start_columns() const {
   const std::size_t count = parameters_.size();
   Moment start{scene_.start(), std::vector<double>(6 * count, 0.0)};
   for (std::size_t c = 0; c < count; ++c) {
-    const Vector3d unit = Vector3d::Unit(parameters_[c].component);
+    const Vector3d unit = unit_vector(parameters_[c]);
     if (parameters_[c].of == Of::omega) start.add(0, c, unit);
     if (parameters_[c].of == Of::attitude)
       start.add(3, c, side_ == TurnSide::body ? unit : rotate(conjugate(scene_.attitude()), unit));
