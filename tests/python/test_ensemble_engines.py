@@ -120,7 +120,7 @@ def test_threads_that_open_an_array_together_write_its_chunks_of_nan(recipe, tmp
 def test_dask_gives_the_same_bytes_by_client_and_by_address(recipe, whole, cluster, tmp_path):
     from distributed import Client
 
-    with Client(cluster) as client:
+    with Client(cluster, set_as_default=False) as client:
         ph.ensemble(recipe, out=tmp_path / "client.zarr", executor=client)
     ph.ensemble(recipe, out=tmp_path / "address.zarr", executor=cluster.scheduler_address)
     assert ensembles.content(tmp_path / "client.zarr") == whole == ensembles.content(tmp_path / "address.zarr")
@@ -156,7 +156,7 @@ def test_wrong_executors_are_refused(tmp_path, wrong, message):
 def test_nannies_do_not_double_the_time_of_a_chunk(cluster):
     from distributed import Client
 
-    with Client(cluster) as client:
+    with Client(cluster, set_as_default=False) as client:
         (before, faults), = [found for found in client.run(measure_faults).values()][:1]
     assert before and faults < 3000   # 60 arrays of 8 MB, mapped anew each time, have 56 000
 

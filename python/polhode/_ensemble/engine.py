@@ -69,7 +69,7 @@ def crew(executor: Any) -> Iterator[Crew]:
         except ImportError as error:
             raise InvalidInput(f"executor: needs {error.name}: pip install 'polhode[ensemble]'") from None
         try:
-            client: Any = Client(executor)  # type: ignore[no-untyped-call]
+            client: Any = Client(executor, set_as_default=False)  # type: ignore[no-untyped-call]
         except (OSError, ValueError) as error:
             raise InvalidInput(f"executor: {executor} does not answer: {type(error).__name__}") from None
         with client:
