@@ -45,15 +45,21 @@ def test_error_within_the_promise_in_every_family(family):
         assert np.all(found <= bound), (row, found / bound)
 
 
-def test_the_stated_error_holds_where_the_frequencies_lose_digits():
-    """Next to the homoclinic motion, at 16 537 s: the error of a frequency counts there."""
-    row = next(row for row in TABLE if row["rotor"] == -0.037772065069629455)
+def test_the_frequencies_keep_their_digits():
+    """Next to the homoclinic motion, at 1e7 s; each rate is a double-double."""
+    row = next(row for row in TABLE if row["name"] == "asleep, kicked, for long")
     scene = ph.Scene(inertia=row["moments"], omega=row["omega"], attitude=row["attitude"], times=row["t"],
                      torques=[ph.torques.Gravity(row["weight_arm"], (0, 0, 1))],
                      rotors=[ph.Rotor((0, 0, 1), momentum=row["rotor"])])
     motion = ph.solve(scene, 1e-9)
     assert motion.plan.model == "heavy_gyrostat" and motion.error_kind == "bounded"
-    assert 1e-14 < errors(row, make(row)).max() <= motion.error < 1e-11
+    assert errors(row, make(row)).max() < 3e-15 and motion.error < 2e-14
+
+
+def test_products_are_not_fused_with_sums():
+    """At 16 537 s: GCC 12 once fused some in the set-up, which moved a rate by 5e-18 of itself, 9e-14 here."""
+    row = next(row for row in TABLE if row["rotor"] == -0.037772065069629455)
+    assert errors(row, make(row)).max() < 3e-15
 
 
 def test_the_table_covers_what_it_promises_and_can_fail():

@@ -35,6 +35,7 @@ def families(rng):
     for total in (5.0, 4.2, 3.8, 1.0):   # C w3 + h over sqrt(A M), a sleeping top is stable above 2
         yield "asleep, kicked", 1.0, 0.5, 1.0, total / 2 - 0.25, (1e-4, 0.0, 0.5), (0.0, 0.0, 0.0, 1.0), SHORT
         yield "asleep, tilted", 1.0, 0.5, 1.0, total / 2 - 0.25, *start(1e-3, 0.0, 0.0, 0.5), SHORT
+    yield "asleep, kicked, for long", 1.0, 0.5, 1.0, 0.25, (1e-4, 0.0, 0.5), (0.0, 0.0, 0.0, 1.0), (1.0, 1e7)
     yield "no momentum about the axis", 1.0, 0.5, 1.0, -1.5, *start(1.0, 0.4, 0.0, 3.0), ANY
     yield "no momentum about the axis", 1.0, 0.5, 1.0, -1.5, *start(1.0, 0.4, 0.8, 3.0), ANY
     yield "needle and disc", 1.0, 1e-6, 1.0, 0.3, *start(0.9, 0.3, 0.6, 2.0), SHORT

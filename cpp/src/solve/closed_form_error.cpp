@@ -99,11 +99,6 @@ class InputError {
     return largest > 0.0 ? epsilon * added / largest : 0.0;
   }
 
-  /// Of the frequencies of a top. They are double-doubles of rounded roots: one start of 70 lost 5e-18 of them.
-  double measure_frequencies() const {
-    return axis_ < 0 ? 0.0 : 0x1p-56 * 2 * std::numbers::pi * facts_.turns;
-  }
-
   /// Of all inputs, where a gyrostat starts next to a steady turn that is born together with its saddle. There the
   /// closed form is only as good as its inputs (docs/gyrostat.md). The period tells: it is many revolutions long.
   double measure_birth(const ClosedForm& form) const {
@@ -204,7 +199,7 @@ double compute_closed_form_error(const Scene& scene, const Facts& facts, const C
   if (form.model() == "pendulum") return error;   // the product of weight and arm is a double-double there
   return error + inputs.measure_weight(form) + inputs.measure_damping() + inputs.measure_rotors(form) +
          inputs.measure_inertia() + inputs.measure_birth(form) +
-         inputs.measure_energy(form) + inputs.measure_turning(form) + inputs.measure_frequencies();
+         inputs.measure_energy(form) + inputs.measure_turning(form);
 }
 
 }  // namespace polhode
