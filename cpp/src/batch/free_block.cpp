@@ -57,7 +57,7 @@ void check_times(const double* t, std::size_t n, double reach, double speed, std
 }  // namespace
 
 FreeBlock::FreeBlock(const FreeMotionBatch& batch) : b_(batch) {
-  if (batch.tensor) principal_.emplace(*batch.tensor);
+  if (batch.tensor) principal_.emplace(*batch.tensor, std::min(batch.bodies, free_block));
 }
 
 void FreeBlock::find_starts() {
@@ -67,11 +67,12 @@ void FreeBlock::find_starts() {
                        : exact::FreeStarts{b_.moments + 3 * begin_, omega, attitude};
 }
 
-bool FreeBlock::is_fit(std::size_t i) const {
-  const std::size_t body = begin_ + i;
-  return (b_.tensor || within(b_.moments + 3 * body, 3)) && within(b_.omega + 3 * body, 3) &&
-         within(b_.attitude + 4 * body, 4) && carries(starts_.moments + 3 * i, starts_.omega + 3 * i);
+bool FreeBlock::is_finite(std::size_t body, std::size_t count) const {
+  return (b_.tensor || within(b_.moments + 3 * body, 3 * count)) && within(b_.omega + 3 * body, 3 * count) &&
+         within(b_.attitude + 4 * body, 4 * count);
 }
+
+bool FreeBlock::is_carried(std::size_t i) const { return carries(starts_.moments + 3 * i, starts_.omega + 3 * i); }
 
 bool FreeBlock::passes(std::size_t i) const {
   const std::size_t body = begin_ + i;
@@ -85,7 +86,7 @@ bool FreeBlock::passes(std::size_t i) const {
 }
 
 void FreeBlock::set_up() {
-  trig_.resize(free_block), frames_.resize(free_block);
+  trig_.resize(kept_block), frames_.resize(kept_block);
   const std::size_t count = exact::free_kernels().set_up(starts_, n_, trig_.data(), frames_.data(), left_);
   add_singles(count);
   for (std::size_t i = 0, next = 0; rotated() && i < n_; ++i) {
@@ -118,8 +119,8 @@ void FreeBlock::add_singles(std::size_t count) {
 }
 
 void FreeBlock::evaluate(std::size_t i, const exact::TimeGrid& t, double* omega, double* attitude) {
-  const auto found = std::ranges::find(singles_, i, &std::pair<std::size_t, FreeMotion>::first);
-  if (found == singles_.end()) {
+  const auto found = std::ranges::lower_bound(singles_, i, {}, &Single::first);
+  if (found == singles_.end() || found->first != i) {
     if (!once_) exact::free_kernels().trig(trig_[i], frames_[i], t, omega, attitude);
     return;
   }
@@ -131,7 +132,7 @@ void FreeBlock::evaluate(std::size_t i, const exact::TimeGrid& t, float* omega, 
 }
 
 bool FreeBlock::is_single(std::size_t i) const {
-  return std::ranges::find(singles_, i, &std::pair<std::size_t, FreeMotion>::first) != singles_.end();
+  return std::ranges::binary_search(singles_, i, {}, &Single::first);
 }
 
 FreeMotion FreeBlock::single(std::size_t body) const {

@@ -11,15 +11,17 @@
 
 namespace polhode {
 
-constexpr std::size_t free_block = 64;  ///< bodies that are set up together, so that their constants stay in the cache
+constexpr std::size_t kept_block = 64;   ///< bodies that are set up together, so that their constants stay in the cache
+constexpr std::size_t free_block = 512;  ///< bodies at one time each, so that the few near the separatrix fill lanes
 
 /// Starts of a block of bodies with one tensor, in its principal axes P.
 class PrincipalStarts {
  public:
-  explicit PrincipalStarts(const InertiaTensor& tensor)
+  /// For up to `most` bodies at once.
+  PrincipalStarts(const InertiaTensor& tensor, std::size_t most)
       : rotated(!tensor.is_diagonal()), R_BP_(rotated ? tensor.axes() : Matrix3d(Matrix3d::Identity())) {
     const Vector3d I = rotated ? tensor.moments() : Vector3d(tensor.matrix().diagonal());
-    for (std::size_t i = 0; i < free_block; ++i) Eigen::Map<Vector3d>(moments_ + 3 * i) = I;
+    for (std::size_t i = 0; i < most; ++i) Eigen::Map<Vector3d>(moments_ + 3 * i) = I;
   }
 
   /// The starts of n bodies; the attitudes stay in body axes.
@@ -64,8 +66,9 @@ class FreeBlock {
   void take(std::size_t begin, std::size_t end, const Reach& reach) {
     begin_ = begin, n_ = end - begin;
     find_starts();
+    const bool finite = is_finite(begin, n_);
     for (std::size_t i = 0; i < n_; ++i) {
-      poor_[i] = !is_fit(i);
+      poor_[i] = !((finite || is_finite(begin + i, 1)) && is_carried(i));
       if (!poor_[i]) reach_[i] = reach(begin + i), poor_[i] = !passes(i);
     }
   }
@@ -89,7 +92,8 @@ class FreeBlock {
  private:
   bool is_single(std::size_t i) const;
   void find_starts();
-  bool is_fit(std::size_t i) const;
+  bool is_finite(std::size_t body, std::size_t count) const;
+  bool is_carried(std::size_t i) const;
   bool passes(std::size_t i) const;
   void add_singles(std::size_t count);
   FreeMotion single(std::size_t body) const;
@@ -104,7 +108,8 @@ class FreeBlock {
   std::size_t left_[free_block];
   std::vector<exact::FreeTrig<double>> trig_;
   std::vector<exact::FreeFrame> frames_;
-  std::vector<std::pair<std::size_t, FreeMotion>> singles_;  ///< bodies that the lanes left
+  using Single = std::pair<std::size_t, FreeMotion>;
+  std::vector<Single> singles_;  ///< bodies that the lanes left, in order
 };
 
 }  // namespace polhode

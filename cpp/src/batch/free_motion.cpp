@@ -24,20 +24,30 @@ class Run {
   /// Writes bodies [first, last). Returns the number of poisoned rows.
   std::size_t operator()(std::size_t first, std::size_t last) {
     std::size_t poisoned = 0;
-    for (std::size_t begin = first; begin < last; begin += free_block)
-      poisoned += do_block(begin, std::min(last, begin + free_block));
+    const std::size_t step = is_once() ? free_block : kept_block;
+    for (std::size_t begin = first; begin < last; begin += step)
+      poisoned += do_block(begin, std::min(last, begin + step));
     return poisoned;
   }
 
  private:
+  /// Whether each body has one time of its own, in its given axes. A float has the same bits at one time as among many:
+  /// it is never rounded from a double here.
+  bool is_once() const {
+    return b_.times == 1 && (b_.own_times || b_.bodies == 1) && !rows_.out.single_states() && !block_.rotated();
+  }
+
+  double reach_of(std::size_t body) const {
+    if (!b_.own_times) return reach_;
+    const double* t = rows_.times_of(body);
+    if (b_.times == 1 && std::isfinite(*t)) return std::abs(*t);
+    return exact::free_kernels().times.reach(t, b_.times);
+  }
+
   std::size_t do_block(std::size_t begin, std::size_t end) {
     check_interrupt();
-    block_.take(begin, end, [this](std::size_t body) {
-      return b_.own_times ? exact::free_kernels().times.reach(rows_.times_of(body), b_.times) : reach_;
-    });
-    // A float has the same bits at one time as among many: it is never rounded from a double here.
-    const bool once = b_.times == 1 && (b_.own_times || b_.bodies == 1) && !rows_.out.single_states();
-    if (!block_.rotated() && once) {
+    block_.take(begin, end, [this](std::size_t body) { return reach_of(body); });
+    if (is_once()) {
       rows_.once(begin, end - begin, [&](double* w, double* q) { block_.evaluate_once(b_.t + begin, w, q); });
     } else {
       block_.set_up();
@@ -95,7 +105,7 @@ std::size_t free_motion(const FreeMotionBatch& given, const MotionOutput& out, i
     return poisoned;
   }
   const std::size_t workers = thread_count(threads, states, 2000);
-  parallel_for(batch.bodies, workers, free_block, [&](std::size_t begin, std::size_t end) {
+  parallel_for(batch.bodies, workers, kept_block, [&](std::size_t begin, std::size_t end) {
     poisoned += Run(batch, shared.grid, shared.reach, out)(begin, end);
   });
   return poisoned;

@@ -3,6 +3,7 @@
 #include "exact/lanes/damped_loops.hpp"
 #include "exact/lanes/free_loops.hpp"
 #include "exact/lanes/single_loops.hpp"
+#include "math/lanes/two.hpp"
 #include "polhode/exact/detail/free_setup_hyper.hpp"
 
 // Many bodies at once: their set-up also runs in lanes.
@@ -14,6 +15,7 @@ using exact::FreeTrig;
 
 POLHODE_INLINE double lane(One a, int) { return a.v; }
 POLHODE_INLINE unsigned bits(bool mask) { return mask; }
+POLHODE_INLINE unsigned bits(TwoMask mask) { return bits(mask.first) | bits(mask.second) << Wide::width; }
 template <class T>
 POLHODE_INLINE double lane(T a, int i) {
   double all[T::width];
@@ -61,6 +63,8 @@ struct Block {
 struct Pick {
   const std::size_t* index;
   std::size_t first, n;
+  /// Whether the lanes are rows that follow one another.
+  POLHODE_INLINE bool in_line(std::size_t width) const { return !index && first + width <= n; }
   POLHODE_INLINE std::size_t operator()(std::size_t i) const {
     const std::size_t k = first + i < n ? first + i : n - 1;
     return index ? index[k] : k;
@@ -80,9 +84,16 @@ POLHODE_INLINE Block<T> read_block(FreeStarts starts, Pick pick) {
   const T zero(0.0), one(1.0);
   Block<T> block;
   T moments[3], omega[3];
-  for (std::size_t a = 0; a < 3; ++a)
-    moments[a] = column<T>(starts.moments, 3, a, pick), omega[a] = column<T>(starts.omega, 3, a, pick);
-  for (std::size_t a = 0; a < 4; ++a) block.attitude[a] = column<T>(starts.attitude, 4, a, pick);
+  T(&q)[4] = block.attitude;
+  if (pick.in_line(T::width)) {
+    load3(starts.moments + 3 * pick.first, moments[0], moments[1], moments[2]);
+    load3(starts.omega + 3 * pick.first, omega[0], omega[1], omega[2]);
+    load4(starts.attitude + 4 * pick.first, q[0], q[1], q[2], q[3]);
+  } else {
+    for (std::size_t a = 0; a < 3; ++a)
+      moments[a] = column<T>(starts.moments, 3, a, pick), omega[a] = column<T>(starts.omega, 3, a, pick);
+    for (std::size_t a = 0; a < 4; ++a) q[a] = column<T>(starts.attitude, 4, a, pick);
+  }
   const T fastest = max(abs(omega[0]), max(abs(omega[1]), abs(omega[2])));
   const T largest = max(moments[0], max(moments[1], moments[2]));
   const auto usual = (fastest > T(1e-290)) & (fastest < T(1e290)) & (largest > T(1e-290)) & (largest < T(1e290));
@@ -135,7 +146,14 @@ template <class T, class Body>
 POLHODE_INLINE void write_block(const Body& body, const Block<T>& block, const double* t, Pick pick,
                                 unsigned rows_wanted, double* omega, double* attitude) {
   const FreeFrameOf<T> frame = make_frame(block, exact::evaluate(body, T(0.0)));
-  const Rows<T> rows = rows_at(body, frame, column<T>(t, 1, 0, pick));
+  const bool in_line = pick.in_line(T::width);
+  const Rows<T> rows = rows_at(body, frame, in_line ? T::load(t + pick.first) : column<T>(t, 1, 0, pick));
+  if (in_line && ~rows_wanted << (8 * sizeof(unsigned) - T::width) == 0) {
+    if (omega) store3(omega + 3 * pick.first, rows.omega[0], rows.omega[1], rows.omega[2]);
+    if (attitude)
+      store4(attitude + 4 * pick.first, rows.attitude[0], rows.attitude[1], rows.attitude[2], rows.attitude[3]);
+    return;
+  }
   double w[3 * T::width], q[4 * T::width];
   store3(w, rows.omega[0], rows.omega[1], rows.omega[2]);
   store4(q, rows.attitude[0], rows.attitude[1], rows.attitude[2], rows.attitude[3]);
@@ -149,9 +167,9 @@ POLHODE_INLINE void write_block(const Body& body, const Block<T>& block, const d
 
 inline void once_hyper(FreeStarts starts, const double* t, const std::size_t* which, std::size_t n, double* omega,
                        double* attitude) {
-  for (std::size_t first = 0; first < n; first += Wide::width) {
+  for (std::size_t first = 0; first < n; first += Two::width) {
     const Pick pick{which, first, n};
-    const Block<Wide> block = read_block<Wide>(starts, pick);
+    const Block<Two> block = read_block<Two>(starts, pick);
     write_block(exact::set_up_hyper(block.constants), block, t, pick, ~0u, omega, attitude);
   }
 }
@@ -160,15 +178,15 @@ inline std::size_t once(FreeStarts starts, const double* t, std::size_t n, doubl
                         std::size_t* left) {
   constexpr std::size_t queue_size = 64;
   std::size_t count = 0, hyper[queue_size], waiting = 0;
-  for (std::size_t first = 0; first < n; first += Wide::width) {
+  for (std::size_t first = 0; first < n; first += Two::width) {
     const Pick pick{nullptr, first, n};
-    const Block<Wide> block = read_block<Wide>(starts, pick);
+    const Block<Two> block = read_block<Two>(starts, pick);
     write_block(exact::set_up_trig(block.constants), block, t, pick, ~(block.neither | block.hyper), omega, attitude);
-    for (std::size_t i = 0; i < Wide::width && first + i < n; ++i) {
+    for (std::size_t i = 0; i < Two::width && first + i < n; ++i) {
       if (block.neither >> i & 1u) left[count++] = first + i;
       if (block.hyper >> i & 1u) hyper[waiting++] = first + i;
     }
-    if (waiting + Wide::width > queue_size || first + Wide::width >= n) {
+    if (waiting + Two::width > queue_size || first + Two::width >= n) {
       once_hyper(starts, t, hyper, waiting, omega, attitude);
       waiting = 0;
     }
@@ -178,13 +196,13 @@ inline std::size_t once(FreeStarts starts, const double* t, std::size_t n, doubl
 
 inline std::size_t set_up(FreeStarts starts, std::size_t n, FreeTrig<double>* trig, FreeFrame* frames,
                           std::size_t* left) {
-  constexpr std::size_t width = Wide::width;
+  constexpr std::size_t width = Two::width;
   std::size_t count = 0;
   for (std::size_t first = 0; first < n; first += width) {
     const Pick pick{nullptr, first, n};
-    const Block<Wide> block = read_block<Wide>(starts, pick);
-    const FreeTrig<Wide> body = exact::set_up_trig(block.constants);
-    const FreeFrameOf<Wide> frame = make_frame(block, exact::evaluate(body, Wide(0.0)));
+    const Block<Two> block = read_block<Two>(starts, pick);
+    const FreeTrig<Two> body = exact::set_up_trig(block.constants);
+    const FreeFrameOf<Two> frame = make_frame(block, exact::evaluate(body, Two(0.0)));
     // Both structs consist of numbers of one type, which are copied lane by lane.
     const auto* from_trig = reinterpret_cast<const double*>(&body);
     const auto* from_frame = reinterpret_cast<const double*>(&frame);

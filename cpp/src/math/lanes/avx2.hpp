@@ -91,4 +91,20 @@ POLHODE_INLINE void store3(double* p, Wide x, Wide y, Wide z) {
   _mm256_storeu_pd(p + 8, _mm256_permute2f128_pd(zx, yz, 0x31));   // z2 x3 y3 z3
 }
 
+/// The columns of rows of three and of four numbers: store3 and store4 undone.
+POLHODE_INLINE void load3(const double* p, Wide& x, Wide& y, Wide& z) {
+  const __m256d a = _mm256_loadu_pd(p), b = _mm256_loadu_pd(p + 4), c = _mm256_loadu_pd(p + 8);
+  const __m256d xy = _mm256_permute2f128_pd(a, b, 0x30), zx = _mm256_permute2f128_pd(a, c, 0x21),
+                yz = _mm256_permute2f128_pd(b, c, 0x30);
+  x = _mm256_shuffle_pd(xy, zx, 0b1010), y = _mm256_shuffle_pd(xy, yz, 0b0101), z = _mm256_shuffle_pd(zx, yz, 0b1010);
+}
+POLHODE_INLINE void load4(const double* p, Wide& x, Wide& y, Wide& z, Wide& w) {
+  const __m256d a = _mm256_loadu_pd(p), b = _mm256_loadu_pd(p + 4);
+  const __m256d c = _mm256_loadu_pd(p + 8), d = _mm256_loadu_pd(p + 12);
+  const __m256d xz0 = _mm256_unpacklo_pd(a, b), yw0 = _mm256_unpackhi_pd(a, b);
+  const __m256d xz1 = _mm256_unpacklo_pd(c, d), yw1 = _mm256_unpackhi_pd(c, d);
+  x = _mm256_permute2f128_pd(xz0, xz1, 0x20), z = _mm256_permute2f128_pd(xz0, xz1, 0x31);
+  y = _mm256_permute2f128_pd(yw0, yw1, 0x20), w = _mm256_permute2f128_pd(yw0, yw1, 0x31);
+}
+
 }  // namespace polhode::POLHODE_ISA

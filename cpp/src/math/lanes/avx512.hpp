@@ -97,4 +97,24 @@ POLHODE_INLINE void store3(double* p, Wide x, Wide y, Wide z) {
   _mm512_storeu_pd(p + 16, _mm512_permutex2var_pd(p2, _mm512_setr_epi64(0, 13, 2, 3, 14, 5, 6, 15), z.v));
 }
 
+/// The columns of rows of three and of four numbers: store3 and store4 undone.
+POLHODE_INLINE void load3(const double* p, Wide& x, Wide& y, Wide& z) {
+  const __m512d a = _mm512_loadu_pd(p), b = _mm512_loadu_pd(p + 8), c = _mm512_loadu_pd(p + 16);
+  const __m512d x0 = _mm512_permutex2var_pd(a, _mm512_setr_epi64(0, 3, 6, 9, 12, 15, 0, 0), b);
+  const __m512d y0 = _mm512_permutex2var_pd(a, _mm512_setr_epi64(1, 4, 7, 10, 13, 0, 0, 0), b);
+  const __m512d z0 = _mm512_permutex2var_pd(a, _mm512_setr_epi64(2, 5, 8, 11, 14, 0, 0, 0), b);
+  x = _mm512_permutex2var_pd(x0, _mm512_setr_epi64(0, 1, 2, 3, 4, 5, 10, 13), c);
+  y = _mm512_permutex2var_pd(y0, _mm512_setr_epi64(0, 1, 2, 3, 4, 8, 11, 14), c);
+  z = _mm512_permutex2var_pd(z0, _mm512_setr_epi64(0, 1, 2, 3, 4, 9, 12, 15), c);
+}
+POLHODE_INLINE void load4(const double* p, Wide& x, Wide& y, Wide& z, Wide& w) {
+  const __m512i xy = _mm512_setr_epi64(0, 4, 8, 12, 1, 5, 9, 13), zw = _mm512_setr_epi64(2, 6, 10, 14, 3, 7, 11, 15);
+  const __m512d a = _mm512_loadu_pd(p), b = _mm512_loadu_pd(p + 8);
+  const __m512d c = _mm512_loadu_pd(p + 16), d = _mm512_loadu_pd(p + 24);
+  const __m512d xy0 = _mm512_permutex2var_pd(a, xy, b), xy1 = _mm512_permutex2var_pd(c, xy, d);
+  const __m512d zw0 = _mm512_permutex2var_pd(a, zw, b), zw1 = _mm512_permutex2var_pd(c, zw, d);
+  x = _mm512_shuffle_f64x2(xy0, xy1, 0x44), y = _mm512_shuffle_f64x2(xy0, xy1, 0xee);
+  z = _mm512_shuffle_f64x2(zw0, zw1, 0x44), w = _mm512_shuffle_f64x2(zw0, zw1, 0xee);
+}
+
 }  // namespace polhode::POLHODE_ISA

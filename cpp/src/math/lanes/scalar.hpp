@@ -47,6 +47,8 @@ POLHODE_INLINE math::DoubleDouble<One> two_prod(One a, One b) {
 }
 #endif
 
+POLHODE_INLINE void load3(const double* p, One& a, One& b, One& c) { a = p[0], b = p[1], c = p[2]; }
+POLHODE_INLINE void load4(const double* p, One& a, One& b, One& c, One& d) { a = p[0], b = p[1], c = p[2], d = p[3]; }
 POLHODE_INLINE void store3(double* p, One a, One b, One c) { p[0] = a.v, p[1] = b.v, p[2] = c.v; }
 POLHODE_INLINE void store4(double* p, One a, One b, One c, One d) { p[0] = a.v, p[1] = b.v, p[2] = c.v, p[3] = d.v; }
 

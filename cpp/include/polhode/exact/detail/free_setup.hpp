@@ -149,12 +149,12 @@ POLHODE_INLINE FreeTrig<T> set_up_trig(const FreeConstants<T>& f) {
   using N = DoubleDouble<T>;
   const T zero(0.0), one(1.0);
   const auto steady = f.a1.hi == zero;
-  const LandenChain<N> chain(f.k, f.kc);
-  const N ratio_K = chain.two_K_over_pi();
-  const N q = select(steady, N(0.0), chain.nome());
   const N a1 = select(steady, N(1.0), f.a1);  // any number: rho is set to 0 below
-  const N a2 = a1 / sqrt(f.r);
-  const N rho = select(steady, N(0.0), descend_imaginary(chain, f.a3, a1, a2).exp_minus());
+  const ImaginaryChain<T> descent(f.k, f.kc, f.a3, a1, a1 / sqrt(f.r));
+  const LandenChain<N>& chain = descent.chain;
+  const N ratio_K = descent.two_K_over_pi;
+  const N q = select(steady, N(0.0), chain.nome());
+  const N rho = select(steady, N(0.0), descent.end.exp_minus());
   const N q_rho = select(rho.hi == zero, N(0.0), q / select(rho.hi == zero, N(1.0), rho));
 
   // The start's theta argument: a constant, double is enough.
@@ -166,20 +166,32 @@ POLHODE_INLINE FreeTrig<T> set_up_trig(const FreeConstants<T>& f) {
   const T dn = select(f.La3.hi == zero, one, (f.m[2] / La3).hi);
   const auto z0 = descend_real(chain1, sn, cn, one, dn);
 
-  // G_j = q^{j(j-1)/2} rho^j; the mean rate needs |j| <= 10 in double-double, the evaluation |j| <= 7.
-  N up[11], down[11];
-  up[0] = down[0] = N(1.0);
-  N qj(1.0);
-  for (int j = 0; j < 10; ++j) {
-    up[j + 1] = up[j] * (qj * rho);
-    down[j + 1] = down[j] * (qj * q_rho);
-    qj = qj * q;
+  // G_j = q^{j(j-1)/2} rho^j, j = 1 ... 10, and the same of q / rho, each from the one before by q^{j-1} rho. The mean
+  // rate needs the first four in double-double: the sixth is below q^15 = 7e-11, which leaves 1e-26 of the rate.
+  constexpr int most = 10, close = 4;
+  N near_up[close + 1], near_down[close + 1], step_up = rho, step_down = q_rho;
+  near_up[1] = rho, near_down[1] = q_rho;
+  for (int j = 2; j <= close; ++j) {
+    step_up = step_up * q, step_down = step_down * q;
+    near_up[j] = near_up[j - 1] * step_up, near_down[j] = near_down[j - 1] * step_down;
   }
-  N sum(1.0), moment(0.0);
-  for (int j = 10; j >= 2; j -= 2) {
-    sum = plus(sum, plus(up[j], down[j]));
-    moment = plus(moment, (up[j] - down[j]) * T(double(j)));
+  T up[most + 1], down[most + 1], far_up = step_up.hi, far_down = step_down.hi;
+  for (int j = 1; j <= close; ++j) up[j] = near_up[j].hi, down[j] = near_down[j].hi;
+  for (int j = close + 1; j <= most; ++j) {
+    far_up = far_up * q.hi, far_down = far_down * q.hi;
+    up[j] = up[j - 1] * far_up, down[j] = down[j - 1] * far_down;
   }
+  T far_sum(0.0), far_moment(0.0);
+  for (int j = most; j > close; j -= 2) {
+    far_sum = far_sum + (up[j] + down[j]);
+    far_moment = madd(T(double(j)), up[j] - down[j], far_moment);
+  }
+  N sum(far_sum), moment(far_moment);
+  for (int j = close; j >= 2; j -= 2) {
+    sum = plus(sum, plus(near_up[j], near_down[j]));
+    moment = plus(moment, (near_up[j] - near_down[j]) * T(double(j)));
+  }
+  sum = plus(N(1.0), sum);
 
   const N J3(f.start.I[2]);
   const N a3kc = f.a3 * f.kc;
@@ -196,15 +208,15 @@ POLHODE_INLINE FreeTrig<T> set_up_trig(const FreeConstants<T>& f) {
 
   T ec[4], es[3], oc[4], os[4];
   ec[0] = one;
-  T odd_sum = up[1].hi + down[1].hi, even_sum = one;
+  T odd_sum = up[1] + down[1], even_sum = one;
   for (int m = 1; m < 4; ++m) {
-    ec[m] = up[2 * m].hi + down[2 * m].hi;
-    es[m - 1] = up[2 * m].hi - down[2 * m].hi;
+    ec[m] = up[2 * m] + down[2 * m];
+    es[m - 1] = up[2 * m] - down[2 * m];
     even_sum = even_sum + ec[m];
   }
   for (int m = 0; m < 4; ++m) {
-    oc[m] = up[2 * m + 1].hi + down[2 * m + 1].hi;
-    os[m] = up[2 * m + 1].hi - down[2 * m + 1].hi;
+    oc[m] = up[2 * m + 1] + down[2 * m + 1];
+    os[m] = up[2 * m + 1] - down[2 * m + 1];
     if (m > 0) odd_sum = odd_sum + oc[m];
   }
   expand(chebyshev_T, ec, c.even_cos);

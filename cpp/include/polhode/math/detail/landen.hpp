@@ -24,11 +24,14 @@ struct LandenChain {
   POLHODE_INLINE LandenChain(N modulus, N complement) {
     k[0] = modulus;
     kc[0] = complement;
-    for (int i = 0; i < stages; ++i) {
-      const N inverse = N(1.0) / one_plus(kc[i]), ratio = k[i] * inverse;
-      k[i + 1] = ratio * ratio;
-      kc[i + 1] = twice(sqrt(kc[i]) * inverse);
-    }
+    for (int i = 1; i <= stages; ++i) advance(i);
+  }
+
+  /// Stage i from the one before.
+  POLHODE_INLINE void advance(int i) {
+    const N inverse = N(1.0) / one_plus(kc[i - 1]), ratio = k[i - 1] * inverse;
+    k[i] = ratio * ratio;
+    kc[i] = twice(sqrt(kc[i - 1]) * inverse);
   }
 
   /// 2 K(k) / pi, where K is the complete integral of the first kind.
@@ -57,6 +60,14 @@ struct ImaginaryDescent {
   POLHODE_INLINE N exp_minus() const { return Q / plus(P, H); }
 };
 
+/// sqrt(P^2 + Q^2) from the larger: either may be 1e-200 of the other.
+template <class N>
+POLHODE_INLINE N hypotenuse(N P, N Q) {
+  const auto P_larger = P > Q;
+  const N ratio = select(P_larger, Q / P, P / Q);
+  return select(P_larger, P, Q) * sqrt(one_plus(ratio * ratio));
+}
+
 /// Jacobi's imaginary argument down the chain of k: only positive terms. Needs P >= 0, Q + R > 0.
 template <class N>
 POLHODE_INLINE ImaginaryDescent<N> descend_imaginary(const LandenChain<N>& chain, N P, N Q, N R) {
@@ -67,11 +78,41 @@ POLHODE_INLINE ImaginaryDescent<N> descend_imaginary(const LandenChain<N>& chain
     const N slope = chain.k[i] * P / Q;
     R = Q * sqrt(plus(N(1.0), slope * slope));
   }
-  // The hypotenuse from the larger leg: either may be 1e-200 of the other.
-  const auto P_larger = P > Q;
-  const N ratio = select(P_larger, Q / P, P / Q);
-  return {P, Q, select(P_larger, P, Q) * sqrt(one_plus(ratio * ratio))};
+  return {P, Q, hypotenuse(P, Q)};
 }
+
+/// The chain of a modulus, k^2 <= 0.97, and beside it an imaginary descent: stage by stage, so that the one is computed
+/// while the other waits for a division. The last stages need little: k_4 and k_4 sinh(zeta) are below 2e-5, since
+/// k_4 = 4 q^8, sinh(zeta) <= q^(-1/2) / 2 and q < 0.21.
+template <class T>
+struct ImaginaryChain {
+  using N = DoubleDouble<T>;
+  LandenChain<N> chain;
+  N two_K_over_pi = N(1.0);
+  ImaginaryDescent<N> end;
+
+  POLHODE_INLINE ImaginaryChain(N k, N kc, N P, N Q, N R) {
+    chain.k[0] = k, chain.kc[0] = kc;
+    for (int i = 1; i <= 4; ++i) {
+      chain.advance(i);
+      const N growth = one_plus(chain.k[i]);
+      two_K_over_pi = two_K_over_pi * growth;
+      P = twice(P), Q = plus(Q, R) * growth;
+      const N slope = chain.k[i] * P / Q, x = slope * slope;
+      R = i < 4 ? Q * sqrt(plus(N(1.0), x))
+                : Q + Q * (scaled(x, T(0.5)) - N(x.hi * x.hi * (T(0.125) - T(0.0625) * x.hi)));
+    }
+    const N k4 = chain.k[4] / one_plus(chain.kc[4]), k5 = k4 * k4, growth = one_plus(k5);
+    const T k6 = T(0.25) * k5.hi * k5.hi;   // below 1e-21, as the square of the slope
+    P = twice(P), Q = plus(Q, R) * growth;
+    const T slope = k5.hi * P.hi / Q.hi;
+    P = twice(P), Q = twice(Q) + N(Q.hi * madd(T(0.5) * slope, slope, k6 + k6));
+    two_K_over_pi = two_K_over_pi * growth;
+    two_K_over_pi = two_K_over_pi + N(two_K_over_pi.hi * k6);
+    chain.k[5] = k5, chain.k[6] = N(k6), chain.kc[5] = chain.kc[6] = N(1.0);
+    end = {P, Q, hypotenuse(P, Q)};
+  }
+};
 
 /// (X, Y) proportional to (cos z, sin z), z = pi u / 2K, from (P, C, Q, R) proportional to (sn, cn, 1, dn)(u, k):
 /// the descent of Landen's amplitude by angle doubling, right in every quadrant.

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "batch/summary/kernels.hpp"
-#include "batch/summary/lanes/load_rows.hpp"
+#include "batch/summary/lanes/store_bits.hpp"
 #include "polhode/math/detail/atan2.hpp"
 
 // Numbers from states, and their sums over bodies, for one lane type `Wide`; a lane is a time. Each file that is built
