@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "batch/rows.hpp"
+#include "core/all_finite.hpp"
 #include "polhode/core/error.hpp"
 
 namespace polhode {
@@ -68,8 +69,8 @@ void FreeBlock::find_starts() {
 }
 
 bool FreeBlock::is_finite(std::size_t body, std::size_t count) const {
-  return (b_.tensor || within(b_.moments + 3 * body, 3 * count)) && within(b_.omega + 3 * body, 3 * count) &&
-         within(b_.attitude + 4 * body, 4 * count);
+  return (b_.tensor || all_finite(b_.moments + 3 * body, 3 * count)) && all_finite(b_.omega + 3 * body, 3 * count) &&
+         all_finite(b_.attitude + 4 * body, 4 * count);
 }
 
 bool FreeBlock::is_carried(std::size_t i) const { return carries(starts_.moments + 3 * i, starts_.omega + 3 * i); }

@@ -19,8 +19,8 @@ inline bool carries_moments(const double* I) {
 
 /// Whether each rate is 0 or at least 2^-950 of the largest: products with differences of moments are then normal float64.
 inline bool carries_rates(const double* w) {
-  const double largest = std::max({std::abs(w[0]), std::abs(w[1]), std::abs(w[2])});
-  const auto carried = [largest](double rate) { return rate == 0.0 || std::abs(rate) / largest >= 0x1p-950; };
+  const double least = 0x1p-950 * std::max({std::abs(w[0]), std::abs(w[1]), std::abs(w[2])});
+  const auto carried = [least](double rate) { return rate == 0.0 || std::abs(rate) >= least; };
   return carried(w[0]) && carried(w[1]) && carried(w[2]);
 }
 

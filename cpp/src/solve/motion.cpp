@@ -3,25 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/all_finite.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/math/detail/functions.hpp"
 #include "polhode/solve/closed_form.hpp"
 
 namespace polhode {
-namespace {
-
-/// A number times 0 is 0, or NaN if it is not finite: sums without branches, sixteen side by side.
-bool is_finite(const std::vector<double>& values) {
-  constexpr std::size_t width = 16;
-  double sums[width] = {};
-  std::size_t i = 0;
-  for (; i + width <= values.size(); i += width)
-    for (std::size_t k = 0; k < width; ++k) sums[k] += 0.0 * values[i + k];
-  for (; i < values.size(); ++i) sums[0] += 0.0 * values[i];
-  return std::all_of(sums, sums + width, [](double sum) { return sum == 0.0; });
-}
-
-}  // namespace
 
 std::string_view to_text(Status status) {
   switch (status) {
@@ -41,7 +28,9 @@ double Motion::omega_scale() const {
   return scale;
 }
 
-bool Motion::all_finite() const { return is_finite(omega) && is_finite(attitude); }
+bool Motion::all_finite() const {
+  return polhode::all_finite(omega.data(), omega.size()) && polhode::all_finite(attitude.data(), attitude.size());
+}
 
 State Motion::at(double time) const {
   if (!has_dense) {

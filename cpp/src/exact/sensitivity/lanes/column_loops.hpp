@@ -226,30 +226,31 @@ inline void prepare_columns(const exact::FreeConstants<double>& constants, const
 /// Copies a struct of lanes to structs of numbers.
 template <class Lanes, class Numbers>
 POLHODE_INLINE void to_rows(const Lanes& lanes, Numbers* rows, std::size_t count) {
+  constexpr std::size_t width = sizeof(Lanes) / sizeof(Numbers);
   const auto* from = reinterpret_cast<const double*>(&lanes);
   for (std::size_t i = 0; i < count; ++i) {
     auto* to = reinterpret_cast<double*>(rows + i);
-    for (std::size_t k = 0; k < sizeof(Numbers) / sizeof(double); ++k) to[k] = from[k * Wide::width + i];
+    for (std::size_t k = 0; k < sizeof(Numbers) / sizeof(double); ++k) to[k] = from[k * width + i];
   }
 }
 
 inline std::size_t set_up_bodies(FreeStarts starts, std::size_t n, FreeTrig<double>* trig, FreeFrame* frames,
                                  FreeColumns<double>* columns, double* speeds, std::size_t* left) {
-  constexpr std::size_t width = Wide::width;
+  constexpr std::size_t width = Two::width;
   std::size_t count = 0;
   for (std::size_t first = 0; first < n; first += width) {
     const Pick pick{nullptr, first, n};
-    const Block<Wide> block = read_block<Wide>(starts, pick);
-    const FreeTrig<Wide> body = exact::set_up_trig(block.constants);
-    FreeColumns<Wide> c;
-    c.period = c.nome = c.nome_over_kc2 = c.u_of_v = c.K = Wide(0.0);
-    c.passage_start = c.passages_cn_start = c.u_start = c.u_cn_start = Wide(0.0);
+    const Block<Two> block = read_block<Two>(starts, pick);
+    const FreeTrig<Two> body = exact::set_up_trig(block.constants);
+    FreeColumns<Two> c;
+    c.period = c.nome = c.nome_over_kc2 = c.u_of_v = c.K = Two(0.0);
+    c.passage_start = c.passages_cn_start = c.u_start = c.u_cn_start = Two(0.0);
     exact::set_up_columns(block.constants, c);
     exact::set_up_integrals_trig(block.constants, c);
     start_integrals(body, c);
     const std::size_t rows = n - first < width ? n - first : width;
     to_rows(body, trig + first, rows);
-    to_rows(make_frame(block, exact::evaluate(body, Wide(0.0))), frames + first, rows);
+    to_rows(make_frame(block, exact::evaluate(body, Two(0.0))), frames + first, rows);
     to_rows(c, columns + first, rows);
     for (std::size_t a = 0; a < 3; ++a) {
       double w[width];
