@@ -54,6 +54,26 @@ TEST_CASE("the Landen chain gives K, the nome and both descents to double-double
   }
 }
 
+TEST_CASE("a chain with its descent beside it agrees with both, at any argument") {
+  for (const Case& c : cases) {
+    const ImaginaryChain<double> both(c.k, c.kc, c.im_sn, c.im_cn, c.im_dn);
+    CHECK(relative_error(both.two_K_over_pi, c.two_K_over_pi) < 1e-30);
+    CHECK(relative_error(both.chain.nome(), c.nome) < 4e-30);
+    CHECK(relative_error(both.end.exp_minus(), c.exp_minus) < 1e-30);
+  }
+  // cn from 1 down to where k sn / cn is huge: a body whose two larger moments are nearly equal starts there.
+  for (double k2 = 0.97; k2 > 1e-20; k2 *= 0.6) {
+    const DD kc = sqrt(DD(1.0) - DD(k2)), k = sqrt(DD(k2));
+    const LandenChain<DD> chain(k, kc);
+    for (double cn = 1.0; cn > 1e-18; cn *= 0.3) {
+      const DD sn = sqrt((DD(1.0) - DD(cn)) * (DD(1.0) + DD(cn))), dn = sqrt(DD(cn) * DD(cn) + DD(k2) * sn * sn);
+      const ImaginaryChain<double> both(k, kc, sn, DD(cn), dn);
+      CHECK(relative_error(both.two_K_over_pi, chain.two_K_over_pi()) < 1e-30);
+      CHECK(relative_error(both.end.exp_minus(), descend_imaginary(chain, sn, DD(cn), dn).exp_minus()) < 1e-29);
+    }
+  }
+}
+
 TEST_CASE("the same chain in double is right to a few ulp") {
   for (const Case& c : cases) {
     const LandenChain<double> chain(c.k.hi, c.kc.hi);

@@ -78,9 +78,9 @@ void damped_loop(const Body& body_in, const FreeFrame& frame_in, double c, const
                  double* omega, double* attitude) {
   const Body body = body_in;   // copies, which writing the results cannot change
   const FreeFrame frame = frame_in;
-  std::size_t i = 0;
-  for (; i + Wide::width <= n; i += Wide::width)
-    write_damped<want_omega, want_attitude, Wide>(body, frame, c, t + i, omega + 3 * i, attitude + 4 * i);
+  std::size_t i = in_twos(n, [&]<class T>(std::size_t k) __attribute__((always_inline)) {
+    write_damped<want_omega, want_attitude, T>(body, frame, c, t + k, omega + 3 * k, attitude + 4 * k);
+  });
   for (; i < n; ++i)
     write_damped<want_omega, want_attitude, One>(body, frame, c, t + i, omega + 3 * i, attitude + 4 * i);
 }

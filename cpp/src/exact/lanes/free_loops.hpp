@@ -1,6 +1,7 @@
 #pragma once
 
 #include "exact/lanes/grid_loops.hpp"
+#include "math/lanes/two.hpp"
 #include "polhode/exact/detail/free_kernels.hpp"
 
 // The loops over times, for one lane type `Wide`. Each file that is built for one instruction set includes this once.
@@ -133,18 +134,17 @@ void hyper_loop(const exact::FreeHyper<double>& body_in, const FreeFrame& frame_
     alignas(64) double middle[6][TimeGrid::block];
     for (std::size_t first = 0; first < whole; first += TimeGrid::block) {
       const std::size_t n = in_block(whole, first);
-      for (std::size_t k = 0; k < n; k += Wide::width) {
-        const auto p = exact::evaluate_passage(body, Wide::load(grid.t + first + k) * Wide(frame.time_scale));
+      in_twos(n, [&]<class T>(std::size_t k) __attribute__((always_inline)) {
+        const auto p = exact::evaluate_passage(body, T::load(grid.t + first + k) * T(frame.time_scale));
         p.v.store(middle[0] + k), p.flip.store(middle[1] + k), p.E.store(middle[2] + k);
         p.sine.store(middle[3] + k), p.cosine.store(middle[4] + k), p.grown.store(middle[5] + k);
-      }
-      for (std::size_t k = 0; k < n; k += Wide::width) {
-        const exact::FreePassage<Wide> p{Wide::load(middle[0] + k), Wide::load(middle[1] + k),
-                                         Wide::load(middle[2] + k), Wide::load(middle[3] + k),
-                                         Wide::load(middle[4] + k), Wide::load(middle[5] + k)};
+      });
+      in_twos(n, [&]<class T>(std::size_t k) __attribute__((always_inline)) {
+        const exact::FreePassage<T> p{T::load(middle[0] + k), T::load(middle[1] + k), T::load(middle[2] + k),
+                                      T::load(middle[3] + k), T::load(middle[4] + k), T::load(middle[5] + k)};
         write<want_omega, want_attitude>(in_caller_frames(frame, exact::evaluate(body, p)), omega + 3 * (first + k),
                                          attitude + 4 * (first + k));
-      }
+      });
     }
   }
   for (std::size_t i = whole; i < grid.n; ++i)

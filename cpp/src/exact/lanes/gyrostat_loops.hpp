@@ -99,9 +99,10 @@ inline void loop(const GyrostatSeries& given, const FreeFrame& frame_in, const d
   if (n >= Wide::width) {
     const GyrostatSeries body = given;  // a copy, which writing the results cannot change
     const FreeFrame frame = frame_in;
-    for (; i + Wide::width <= n; i += Wide::width)
-      write_rows(exact::evaluate_gyrostat(body, Wide::load(t + i) * Wide(frame.time_scale)), frame,
-                 row_at(omega, 3 * i), row_at(attitude, 4 * i));
+    i = in_twos(n, [&]<class T>(std::size_t k) __attribute__((always_inline)) {
+      write_rows(exact::evaluate_gyrostat(body, T::load(t + k) * T(frame.time_scale)), frame, row_at(omega, 3 * k),
+                 row_at(attitude, 4 * k));
+    });
   }
   for (; i < n; ++i)
     write_rows(exact::evaluate_gyrostat(given, One::load(t + i) * One(frame_in.time_scale)), frame_in,

@@ -2,6 +2,7 @@
 
 #include "exact/lanes/grid_loops.hpp"
 #include "exact/lanes/heavy_top_setup.hpp"
+#include "math/lanes/two.hpp"
 #include "polhode/exact/detail/heavy_top_kernels.hpp"
 
 // One top at many times, for one lane type `Wide`. Each file that is built for one instruction set includes this once.
@@ -21,9 +22,10 @@ void top_loop(const HeavyTopConstants& given, const double* t, std::size_t n, do
   std::size_t i = 0;
   if (n >= Wide::width) {
     const HeavyTopConstants c = given;  // a copy, which writing the results cannot change
-    for (; i + Wide::width <= n; i += Wide::width)
-      write_top(exact::evaluate_heavy_top<hyper, framed>(c, Wide::load(t + i)), row_of(omega, 3 * i),
-                row_of(attitude, 4 * i));
+    i = in_twos(n, [&]<class T>(std::size_t k) __attribute__((always_inline)) {
+      write_top(exact::evaluate_heavy_top<hyper, framed>(c, T::load(t + k)), row_of(omega, 3 * k),
+                row_of(attitude, 4 * k));
+    });
   }
   for (; i < n; ++i)
     write_top(exact::evaluate_heavy_top<hyper, framed>(given, One::load(t + i)), row_of(omega, 3 * i),

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include "polhode/math/detail/double_double.hpp"
 
 // Included after the file that defines `Wide` for the instruction set.
@@ -77,6 +79,17 @@ POLHODE_INLINE void load3(const double* p, Two& x, Two& y, Two& z) {
 POLHODE_INLINE void load4(const double* p, Two& x, Two& y, Two& z, Two& w) {
   load4(p, x.first, y.first, z.first, w.first);
   load4(p + 4 * Wide::width, x.second, y.second, z.second, w.second);
+}
+
+
+/// Calls work<T>(k) for as many of n numbers as fill lanes, T::width at k: two registers at a time, then one. Returns
+/// how many are done.
+template <class Work>
+POLHODE_INLINE std::size_t in_twos(std::size_t n, const Work& work) {
+  std::size_t k = 0;
+  for (; k + Two::width <= n; k += Two::width) work.template operator()<Two>(k);
+  for (; k + Wide::width <= n; k += Wide::width) work.template operator()<Wide>(k);
+  return k;
 }
 
 }  // namespace polhode::POLHODE_ISA
