@@ -10,15 +10,13 @@ void wait_for_the_end() {
 }
 
 // catch (...) takes the unwinding of pthread_exit, too. It is never left.
-WithGil::WithGil() {
+PyGILState_STATE take_gil() {
   try {
-    state_ = PyGILState_Ensure();
+    return PyGILState_Ensure();
   } catch (...) {
     wait_for_the_end();
   }
 }
-
-WithGil::~WithGil() { PyGILState_Release(state_); }
 
 WithoutGil::WithoutGil() : guard_([] { check_signals(); }), state_(PyEval_SaveThread()) {}
 

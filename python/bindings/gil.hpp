@@ -14,23 +14,17 @@ namespace polhode::python {
 
 [[noreturn]] void wait_for_the_end();
 
-/// Holds the lock, on any thread. See with_gil.
-class WithGil {
- public:
-  WithGil();
-  ~WithGil();
-  WithGil(const WithGil&) = delete;
-  WithGil& operator=(const WithGil&) = delete;
-
- private:
-  PyGILState_STATE state_;
-};
+/// Takes the lock, on any thread. See with_gil.
+PyGILState_STATE take_gil();
 
 /// Calls work() with the lock, on any thread. What unwinds a thread when Python ends is no exception of the standard
 /// library's kind: `work` loses the lock as soon as it runs a line of Python, and must not give it back then.
 template <class Work>
 auto with_gil(const Work& work) {
-  const WithGil gil;
+  const struct Held {
+    PyGILState_STATE state = take_gil();
+    ~Held() { PyGILState_Release(state); }
+  } held;
   try {
     return work();
   } catch (const std::exception&) {

@@ -134,6 +134,10 @@ def python_command(tests):
             *[f"tests/python/test_{name}.py" for name in tests]]
 
 
+def cpp_command(word):
+    return [BUILD / "cmake/tests/cpp/polhode_tests", "-nc", f"-sf=*tests/cpp/{word}/*"]
+
+
 def judge(site):
     """(verdict, by what): killed, survived, or "does not compile"."""
     file = TREE / site["file"]
@@ -146,8 +150,7 @@ def judge(site):
         if not build("polhode_tests"):
             return "does not compile", ""
         word = words.word_of("C++", site["file"])
-        seen = run_tests([BUILD / "cmake/tests/cpp/polhode_tests", "-nc", f"-sf=*tests/cpp/{word}/*"])
-        if seen:
+        if seen := run_tests(cpp_command(word)):
             return "killed", seen
         if not build("_core"):
             return "does not compile", ""
@@ -176,17 +179,39 @@ def print_results(state):
             print(f"survived: {site['file']}:{site['line']}  {site['was']}  ->  {site['now']}")
 
 
+def build_unchanged():
+    """Why no place of C++ can be judged: in this build the sources as they are fail their own C++ tests."""
+    if not build("polhode_tests"):
+        return "the sources as they are do not compile"
+    for word in words.CPP:
+        if seen := run_tests(cpp_command(word)):
+            return f"without a change, the C++ tests of {word} fail: {seen}"
+    if not build("_core"):
+        return "the module of the sources as they are does not compile"
+    put_module()
+    return ""
+
+
 def check_unchanged(state):
-    """A word without survivors proves nothing unless its tests pass on the sources as they are."""
+    """A word without survivors proves nothing unless its Python tests pass on the sources as they are."""
     survived = {(site["language"], words.word_of(site["language"], site["file"])) for site in state.values()
                 if site["verdict"] == "survived"}
-    failing, asked = [], set()
+    asked = {"Python": {}, "C++": {}}   # the tests, and a word that they belong to
     for site in state.values():
         word = words.word_of(site["language"], site["file"])
         tests = words.CPP[word] if site["language"] == "C++" else words.python_tests(
             site["file"].removeprefix("python/polhode/"))
-        if (site["language"], word) not in survived and tuple(tests) not in asked:
-            asked.add(tuple(tests))
+        if (site["language"], word) not in survived:
+            asked[site["language"]].setdefault(tuple(tests), word)
+    failing = []
+    for language, all_tests in asked.items():
+        if not all_tests:
+            continue
+        prepare()   # the installed module, by which Python was judged
+        if language == "C++" and (why := build_unchanged()):
+            failing.append(why)
+            continue
+        for tests, word in all_tests.items():
             if seen := run_tests(python_command(tests)):
                 failing.append(f"without a change, the tests of {word} fail: {seen}")
     return "\n".join(failing) or None
@@ -211,8 +236,8 @@ def main():
     if options.again:
         state = {key: site for key, site in state.items() if site["verdict"] != "survived"}
     for language, count in (("Python", options.python), ("C++", options.cpp)):
-        if language == "C++" and count and not (build("polhode_tests") and build("_core")):
-            return "the sources as they are do not compile"
+        if language == "C++" and count and (why := build_unchanged()):
+            return why
         for site in draw(language):
             done = sum(s["language"] == language and s["verdict"] != "does not compile" for s in state.values())
             if done >= count or time.monotonic() > end:

@@ -13,7 +13,7 @@ PYTHON = {
     "_batch/solve_many": ["solve_many", "solve_many_rk45", "solve_many_lanes", "batch_errors", "doors", "interrupts"],
     "_batch": ["solve_many", "batch_errors", "interrupts"],
     "_ensemble": ["ensemble_recipe", "ensemble_draw", "ensemble_truth", "ensemble_store", "ensemble_engines",
-                  "ensemble_cli"],
+                  "ensemble_dask", "ensemble_cli"],
     "_export": ["saved"],
     "_keywords": ["doors", "solve"],
     "_saved": ["saved", "ensemble_store"],

@@ -1,6 +1,9 @@
 """`polhode ensemble`: what it prints, its exit status, and its report."""
 
 import json
+import resource
+import subprocess
+import sys
 
 import ensembles
 import pytest
@@ -66,6 +69,30 @@ def test_a_dry_run_computes_almost_nothing_and_writes_nothing(tmp_path):
     assert done.exit_code == 0 and content["bodies"] == 100_000 and content["states"] == 1_100_000
     assert content["chunks"] == 3125 and content["fits"] and 0 < content["hours"] < 1
     assert content["bytes"] > 100_000 * 11 * 56 and not (tmp_path / "out.zarr").exists()
+
+
+FORECASTS = """
+import sys
+from polhode._ensemble import forecast
+from polhode._ensemble.run import prepare
+task = prepare(sys.argv[1], out=sys.argv[1] + ".zarr", count=100_000)
+print(*(forecast.make(task).seconds for _ in range(10)))
+"""
+
+
+def limit_time():
+    """Limit the time of this process, at most as it is limited already: nobody may raise that."""
+    most = resource.getrlimit(resource.RLIMIT_CPU)[1]
+    resource.setrlimit(resource.RLIMIT_CPU, (1000, 1000) if most == resource.RLIM_INFINITY else (most, most))
+
+
+def test_hours_are_forecast_where_the_time_of_a_process_is_limited(tmp_path):
+    """Under RLIMIT_CPU, Linux counts the time of a process in whole ticks of up to 10 ms: 32 bodies take about 1 ms."""
+    path = ensembles.write(tmp_path, ensembles.DRIVEN)
+    found = subprocess.run([sys.executable, "-c", FORECASTS, path], capture_output=True, text=True, timeout=120,
+                           preexec_fn=limit_time)
+    seconds = [float(word) for word in found.stdout.split()]
+    assert found.returncode == 0 and len(seconds) == 10 and min(seconds) > 0, (seconds, found.stderr)
 
 
 REFUSED = [(["nothing.toml", "-o", "x"], "recipe: must be a file, or one of S8"), (["{path}"], "--output: missing"),

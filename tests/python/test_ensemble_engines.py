@@ -350,28 +350,16 @@ def test_ctrl_c_leaves_a_resumable_store_and_no_process(recipe, whole, tmp_path,
 @pytest.mark.parametrize("moment", MOMENTS)
 def test_a_killed_scheduler_ends_the_run_and_the_store_goes_on_elsewhere(recipe, whole, tmp_path, moment):
     pytest.importorskip("distributed")
-    program = ("from distributed import LocalCluster; import time\n"
-               "if __name__ == '__main__':\n"
-               "    c = LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=':0')\n"
-               "    print(c.scheduler_address, flush=True)\n    time.sleep(1000)\n")
-    script = tmp_path / "scheduler.py"
-    script.write_text(program)
     quick = {**os.environ, "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "2s"}
-    scheduler = subprocess.Popen([sys.executable, str(script)], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
-                                 text=True)
     out = tmp_path / "out.zarr"
-    try:
-        address = scheduler.stdout.readline().strip()
+    with ensembles.scheduler(tmp_path) as (address, group):
         process = ensembles.start(recipe, "-o", out, "--scheduler", address, env=quick)
         ensembles.wait_for(lambda: len(ensembles.marks(out)) >= moment, process)
-        ensembles.kill(scheduler.pid, *ensembles.children(scheduler.pid))
+        os.killpg(group, signal.SIGKILL)
         _, err = process.communicate(timeout=90)
         whole_already = len(ensembles.marks(out)) == 16   # the kill came after the last chunk
         told = err.splitlines()[-1].startswith("polhode: chunk ") and "was given up: " in err   # beside Dask's own log
         assert process.returncode == 1 and told or whole_already, err
-    finally:
-        ensembles.kill(scheduler.pid, *ensembles.children(scheduler.pid))
-        scheduler.communicate()
     resumed(recipe, out, whole, ensembles.marks(out))
 
 

@@ -14,6 +14,7 @@ import polhode as ph
 FOLDER = pathlib.Path(__file__).parents[2] / "benchmarks/planner"
 sys.path.insert(0, str(FOLDER))
 import family  # noqa: E402
+import ratios  # noqa: E402
 from family.custom import Magnet  # noqa: E402
 from honesty_report import measure  # noqa: E402
 
@@ -236,3 +237,23 @@ def test_false_bounds_are_counted():
     assert [numbers[key] for key in ("claims", "false", "beyond_2", "beyond_asked")] == [5, 4, 3, 2]
     assert [numbers[key] for key in ("refused", "needless", "limits_false")] == [2, 1, 1]
     assert numbers["worst"] == np.inf and numbers["foreseen_over_taken"][1] == 0.5
+
+
+def test_a_ratio_is_the_cost_of_the_choice_over_that_of_the_cheapest(monkeypatch):
+    costs = {None: (6.0, "taylor"), "taylor": (6.1, "taylor"), "rk45": (2.0, "rk45"), "dop853": (9.0, "dop853"),
+             "radau": None}   # without a certificate
+    monkeypatch.setattr(ratios, "measure", lambda scene, accuracy, method=None: costs[method])
+    names = ["rk45", "dop853", "taylor", "radau"]
+    assert ratios.judge(None, 1e-3, names) == (3.0, "taylor", "rk45")
+    costs["rk45"] = None
+    assert ratios.judge(None, 1e-3, names) == (1.0, "taylor", "taylor")
+    costs[None] = (1.0, "exact")
+    assert ratios.judge(None, 1e-3, names) is None
+
+
+def test_costs_are_of_solutions_with_a_certificate():
+    scene = family.draw(1, "heavy_fast", 0).scene
+    seconds, method = ratios.measure(scene, 1e-6)
+    assert 1e-6 < seconds < 10 and method in ("rk45", "dop853", "taylor", "radau")
+    assert ratios.measure(scene, 1e-6, "taylor")[1] == "taylor"
+    assert ratios.measure(scene, 1e-17) is None and ratios.measure(scene, 1e-6, "leapfrog") is None

@@ -96,7 +96,7 @@ def test_a_wheel_spun_up_in_many_windows(inertia):
     axis, edges = (0, 1, 0), np.linspace(0, 10, 11)
     steps = [ph.Rotor(axis, momentum=0.1 * (k + 1), during=(edges[k], edges[k + 1])) for k in range(10)]
     some = scene(inertia=inertia, rotors=steps, times=np.linspace(0, 12, 97))
-    motion = ph.solve(some, 1e-12)
+    motion = ph.solve(some, 1e-12, method="exact")
     assert [piece.model for piece in motion.plan.pieces] == ["gyrostat"] * 10 + ["triaxial"]
     assert motion.success and motion.stats["steps"] == 0
     stepped = ph.solve(some, method="taylor", rtol=1e-16)
@@ -110,13 +110,81 @@ def test_a_wheel_spun_up_in_many_windows(inertia):
 
 def test_gyrostats_beside_stepped_pieces_carry_the_error():
     kick = ph.torques.During(ph.torques.Constant((0.05, -0.02, 0.03)), [(3, 4)])
-    some = scene(torques=[kick], times=np.linspace(0, 20, 81))
+    some = scene(torques=[kick], times=np.linspace(0, 200, 81))
     for accuracy in (1e-6, 1e-9, 1e-11):
         motion = ph.solve(some, accuracy)
         assert [piece.model for piece in motion.plan.pieces] == ["gyrostat", "euler", "gyrostat"] and motion.success
         truth = _core.reference(some, 30, 1e-20, 10**6)
         assert rates_error(motion.omega, truth[0]) <= motion.error <= accuracy
         assert attitude_error(motion.attitude, truth[1]) <= motion.error
+
+
+def switched(length, inertia=BLOCK, axis=(1, 2, 2)):
+    """Four speeds of a wheel, each for the same time."""
+    edges = length * np.arange(5)
+    wheels = [ph.Rotor(axis, momentum=0.1 * (k + 1), during=(edges[k], edges[k + 1])) for k in range(4)]
+    return scene(inertia=inertia, rotors=wheels, times=np.linspace(0, edges[-1], 21))
+
+
+@pytest.mark.parametrize("inertia", [BLOCK, TILTED], ids=["principal axes", "tilted"])
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-6, 1e-9])
+def test_short_gyrostats_are_stepped_and_long_ones_are_not(inertia, accuracy):
+    """The time of closed forms does not depend on the span, that of steps does."""
+    short, long = (ph.solve(switched(length, inertia), accuracy) for length in (0.3, 100.0))
+    assert [piece.method for piece in short.plan.pieces] == ["taylor"] * 4 and short.stats["steps"] > 0
+    assert [piece.model for piece in long.plan.pieces] == ["gyrostat"] * 4 and long.stats["steps"] == 0
+    for motion in (short, long):
+        assert motion.success and motion.error <= accuracy
+    truth = _core.reference(short.plan.scene, 30, 1e-20, 10**6)
+    assert rates_error(short.omega, truth[0]) <= short.error
+    assert attitude_error(short.attitude, truth[1]) <= short.error
+    assert any("4 pieces are free gyrostats" in reason for reason in short.plan.reasons)
+    assert "takes longer than steps in 4 of 4 pieces" in str(short.plan)
+    assert not any("free gyrostats" in reason for reason in long.plan.reasons)
+
+
+@pytest.mark.parametrize("certify", [True, False])
+def test_the_choice_for_gyrostats_is_the_one_of_the_smaller_forecast(certify):
+    for length in (0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 1000.0):
+        for axis in ((0, 0, 1), (1, 2, 2)):
+            some = switched(length, axis=axis)
+            chosen, forms, steps = (ph.plan(some, 1e-6, certify=certify, method=method).predicted_seconds
+                                    for method in (None, "exact", "taylor"))
+            # The forecast of a plan has its pilot run's time in it only in part, so that near a draw either may win.
+            assert chosen < 1.5 * min(forms, steps), (length, axis, chosen, forms, steps)
+
+
+def test_many_digits_are_left_to_the_closed_form():
+    """The rounding of the steps alone is more than 1e-13 here."""
+    some = switched(1.0)
+    assert ph.solve(some, 1e-13).success and not ph.solve(some, 1e-13, method="taylor").success
+    assert ph.plan(some, 1e-13).method == "exact" and ph.plan(some, 1e-9).method == "taylor"
+
+
+def test_gyrostats_are_judged_by_the_rates_that_the_pilot_run_finds():
+    """At the start's rates, a hundredth of a rad/s, steps would take less time. A torque spins the body up first."""
+    spin_up = ph.torques.During(ph.torques.Constant((0, 0.5, 10)), [(0, 10)])
+    some = scene(omega=(0.01, 0, 0), rotors=[ph.Rotor((1, 2, 2), momentum=0.5, during=(10, 60))], t0=0,
+                 times=np.linspace(0, 60, 21))
+    assert [piece.method for piece in ph.plan(some, 1e-6).pieces] == ["exact", "taylor"]
+    spun = ph.solve(some.replace(torques=[spin_up]), 1e-6)
+    assert [piece.model for piece in spun.plan.pieces] == ["euler", "gyrostat"] and spun.success
+    truth = _core.reference(spun.plan.scene, 30, 1e-20, 10**6)
+    assert rates_error(spun.omega, truth[0]) <= spun.error
+    assert attitude_error(spun.attitude, truth[1]) <= spun.error
+
+
+def test_the_forecast_counts_the_closed_forms_that_bound_the_error():
+    """Each rounded component of the rotors' momentum is changed alone, and the inertia of a tilted body twice."""
+    def seconds(axis, inertia=BLOCK):
+        some = scene(inertia=inertia, rotors=[ph.Rotor(axis, momentum=0.5)])
+        return ph.plan(some, 1e-9).predicted_seconds
+
+    plain = seconds((0, 0, 1))
+    one = (seconds((1, 2, 2)) - plain) / 3
+    assert one > 0.2 * plain   # a set-up is most of a plan's time
+    assert seconds((0, 1, 1)) - plain == pytest.approx(2 * one)
+    assert seconds((1, 2, 2), TILTED) - plain == pytest.approx(5 * one)
 
 
 def test_events_and_dense_output():

@@ -12,6 +12,7 @@ import polhode as ph
 from polhode import _files
 
 COMMAND = [sys.executable, "-m", "polhode"]
+BUFFERED = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}   # as users have it
 
 
 def run(*arguments, limit=None, **more):
@@ -48,19 +49,28 @@ def test_a_full_disk_leaves_the_old_picture(tmp_path):
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
+@pytest.mark.parametrize("env", [BUFFERED, BUFFERED | {"PYTHONUNBUFFERED": "1"}], ids=["buffered", "unbuffered"])
 @pytest.mark.parametrize("arguments", ["run S1", "run S1 --json", "plan S1", "methods", "--version"])
-def test_a_full_stdout_is_one_line(arguments):
+def test_a_full_stdout_is_one_line(arguments, env):
     with open("/dev/full", "w") as full:
-        one_line(run(*arguments.split(), stdout=full))
+        one_line(run(*arguments.split(), stdout=full, env=env))
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
-def test_files_are_written_before_a_full_stdout(tmp_path):
+@pytest.mark.parametrize("env", [BUFFERED, BUFFERED | {"PYTHONUNBUFFERED": "1"}], ids=["buffered", "unbuffered"])
+def test_files_are_written_before_a_full_stdout(tmp_path, env):
     with open("/dev/full", "w") as full:
-        one_line(run("run", "S1", "-o", tmp_path / "x.csv", stdout=full))
+        one_line(run("run", "S1", "-o", tmp_path / "x.csv", stdout=full, env=env))
     assert (tmp_path / "x.csv").read_text().startswith("t,omega_x")
     with open("/dev/full", "w") as full:   # stderr is full, too
-        assert run("run", "S1", stdout=full, stderr=full).returncode == 1
+        assert run("run", "S1", stdout=full, stderr=full, env=env).returncode == 1
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
+def test_a_full_stderr_changes_no_status():
+    for arguments, status in ("run nothing.toml", 2), ("run --nothing", 2), ("plan S1", 0):
+        with open("/dev/full", "w") as full:
+            assert run(*arguments.split(), stderr=full, env=BUFFERED).returncode == status
 
 
 def closed(stream, file, folder):

@@ -1,5 +1,6 @@
 """What tests of ensembles share: recipes, stores as bytes, and runs in processes that may be killed."""
 
+import contextlib
 import json
 import os
 import pathlib
@@ -137,6 +138,30 @@ def kill(*pids):
             os.kill(pid, signal.SIGKILL)
         except ProcessLookupError:
             pass
+
+
+SCHEDULER = """
+import time
+from distributed import LocalCluster
+if __name__ == "__main__":
+    cluster = LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0")
+    print(cluster.scheduler_address, flush=True)
+    time.sleep(1000)
+"""
+
+
+@contextlib.contextmanager
+def scheduler(folder):
+    """Start a Dask scheduler and two workers in a group of processes; give its address and the group's number."""
+    script = pathlib.Path(folder) / "scheduler.py"
+    script.write_text(SCHEDULER)
+    process = subprocess.Popen([sys.executable, str(script)], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+                               text=True, start_new_session=True)
+    try:
+        yield process.stdout.readline().strip(), process.pid
+    finally:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
 
 
 def tilt(times, omega, attitude):

@@ -217,11 +217,13 @@ std::string explain_no_closed_form(const Scene& scene, const Facts& facts) {
   return find_only_gravity(scene) == nullptr ? top : top + ". No pendulum: " + refuse_pendulum(scene, facts);
 }
 
+bool is_gyrostat(const Facts& facts) { return facts.torques.rotors && facts.torques.acting == 1; }
+
 std::optional<ClosedForm> find_closed_form(const Scene& scene, const Facts& facts) {
   const InertiaTensor& inertia = scene.inertia_B();
   const Vector3d& h = facts.rotor_momentum;
   if (facts.is_free()) return ClosedForm(FreeMotion(inertia, scene.omega(), scene.attitude()));
-  if (refuse_gyrostat(scene, facts).empty()) return ClosedForm(Gyrostat(inertia, h, scene.omega(), scene.attitude()));
+  if (is_gyrostat(facts)) return ClosedForm(Gyrostat(inertia, h, scene.omega(), scene.attitude()));
   const auto damping = facts.torques.rotors ? std::nullopt : find_proportional_damping(scene);
   if (damping) return ClosedForm(DampedFree(inertia, damping->rate, scene.omega(), scene.attitude()));
   const torques::Gravity* gravity = find_only_gravity(scene);

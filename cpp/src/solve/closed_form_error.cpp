@@ -21,13 +21,13 @@ const Vector3d signs{1, -1, 1};
 /// Measures how far a closed form moves when its inputs do.
 class InputError {
  public:
-  InputError(const Scene& scene, const Facts& facts, const ClosedForm& form)
+  InputError(const Scene& scene, const Facts& facts, std::string_view model)
       : scene_(scene), facts_(facts), h_(facts.rotor_momentum) {
     if (facts.is_free()) return;
     if (!facts.torques.rotors) damping_ = find_proportional_damping(scene);
-    if (damping_ || form.model() == "gyrostat") return;
+    if (damping_ || model == "gyrostat") return;
     gravity_ = find_only_gravity(scene);
-    if (form.model() == "pendulum") return;
+    if (model == "pendulum") return;
     axis_ = *find_top_axis(scene, gravity_->arm());
     weight_arm_ = gravity_->weight() * gravity_->arm()[axis_];
   }
@@ -40,16 +40,25 @@ class InputError {
     return unit_roundoff * (damping_ ? measure_damped_span() : 2 * std::numbers::pi * facts_.turns);
   }
 
+  /// The closed forms that the measures below make. One next to a birth (measure_birth) makes two more.
+  int count_set_ups() const {
+    int count = (weight_is_rounded() ? 1 : 0) + (damping_is_rounded() ? 2 : 0) + (inertia_is_rounded() ? 2 : 0);
+    if (!facts_.torques.rotors) return count;
+    const Vector3d lost = find_lost_momentum();
+    for (int i = 0; i < 3; ++i) count += lost[i] != 0.0;
+    return count;
+  }
+
   /// Of weight times arm.
   double measure_weight(const ClosedForm& form) const {
-    if (axis_ < 0 || std::fma(gravity_->weight(), gravity_->arm()[axis_], -weight_arm_) == 0.0) return 0.0;
+    if (!weight_is_rounded()) return 0.0;
     const HeavyTop other(scene_.inertia_B(), weight_arm_ * (1 + nudge), scene_.omega(), scene_.attitude(), h_[axis_]);
     return 4 * (unit_roundoff / nudge) * compare(form, ClosedForm(other));
   }
 
   /// Of a damping matrix. Together all torques differ from -c I omega by half a unit of the momentum that they take.
   double measure_damping() const {
-    if (!damping_ || !damping_->rounded) return 0.0;
+    if (!damping_is_rounded()) return 0.0;
     const auto kicked = [&](double sign) {
       return make(scene_.inertia_B(), scene_.omega().cwiseProduct(Vector3d::Ones() + sign * nudge * signs), h_);
     };
@@ -59,18 +68,7 @@ class InputError {
   /// Of the sum of the rotors' momenta.
   double measure_rotors(const ClosedForm& form) const {
     if (!facts_.torques.rotors) return 0.0;
-    math::DD sum[3] = {};
-    Vector3d lost = Vector3d::Zero();
-    for (const Rotor& rotor : scene_.rotors()) {
-      const double momentum = rotor.compute_momentum(scene_.omega());
-      const bool skew = rotor.axis().cwiseAbs().maxCoeff() < 1.0;   // its axis was rounded to length 1
-      const double roundings = (rotor.momentum() ? 0.0 : rotor.free() ? 4.0 : 1.0) + (skew ? 2.0 : 0.0);
-      for (int i = 0; i < 3; ++i) {
-        sum[i] = sum[i] + math::DD(math::two_prod(momentum, rotor.axis()[i]));
-        lost[i] += roundings * unit_roundoff * std::abs(momentum * rotor.axis()[i]);
-      }
-    }
-    for (int i = 0; i < 3; ++i) lost[i] += std::abs((sum[i] - math::DD(h_[i])).hi);
+    const Vector3d lost = find_lost_momentum();
     const double part = lost.maxCoeff() / h_.cwiseAbs().maxCoeff();
     if (part == 0.0) return 0.0;
     double error = 0.0;   // one component may undo what another does: each is changed alone
@@ -135,13 +133,12 @@ class InputError {
   /// Of the inertia: the principal moments and axes of a full tensor have errors of a few units of rounding of the
   /// largest moment, and so has the inertia that free rotors leave.
   double measure_inertia() const {
-    const InertiaTensor& J = scene_.inertia_B();
-    if ((J.is_diagonal() && !has_carrier(scene_)) || scene_.omega().isZero(0.0)) return 0.0;
+    if (!inertia_is_rounded()) return 0.0;
     const double largest = scene_.given_inertia_B().moments()[2];
-    const PrincipalAxes& principal = J.principal();
+    const PrincipalAxes& principal = scene_.inertia_B().principal();
     const auto perturbed = [&](double sign) {
       if (axis_ >= 0) {   // two moments stay equal
-        Vector3d I = J.matrix().diagonal() + sign * nudge * largest * Vector3d::Ones();
+        Vector3d I = scene_.inertia_B().matrix().diagonal() + sign * nudge * largest * Vector3d::Ones();
         I[axis_] -= 2 * sign * nudge * largest;
         return make(InertiaTensor::from_moments(I, false), scene_.omega(), h_);
       }
@@ -153,6 +150,31 @@ class InputError {
   }
 
  private:
+  bool weight_is_rounded() const {
+    return axis_ >= 0 && std::fma(gravity_->weight(), gravity_->arm()[axis_], -weight_arm_) != 0.0;
+  }
+  bool damping_is_rounded() const { return damping_ && damping_->rounded; }
+  bool inertia_is_rounded() const {
+    return (!scene_.inertia_B().is_diagonal() || has_carrier(scene_)) && !scene_.omega().isZero(0.0);
+  }
+
+  /// The most that rounding takes from the sum of the rotors' momenta.
+  Vector3d find_lost_momentum() const {
+    math::DD sum[3] = {};
+    Vector3d lost = Vector3d::Zero();
+    for (const Rotor& rotor : scene_.rotors()) {
+      const double momentum = rotor.compute_momentum(scene_.omega());
+      const bool skew = rotor.axis().cwiseAbs().maxCoeff() < 1.0;   // its axis was rounded to length 1
+      const double roundings = (rotor.momentum() ? 0.0 : rotor.free() ? 4.0 : 1.0) + (skew ? 2.0 : 0.0);
+      for (int i = 0; i < 3; ++i) {
+        sum[i] = sum[i] + math::DD(math::two_prod(momentum, rotor.axis()[i]));
+        lost[i] += roundings * unit_roundoff * std::abs(momentum * rotor.axis()[i]);
+      }
+    }
+    for (int i = 0; i < 3; ++i) lost[i] += std::abs((sum[i] - math::DD(h_[i])).hi);
+    return lost;
+  }
+
   /// The closed form of the scene from other inputs.
   ClosedForm make(const InertiaTensor& inertia, const Vector3d& omega, const Vector3d& h) const {
     if (damping_) return ClosedForm(DampedFree(inertia, damping_->rate, omega));
@@ -193,13 +215,17 @@ class InputError {
 }  // namespace
 
 double compute_closed_form_error(const Scene& scene, const Facts& facts, const ClosedForm& form) {
-  const InputError inputs(scene, facts, form);
+  const InputError inputs(scene, facts, form.model());
   double error = 20 * epsilon;
   if (scene.t0() != 0.0) error += inputs.measure_times();
   if (form.model() == "pendulum") return error;   // the product of weight and arm is a double-double there
   return error + inputs.measure_weight(form) + inputs.measure_damping() + inputs.measure_rotors(form) +
          inputs.measure_inertia() + inputs.measure_birth(form) +
          inputs.measure_energy(form) + inputs.measure_turning(form);
+}
+
+int count_error_set_ups(const Scene& scene, const Facts& facts, std::string_view model) {
+  return model == "pendulum" ? 0 : InputError(scene, facts, model).count_set_ups();
 }
 
 }  // namespace polhode

@@ -16,6 +16,7 @@ struct Decision {
   Plan plan = {};
   Pieces pieces = {};                      ///< empty if the span is not cut
   std::optional<ClosedForm> form = {};     ///< of the whole span
+  std::size_t slow_forms = 0;              ///< pieces whose closed form holds, but takes longer than steps
   double turns = 0.0;                      ///< revolutions of all pieces together
   ode::Counts pilot = {};                  ///< what the pilot run of a user's own torque took
 };

@@ -39,11 +39,13 @@ PlanReport explain_pieces(const Decision& decision, const SolveOptions& options)
   for (const ExactModel& model : exact_models()) {
     std::size_t held = 0;
     for (const PiecePlan& piece : parts) held += piece.model == model.name;
-    if (held == 0) continue;
-    report.candidates.push_back(
-        {.name = std::string(model.name),
-         .exact = true,
-         .why_not = "used in " + std::to_string(held) + " of " + count(parts.size(), "piece")});
+    const bool is_slow = model.name == "gyrostat" && decision.slow_forms > 0;
+    if (held == 0 && !is_slow) continue;
+    const std::size_t pieces = is_slow ? decision.slow_forms : held;
+    report.candidates.push_back({.name = std::string(model.name),
+                                 .exact = true,
+                                 .why_not = (is_slow ? "takes longer than steps in " : "used in ") +
+                                            std::to_string(pieces) + " of " + count(parts.size(), "piece")});
   }
   if (formulas < parts.size()) {
     for (const ode::MethodRecord& record : methods()) {
@@ -62,9 +64,16 @@ PlanReport explain_pieces(const Decision& decision, const SolveOptions& options)
                              ", at a cost that does not depend on the span. The others are integrated.");
   } else if (options.method) {
     report.reasons.push_back("Method " + report.plan.method + " was requested and integrates every piece.");
-  } else {
-    report.reasons.push_back(
-        "No piece has a closed form, so each is integrated. No step crosses a jump of the torque.");
+  } else if (decision.slow_forms < parts.size()) {
+    report.reasons.push_back(decision.slow_forms > 0
+                                 ? "Each piece is integrated. No step crosses a jump of the torque."
+                                 : "No piece has a closed form, so each is integrated. No step crosses a jump of the "
+                                   "torque.");
+  }
+  if (decision.slow_forms > 0) {
+    report.reasons.push_back(count(decision.slow_forms, "piece") +
+                             (decision.slow_forms == 1 ? " is a free gyrostat" : " are free gyrostats") +
+                             ". Steps take less time there than the set-up of closed forms.");
   }
   if (has_rotor_windows(scene)) {
     report.reasons.push_back("The rates jump where a rotor starts or stops: J omega + h is continuous.");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "method/method.hpp"
 #include "polhode/core/error.hpp"
@@ -20,6 +21,16 @@ constexpr int rate_samples = 16;        // samples of |omega| in a piece, to est
 // Steps of the pilot run in one piece, and in all. Pieces that it does not reach are planned from the scene's start.
 constexpr long piece_pilot_steps = 20'000, all_pilot_steps = 100'000, custom_pilot_steps = 1000;
 
+// The error that the finest run of taylor states is below this, times one more than the revolutions.
+constexpr double carried_rounding = 4e-13;
+
+/// What decides between the closed form of a gyrostat and steps.
+struct PieceWork {
+  double turns = 0.0;
+  bool is_gyrostat = false, has_form = false;   ///< a closed form of any model
+  int error_set_ups = 0;   ///< that a bound of the closed form's error takes
+};
+
 /// Plans each piece when a pilot run reaches it.
 class PiecePlanner {
  public:
@@ -36,8 +47,11 @@ class PiecePlanner {
     if (options_.method == "exact") require_closed_forms();
     if (calls_custom(scene_)) call_seconds_ = measure_call_seconds(scene_);
     left_ = calls_custom(scene_) ? custom_pilot_steps : all_pilot_steps;
+    if (may_step_gyrostats()) step_gyrostats_ = expect_cheaper_steps();
     run_pilot();
+    if (may_step_gyrostats()) reconsider_gyrostats();
     choose_tolerances();
+    predict_closed_forms();
     Plan& plan = decision_.plan;
     plan = {.model = options_.formulation == Formulation::euler ? "pieces" : "lagrangian",
             .method = main_ == nullptr ? "exact" : std::string(main_->name),
@@ -47,7 +61,6 @@ class PiecePlanner {
             .predicted_seconds = solve_seconds + piece_seconds * static_cast<double>(pieces_.size())};
     decision_.facts = sum_facts();
     for (Piece* piece : pieces_) {
-      piece->plan.predicted_seconds = (piece->plan.predicted_seconds + piece_seconds) * (options_.certify ? 2 : 1);
       plan.predicted_seconds += piece->plan.predicted_seconds;
       decision_.turns += piece->plan.turns;
       plan.pieces.push_back(piece->plan);
@@ -70,11 +83,85 @@ class PiecePlanner {
     for (const Piece* piece : pieces_) {
       const Scene part = make_piece_scene(scene_, *piece, scene_.start(), {piece->end}, scene_.want());
       const Facts facts = compute_facts(part);
-      if (find_closed_form(part, facts)) continue;
+      if (is_gyrostat(facts) || find_closed_form(part, facts)) continue;
       throw InvalidInput("method 'exact'", "used with pieces that all have a closed form",
                          "one without, " + describe_span(*piece),
                          explain_no_closed_form(part, facts) + "; leave method out");
     }
+  }
+
+  /// The scene of a piece, if it began with the scene's rates and attitude.
+  Scene make_part(const Piece& piece) const {
+    State start = scene_.start();
+    start.t = piece.begin;
+    return make_piece_scene(scene_, piece, start, {piece.end}, scene_.want());
+  }
+
+  bool may_step_gyrostats() const {
+    return method_is_free(options_) && options_.formulation == Formulation::euler &&
+           std::any_of(pieces_.begin(), pieces_.end(), [](const Piece* piece) {
+             return !piece->rotors.empty() && summarize(piece->torques).acting == 0;
+           });
+  }
+
+  /// Before the pilot run: from the rates of the scene's start.
+  bool expect_cheaper_steps() const {
+    std::vector<PieceWork> work;
+    for (const Piece* piece : pieces_) {
+      const double span = std::abs(piece->end - piece->begin);
+      PieceWork one{.turns = scene_.omega().norm() * span / (2 * std::numbers::pi)};
+      one.has_form = summarize(piece->torques).acting == 0;
+      if (one.has_form && !piece->rotors.empty()) {
+        const Scene part = make_part(*piece);
+        const Facts facts = compute_facts(part);
+        one = {facts.turns, is_gyrostat(facts), true, count_error_set_ups(part, facts, "gyrostat")};
+      }
+      work.push_back(one);
+    }
+    return are_steps_cheaper(work);
+  }
+
+  /// After the pilot run, with the revolutions that it found.
+  void reconsider_gyrostats() {
+    const bool before = step_gyrostats_;
+    step_gyrostats_ = are_steps_cheaper(work_);
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      if (!work_[i].is_gyrostat) continue;
+      decision_.slow_forms += step_gyrostats_;
+      PiecePlan& plan = pieces_[i]->plan;
+      if (step_gyrostats_ == before) continue;
+      plan.model = step_gyrostats_ ? "euler" : "gyrostat";
+      plan.method = step_gyrostats_ ? choose_piece_method(make_part(*pieces_[i]), facts_[i]) : "exact";
+    }
+  }
+
+  /// A gyrostat's closed form takes long to set up, and several set-ups bound its error. Where the pieces are short,
+  /// steps take less. All gyrostats among the pieces go the same way: a chain without steps loses fewer digits.
+  bool are_steps_cheaper(const std::vector<PieceWork>& work) const {
+    const ode::MethodRecord& record = find_method("taylor");
+    double turns = 0.0, forms = 0.0, steps = 0.0;
+    for (const PieceWork& one : work) turns += one.turns;
+    const double accuracy = get_accuracy(options_);
+    if (carried_rounding * (1 + turns) * (1 + turns / record.forecast.secular) > accuracy) return false;
+    const double rtol = record.forecast.find_rtol(accuracy, turns) / pair_ratio;
+    const bool all_forms = std::all_of(work.begin(), work.end(), [](const PieceWork& one) { return one.has_form; });
+    for (const PieceWork& one : work) {
+      if (!one.is_gyrostat) continue;
+      forms += predict_closed_form("gyrostat", count_set_ups(one, all_forms), 0.0, options_.cost_factors);
+      const auto step = [&](double tolerance) {
+        return record.forecast.compute_seconds(std::max(tolerance, record.least_rtol), one.turns, 0.0, 0.0);
+      };
+      steps += step(rtol) * (options_.certify ? carried_cost : 1.0) + step(pilot_rtol);
+    }
+    return steps * find_factor(options_.cost_factors, "taylor") < forms;
+  }
+
+  /// The closed forms that are made for a piece by the pilot run, by the run, and by the second run that bounds the
+  /// error. A carried error takes two changed starts. Where all pieces have closed forms, both runs state a bound.
+  int count_set_ups(const PieceWork& work, bool all_forms) const {
+    const int bounded = 1 + work.error_set_ups;
+    if (all_forms) return 1 + 2 * bounded + 2;
+    return 1 + bounded + (options_.certify ? 2 : 0);
   }
 
   /// Pieces that the pilot run did not reach are planned from the scene's start.
@@ -95,10 +182,7 @@ class PiecePlanner {
                  return run_pilot_piece(part, piece_options);
                });
     while (facts_.size() < pieces_.size()) {
-      const Piece& piece = *pieces_[facts_.size()];
-      State start = scene_.start();
-      start.t = piece.begin;
-      plan_piece(make_piece_scene(scene_, piece, start, {piece.end}, scene_.want()));
+      plan_piece(make_part(*pieces_[facts_.size()]));
     }
   }
 
@@ -107,15 +191,17 @@ class PiecePlanner {
     PiecePlan& plan = plan_piece(part);
     Facts& facts = facts_.back();
     if (plan.method == "exact") {
-      const std::optional<ClosedForm> form = find_closed_form(part, facts);
-      return run_closed_form(part, facts, options, *form, make_exact_plan(part, *form, facts, options_));
+      Plan unbounded;   // nobody asks for the error of a pilot run
+      unbounded.model = plan.model, unbounded.method = plan.method;
+      return run_closed_form(part, facts, options, std::move(*form_), unbounded);
     }
     SolveOptions limited = options;
     limited.max_steps = std::max(1L, std::min({piece_pilot_steps, left_, options_.max_steps}));
     Motion motion(find_body_method(plan.method).integrate(part, to_run_options(limited, {pilot_rtol})));
     left_ -= motion.stats.steps + motion.stats.rejected;
     if (motion.status == Status::finished)
-      plan.turns = facts.turns = measure_rotation(motion, part.t0(), part.omega().norm()).revolutions();
+      plan.turns = facts.turns = work_.back().turns =
+          measure_rotation(motion, part.t0(), part.omega().norm()).revolutions();
     return motion;
   }
 
@@ -128,18 +214,20 @@ class PiecePlanner {
       if (!traits(torque).vanishes) plan.torques.emplace_back(torque_name(torque));
     }
     if (!part.rotor_momentum().isZero(0.0)) plan.torques.emplace_back("rotors");
-    std::optional<ClosedForm> form;
-    if (method_is_free(options_) || options_.method == "exact") form = find_closed_form(part, facts);
-    if (form) {
-      plan.model = form->model(), plan.method = "exact";
-      const auto samples = std::upper_bound(sorted_.begin(), sorted_.end(), plan.end) -
-                           std::lower_bound(sorted_.begin(), sorted_.end(), plan.begin);
-      plan.predicted_seconds = predict_closed_form(plan.model, static_cast<double>(samples), options_.cost_factors);
+    form_.reset();
+    const bool is_stepped = step_gyrostats_ && is_gyrostat(facts);
+    if (!is_stepped && (method_is_free(options_) || options_.method == "exact")) form_ = find_closed_form(part, facts);
+    PieceWork work{facts.turns, is_gyrostat(facts), is_stepped || form_};
+    if (form_) {
+      plan.model = form_->model(), plan.method = "exact";
     } else {
       plan.method = choose_piece_method(part, facts);
       if (options_.formulation == Formulation::lagrangian) plan.model = "lagrangian";
     }
+    if (form_ || is_stepped)
+      work.error_set_ups = count_error_set_ups(part, facts, is_stepped ? "gyrostat" : form_->model());
     facts_.push_back(facts);
+    work_.push_back(work);
     return plan;
   }
 
@@ -183,8 +271,23 @@ class PiecePlanner {
       const ode::MethodRecord& record = find_method(plan.method);
       if (record.forecast.known() && main_->forecast.known())
         plan.rtol_scale = record.forecast.find_rtol(accuracy, turns_) / coarse_;
-      plan.predicted_seconds =
+      const double seconds =
           predict(record, plan.rtol_scale * coarse_, facts_[i]) * find_factor(options_.cost_factors, record.name);
+      plan.predicted_seconds = (seconds + piece_seconds) * (options_.certify ? 2 : 1);
+    }
+  }
+
+  /// The runs of the pieces that have closed forms, with those that bound the error.
+  void predict_closed_forms() {
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      PiecePlan& plan = pieces_[i]->plan;
+      if (plan.method != "exact") continue;
+      const auto samples = std::upper_bound(sorted_.begin(), sorted_.end(), std::max(plan.begin, plan.end)) -
+                           std::lower_bound(sorted_.begin(), sorted_.end(), std::min(plan.begin, plan.end));
+      plan.predicted_seconds =
+          predict_closed_form(plan.model, count_set_ups(work_[i], main_ == nullptr), static_cast<double>(samples),
+                              options_.cost_factors) +
+          piece_seconds * (main_ == nullptr || options_.certify ? 2 : 1);
     }
   }
 
@@ -220,6 +323,9 @@ class PiecePlanner {
   const std::vector<Piece*> pieces_;   // in the order of the run, backward pieces first
   std::vector<double> sorted_;
   std::vector<Facts> facts_;           // of the pieces that have been planned
+  std::vector<PieceWork> work_;        // of the same pieces
+  std::optional<ClosedForm> form_;     // of the piece that was planned last
+  bool step_gyrostats_ = false;
   const ode::MethodRecord* main_ = nullptr;
   double turns_ = 0.0, coarse_ = 0.0, call_seconds_ = 0.0;
   long left_ = 0;                      // steps of the pilot run

@@ -6,7 +6,6 @@ a file or stdout that cannot be written, 2 for bad input; one line says why.
 
 from __future__ import annotations
 
-import contextlib
 import sys
 from collections.abc import Sequence
 
@@ -18,14 +17,23 @@ EXTRA = ("typer", "rich")
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command and exit with its status."""
     streams.open_missing()
-    status = _run(arguments)
+    status = 0
+    refused: OSError | ValueError | None = None   # the first writing that failed: all that is read has its own messages
     try:
-        sys.stdout.flush()
+        status = _run(arguments)
+    except OSError as error:
+        refused = error
+    try:
+        sys.stdout.flush()   # fails once more with what a full disk left in the buffer
     except BrokenPipeError:
         streams.drop_stdout()
     except (OSError, ValueError) as error:   # a full disk; ValueError: already closed
         streams.drop_stdout()
-        status = _say(f"stdout: {getattr(error, 'strerror', None) or error}", 1)
+        refused = refused or error
+    if refused:
+        file, reason = getattr(refused, "filename", None), getattr(refused, "strerror", None)
+        status = _say(f"{file or 'stdout'}: {reason or refused}", 1)
+    streams.drop_full_stderr()
     sys.exit(status)
 
 
@@ -48,19 +56,16 @@ def _run(arguments: Sequence[str] | None) -> int:
             raise
         streams.drop_stdout()
         return 0
-    except OSError as error:   # the system refused to write, since all that is read has its own messages
-        return _say(f"{error.filename or 'stdout'}: {error.strerror or error}", 1)
     except KeyboardInterrupt:
         return _say("interrupted", 130)
     except Exception as error:
         if type(error).__name__ == "Abort":   # typer's exception for Ctrl-C
             return _say("interrupted", 130)
-        if not hasattr(error, "format_message"):   # not about the arguments: a bug, shown with its traceback
+        if not hasattr(error, "format_message"):   # of the system, or a bug: shown with its traceback
             raise
         return _say(error.format_message(), 2)
 
 
 def _say(text: str, status: int) -> int:
-    with contextlib.suppress(OSError):
-        print(f"polhode: {text}", file=sys.stderr)
+    streams.say(text)
     return status

@@ -22,7 +22,7 @@ from .._solve.solve import methods as method_records
 from .._solve.solve import solve
 from . import files, show
 from . import ensemble as ensembles   # after `show`, which imports rich itself
-from .streams import PipeClosed
+from .streams import PipeClosed, say
 
 app = typer.Typer(name="polhode", add_completion=False, no_args_is_help=True, rich_markup_mode=None,
                   pretty_exceptions_enable=False, context_settings={"help_option_names": ["-h", "--help"]},
@@ -40,15 +40,15 @@ def _command(function: Callable[..., int | None]) -> Callable[..., None]:
         try:
             status = function(*args, **kwargs) or 0
         except InvalidInput as error:
-            print(f"polhode: {error}", file=sys.stderr)
+            say(str(error))
             status = 2
         except IntegrationFailure as error:
-            print(f"polhode: {error}", file=sys.stderr)
+            say(str(error))
             status = 1
         except BrokenPipeError:   # typer would end with status 1
             raise PipeClosed from None
         except MemoryError as error:
-            print(f"polhode: {str(error) or 'out of memory'}", file=sys.stderr)
+            say(str(error) or "out of memory")
             status = 1
         raise typer.Exit(status)
 

@@ -14,6 +14,7 @@ from rich.text import Text
 from .. import _files
 from .._core import InvalidInput
 from . import show
+from .streams import say
 
 WORDS = ("status", "report")   # they win over files of these names
 
@@ -70,13 +71,13 @@ def _run(recipe: str, output: Any, resume: bool, executor: Any, count: int | Non
         except OSError as error:
             if error.errno not in (errno.ENOSPC, errno.EDQUOT):
                 raise
-            print(f"polhode: {output}: {error.strerror}; --resume goes on", file=sys.stderr)
+            say(f"{output}: {error.strerror}; --resume goes on")
             return 1
     from .._ensemble.status import status
 
     _print(status(run), as_json)
     for chunk, why in run.failed.items():
-        print(f"polhode: chunk {chunk} was given up: {why}", file=sys.stderr)
+        say(f"chunk {chunk} was given up: {why}")
     return 1 if run.failed else 0
 
 

@@ -15,6 +15,7 @@ from ..inertia.robots.ignore import rules
 from ..inertia.robots.paths import Search
 from ..inertia.robots.report import Report, check, check_file, to_dict
 from . import formats, show_robots
+from .streams import say
 
 FORMATS = ("text", "json", "sarif", "junit", "github")
 
@@ -64,7 +65,7 @@ def run(files: list[str], options: Options) -> int:
         if alone:
             raise InvalidInput(reports[0].error)
         for report in reports[:10]:
-            print(f"polhode: {report.error}", file=sys.stderr)
+            say(str(report.error))
         return 2
     stale = [f"ignore {rule}: no longer applies ({rule.reason})" for rule in excuses if not rule.used]
     if options.fix:

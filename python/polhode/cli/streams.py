@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import io
 import os
@@ -36,3 +37,17 @@ def open_missing() -> None:
 def drop_stdout() -> None:
     """Let Python's own flush at exit succeed."""
     sys.stdout = open(os.devnull, "w", encoding="utf-8")   # noqa: SIM115  it stays open
+
+
+def say(text: str) -> None:
+    """Print a line on stderr; nobody hears it where that is full."""
+    with contextlib.suppress(OSError):
+        print(f"polhode: {text}", file=sys.stderr)
+
+
+def drop_full_stderr() -> None:
+    """Let Python's own flush at exit succeed, which would change the status."""
+    try:
+        sys.stderr.flush()
+    except OSError:
+        sys.stderr = open(os.devnull, "w", encoding="utf-8")   # noqa: SIM115  it stays open

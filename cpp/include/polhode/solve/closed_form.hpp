@@ -53,6 +53,9 @@ std::span<const ExactModel> exact_models();
 /// Why a scene without closed form has none.
 std::string explain_no_closed_form(const Scene& scene, const Facts& facts);
 
+/// True if a scene has the closed form of a gyrostat: a free body with rotors that turn.
+bool is_gyrostat(const Facts& facts);
+
 /// The closed form of a scene, if one holds.
 std::optional<ClosedForm> find_closed_form(const Scene& scene, const Facts& facts);
 
@@ -61,5 +64,8 @@ std::optional<ClosedForm> find_closed_form(const Scene& scene, const Facts& fact
 /// times from the start, in weight times arm, in a damping matrix, in the rotors' momentum, in the inertia that free
 /// rotors leave, and in the principal axes of a full tensor.
 double compute_closed_form_error(const Scene& scene, const Facts& facts, const ClosedForm& form);
+
+/// The closed forms that this bound makes from changed inputs, each as dear as the form itself.
+int count_error_set_ups(const Scene& scene, const Facts& facts, std::string_view model);
 
 }  // namespace polhode
