@@ -174,19 +174,20 @@ inline void once_hyper(FreeStarts starts, const double* t, const std::size_t* wh
   }
 }
 
-inline std::size_t once(FreeStarts starts, const double* t, std::size_t n, double* omega, double* attitude,
-                        std::size_t* left) {
+template <class T>
+inline std::size_t once_in(FreeStarts starts, const double* t, std::size_t n, double* omega, double* attitude,
+                           std::size_t* left) {
   constexpr std::size_t queue_size = 64;
   std::size_t count = 0, hyper[queue_size], waiting = 0;
-  for (std::size_t first = 0; first < n; first += Two::width) {
+  for (std::size_t first = 0; first < n; first += T::width) {
     const Pick pick{nullptr, first, n};
-    const Block<Two> block = read_block<Two>(starts, pick);
+    const Block<T> block = read_block<T>(starts, pick);
     write_block(exact::set_up_trig(block.constants), block, t, pick, ~(block.neither | block.hyper), omega, attitude);
-    for (std::size_t i = 0; i < Two::width && first + i < n; ++i) {
+    for (std::size_t i = 0; i < T::width && first + i < n; ++i) {
       if (block.neither >> i & 1u) left[count++] = first + i;
       if (block.hyper >> i & 1u) hyper[waiting++] = first + i;
     }
-    if (waiting + Two::width > queue_size || first + Two::width >= n) {
+    if (waiting + T::width > queue_size || first + T::width >= n) {
       once_hyper(starts, t, hyper, waiting, omega, attitude);
       waiting = 0;
     }
@@ -194,15 +195,16 @@ inline std::size_t once(FreeStarts starts, const double* t, std::size_t n, doubl
   return count;
 }
 
-inline std::size_t set_up(FreeStarts starts, std::size_t n, FreeTrig<double>* trig, FreeFrame* frames,
-                          std::size_t* left) {
-  constexpr std::size_t width = Two::width;
+template <class T>
+inline std::size_t set_up_in(FreeStarts starts, std::size_t n, FreeTrig<double>* trig, FreeFrame* frames,
+                             std::size_t* left) {
+  constexpr std::size_t width = T::width;
   std::size_t count = 0;
   for (std::size_t first = 0; first < n; first += width) {
     const Pick pick{nullptr, first, n};
-    const Block<Two> block = read_block<Two>(starts, pick);
-    const FreeTrig<Two> body = exact::set_up_trig(block.constants);
-    const FreeFrameOf<Two> frame = make_frame(block, exact::evaluate(body, Two(0.0)));
+    const Block<T> block = read_block<T>(starts, pick);
+    const FreeTrig<T> body = exact::set_up_trig(block.constants);
+    const FreeFrameOf<T> frame = make_frame(block, exact::evaluate(body, T(0.0)));
     // Both structs consist of numbers of one type, which are copied lane by lane.
     const auto* from_trig = reinterpret_cast<const double*>(&body);
     const auto* from_frame = reinterpret_cast<const double*>(&frame);
@@ -215,6 +217,16 @@ inline std::size_t set_up(FreeStarts starts, std::size_t n, FreeTrig<double>* tr
     }
   }
   return count;
+}
+
+// A few bodies take one register: two would compute what nobody asks for.
+inline std::size_t once(FreeStarts starts, const double* t, std::size_t n, double* omega, double* attitude,
+                        std::size_t* left) {
+  return (n > Wide::width ? once_in<Two> : once_in<Wide>)(starts, t, n, omega, attitude, left);
+}
+inline std::size_t set_up(FreeStarts starts, std::size_t n, FreeTrig<double>* trig, FreeFrame* frames,
+                          std::size_t* left) {
+  return (n > Wide::width ? set_up_in<Two> : set_up_in<Wide>)(starts, n, trig, frames, left);
 }
 
 /// One body, for FreeMotion: the constants and the form of the series that it needs.
