@@ -225,3 +225,28 @@ def test_nothing_depends_on_units(power):
     scaled = ph.Pendulum(np.array(BODY) / s, 2.0 * s, (0, 0, -0.7), (1.5 * s, 0, 0)).at(TIMES / s)
     np.testing.assert_array_equal(scaled[0], omega * s)
     np.testing.assert_array_equal(scaled[1], attitude)
+
+
+@pytest.mark.parametrize("arm, spin", [((0, 0, 0.7), 0.0), ((0, 0.4, 0.7), 0.0), ((0, 0, 0.7), 1e-7)])
+@pytest.mark.parametrize("span", [1e-7, 1e-6, 1e-5, 1e-4])
+def test_next_to_rest_the_bound_has_the_rounding_of_faster_rates(arm, spin, span):
+    """From rest omega = I^-1 tau t, up to t^3: from Euler's equation by hand. `spin` makes it Lagrange's top."""
+    moments, weight, tilt = np.array((1.3, 1.3, 0.5)), 2.0, 1.0
+    times = span * np.linspace(0, 1, 9)
+    scene = ph.Scene(inertia=moments, omega=(0, 0, spin), attitude=ph.Rotation.from_rotvec((tilt, 0, 0)), times=times,
+                     torques=[ph.torques.Gravity(weight, arm)])
+    down = np.array((0, -math.sin(tilt), -math.cos(tilt)))
+    rate = np.cross(arm, weight * down) / moments
+    omega = np.outer(times, rate) + (0, 0, spin)
+    cubic = weight * 0.9 / 0.5 * span**2   # of omega, above what t^3 and the turning of the torque by the spin leave
+    largest = np.linalg.norm(omega, axis=1).max()
+
+    exact = ph.solve(scene, 1e-4, method="exact")
+    assert exact.plan.model == ("heavy_top" if spin else "pendulum")
+    error = np.linalg.norm(exact.omega - omega, axis=1).max() / largest
+    assert error <= exact.error + cubic and exact.error < 1e3 * E / span
+
+    tight = ph.solve(scene, 1e-12)
+    assert tight.success and tight.plan.method != "exact"
+    assert np.linalg.norm(tight.omega - omega, axis=1).max() / largest <= tight.error + cubic + 2 * E
+    assert "rounding of faster ones" in str(ph.plan(scene, 1e-12))

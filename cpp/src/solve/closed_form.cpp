@@ -204,6 +204,13 @@ double ClosedForm::rate(const double* omega) const {
   return w;
 }
 
+double ClosedForm::swing_frequency() const {
+  if (const auto* pendulum = std::get_if<Pendulum>(&motion_)) return pendulum->frequency();
+  const auto* top = std::get_if<HeavyTop>(&motion_);
+  if (top == nullptr) return 0.0;
+  return std::sqrt(std::abs(top->weight_arm()) / top->inertia().moments()[1]);   // the middle one is of the equal pair
+}
+
 std::optional<Vector3d> ClosedForm::swing_axis() const {
   const auto* pendulum = std::get_if<Pendulum>(&motion_);
   return pendulum != nullptr ? std::optional(pendulum->axis()) : std::nullopt;

@@ -129,6 +129,8 @@ void explain_steps(const Scene& scene, const Facts& facts, const SolveOptions& o
   if (has_form || options.formulation == Formulation::lagrangian) {
     if (options.formulation == Formulation::lagrangian)
       reasons.push_back("Lagrange's equations were requested, so they are integrated.");
+    else if (method_is_free(options))
+      reasons.push_back("The closed form states a larger error: next to rest its rates have the rounding of faster ones.");
   } else if (has(scene, "Gravity") && facts.torques.acting == 1 + facts.torques.rotors) {
     reasons.push_back("Gravity acts, but no closed form is known: " + explain_no_closed_form(scene, facts) + ".");
   } else if ((has(scene, "Damping") || has(scene, "AngularDamping")) &&

@@ -29,6 +29,7 @@ class ClosedForm {
     std::visit([&](const auto& motion) { motion.at(t, n, omega, attitude); }, motion_);
   }
   std::string_view model() const;   ///< the name of its record
+  double swing_frequency() const;           ///< of small swings of a heavy body [rad/s]; 0 for others
   double rate(const double* omega) const;   ///< a rate of change [rad/s], for the steps of an event search
   const Gyrostat* gyrostat() const { return std::get_if<Gyrostat>(&motion_); }   ///< null for other models
   /// Of a pendulum, whose motion stays in the plane across this body axis.
