@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from measures import attitude_error
 
 import polhode as ph
 
@@ -239,3 +240,14 @@ def test_weight_over_moment_may_be_beyond_float64():
     fast, same = ph.HeavyTop((2.0**-520, 2.0**-520, 2.0**-521), 2.0**520, (0, 0, 0), tilted).at([0.0, 1.5 * 2.0**-520])
     np.testing.assert_array_equal(same, q)
     np.testing.assert_array_equal(fast, w * 2.0**520)
+
+
+@pytest.mark.parametrize("attitude", [(0.5, 0.5, 0.5, 0.5), (0.1, 0.2, 0.3, math.sqrt(0.86))])
+@pytest.mark.parametrize("power", [-950, -965, -1013, -1017, -1022])
+def test_a_weight_next_to_the_smallest_numbers_does_not_act(attitude, power):
+    """A sphere with such a weight spins on about its axis; the fuzzer found NaN."""
+    t = np.array([0.5, 3.0, -1e6])
+    omega, q = ph.HeavyTop((1.0, 1.0, 1.0), 2.0**power, (0, 0, -21.8), attitude).at(t)
+    free = ph.FreeMotion((1.0, 1.0, 1.0), (0, 0, -21.8), attitude).at(t)
+    np.testing.assert_allclose(omega, free[0], rtol=0, atol=1e-14)
+    assert attitude_error(q, free[1]) < 1e-14

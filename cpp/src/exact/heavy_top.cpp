@@ -166,8 +166,10 @@ void HeavyTop::set_up() {
   // Centre of mass below: rotate the body axes by pi about x.
   const Vector3d w = omega_.unaryExpr([&](double c) { return std::ldexp(c, -e); });
   const bool below = weight_arm_ < 0.0;
+  // A weight next to the smallest numbers would lose its digits, and no time lets it act: it is taken as none.
+  const double weight = std::ldexp(std::abs(weight_arm_), -e_A - 2 * e);
   exact::HeavyTopStart s{.A = std::ldexp(body.A, -e_A), .C = std::ldexp(body.C, -e_A),
-                         .M = std::ldexp(std::abs(weight_arm_), -e_A - 2 * e),
+                         .M = weight < 0x1p-960 ? 0.0 : weight,
                          .w1 = w[0], .w2 = w[1], .w3 = w[2],
                          .x = attitude_.x, .y = attitude_.y, .z = attitude_.z, .w = attitude_.w};
   constants_.framed = below || axis_ != Vector3d::UnitZ();
