@@ -150,7 +150,7 @@ PendulumStart analyse_pendulum(double moment, double weight, const Vector3d& arm
   const DD p = DD(w) / math::twice(out.frequency);
   const DD weightless = four * pull * size2;
   const DD excess = four * pull * c2 - DD(I) * math::two_prod(w, w) * size2;
-  const DD kc = sqrt(abs(excess) / weightless), k = hypot(abs(out.half_sine), p);
+  const DD kc = sqrt(abs(excess) / weightless), k = hypotenuse(abs(out.half_sine), p);
   if (excess.hi == 0.0) {
     out.kind = PendulumKind::separatrix;
     out.rate = out.frequency, out.k = one, out.kc = DD(0.0);

@@ -4,16 +4,9 @@
 
 #include "exact/lanes/heavy_top_cubic.hpp"
 #include "polhode/math/detail/functions.hpp"
+#include "polhode/math/detail/landen.hpp"
 
 namespace polhode::POLHODE_ISA {
-
-/// sqrt(a^2 + b^2) from the larger of the two, so that no square underflows.
-inline DD hypot(DD a, DD b) {
-  a = abs(a), b = abs(b);
-  const DD large = a < b ? b : a, small = a < b ? a : b;
-  if (large.hi == 0.0) return DD(0.0);
-  return large * sqrt(DD(1.0) + squared(small / large));
-}
 
 /// The root of c3 x^3 + c2 x^2 + c1 x + c0 next to `start`, which lies outside all roots, so that Newton's steps are
 /// monotone. In double until they reverse, then three steps in double-double.
@@ -64,7 +57,7 @@ inline TiltCubic::TiltCubic(const TiltStart& t) : ab(t.ab), ba(t.ba) {
     const double start = 2.0 * math::max(abs(c2.hi), math::max(sqrt(abs(b1.hi)), math::cbrt(b0.hi / 2.0)));
     e3 = far_root(DD(1.0), c2, b1, b0, start);
     const DD G = t.du0 / sqrt(e3), F = -(bt * squared(G) + c1) / e3;  // d1 d2 = -G^2, d1 + d2 = -F
-    D = hypot(F, G + G);
+    D = math::hypotenuse(abs(F), abs(G + G));
     if (F.hi <= 0.0) {
       d2 = math::scaled(D - F, 0.5);
       d1 = -G * (G / d2);
@@ -96,7 +89,7 @@ inline TiltCubic::TiltCubic(const TiltStart& t) : ab(t.ab), ba(t.ba) {
     d2 = g;  // divided below
   }
   e1 = t.om - d1;
-  const DD P = ba * sqrt(bt / e1), Pi = squared(P), R = hypot(Sg, P + P);
+  const DD P = ba * sqrt(bt / e1), Pi = squared(P), R = math::hypotenuse(abs(Sg), abs(P + P));
   if (!upper) {
     e3 = math::scaled(R - f, 0.5);
     d2 = (d2 + d2) / (R - f);

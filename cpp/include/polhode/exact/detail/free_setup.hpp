@@ -54,15 +54,6 @@ POLHODE_INLINE void quarter_turn(M mask, FreeStart<T>& s, int a, int b) {
   }
 }
 
-/// sqrt(a^2 + b^2) for a, b >= 0 of any size; 0 for 0, 0.
-template <class N>
-POLHODE_INLINE N hypot(N a, N b) {
-  const auto first = a > b;
-  const N large = select(first, a, b), small = select(first, b, a);
-  const N ratio = small / select(large == N(0.0), N(1.0), large);
-  return large * sqrt(one_plus(ratio * ratio));
-}
-
 template <class T>
 POLHODE_INLINE FreeConstants<T> analyse(FreeStart<T> s) {
   using namespace math;
@@ -107,8 +98,8 @@ POLHODE_INLINE FreeConstants<T> analyse(FreeStart<T> s) {
   const N d1s = select(sphere, N(1.0), d1);
   f.r = select(sphere, N(1.0), d2 / d1s);
   f.r12 = d12 / d1s;
-  f.La1 = hypot(abs(f.m[0]), abs(f.m[1]) * sqrt(f.r));
-  f.La3 = hypot(abs(f.m[2]), abs(f.m[1]) * sqrt(f.r12));
+  f.La1 = hypotenuse(abs(f.m[0]), abs(f.m[1]) * sqrt(f.r));
+  f.La3 = hypotenuse(abs(f.m[2]), abs(f.m[1]) * sqrt(f.r12));
   f.a1 = f.La1 / f.L;
   f.a3 = f.La3 / f.L;
 

@@ -60,12 +60,13 @@ struct ImaginaryDescent {
   POLHODE_INLINE N exp_minus() const { return Q / plus(P, H); }
 };
 
-/// sqrt(P^2 + Q^2) from the larger: either may be 1e-200 of the other.
+/// sqrt(a^2 + b^2) for a, b >= 0 of any size, from the larger: either may be 1e-200 of the other. 0 for 0, 0.
 template <class N>
-POLHODE_INLINE N hypotenuse(N P, N Q) {
-  const auto P_larger = P > Q;
-  const N ratio = select(P_larger, Q / P, P / Q);
-  return select(P_larger, P, Q) * sqrt(one_plus(ratio * ratio));
+POLHODE_INLINE N hypotenuse(N a, N b) {
+  const auto first = a > b;
+  const N large = select(first, a, b), small = select(first, b, a);
+  const N ratio = small / select(large == N(0.0), N(1.0), large);
+  return large * sqrt(one_plus(ratio * ratio));
 }
 
 /// Jacobi's imaginary argument down the chain of k: only positive terms. Needs P >= 0, Q + R > 0.
