@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from . import _files
+from . import _files, _folders, _saved_files
 from ._core import InvalidInput, __version__
 
 COMPONENTS = {"omega": ("x", "y", "z"), "attitude": ("x", "y", "z", "w")}
@@ -82,53 +82,25 @@ def check_path(path: str | os.PathLike[str]) -> pathlib.Path:
 
 def save(path: pathlib.Path, about: dict[str, Any], arrays: dict[str, Any]) -> None:
     """Write arrays and what they are to a .npz file, or to a folder of Zarr."""
-    about = {**about, "polhode": __version__}
+    text = _saved_files.require_about(json.dumps({**about, "polhode": __version__}))
     if path.suffix == ".npz":
+        if path.is_dir():
+            raise InvalidInput(f"path: {path} is a folder")
         with _files.whole(path) as draft:
-            np.savez_compressed(draft, about=np.array(json.dumps(about)), **arrays)
+            np.savez_compressed(draft, about=np.array(text), **arrays)
         return
     zarr = need("zarr")
-    draft = path.with_name(f".{path.name}.{os.getpid()}.draft")
+    target = pathlib.Path(os.path.realpath(path))   # links are followed, as for files
+    if os.path.lexists(target):
+        _folders.require_saved(target)   # before the work
+    draft = target.with_name(_files.draft_of(target.name))
     try:
         group = zarr.open_group(str(draft), mode="w")
         for name, array in arrays.items():
             dims = [f"{name}_{axis}" for axis in range(array.ndim)]
             dims[-1:] = [DIMENSIONS[base] for base in COMPONENTS if name.startswith(base)] or dims[-1:]
             group.create_array(name, data=array, dimension_names=dims, attributes=describe(name))
-        group.attrs.update({"Conventions": "CF-1.11", "polhode": json.dumps(about)})
-        if path.exists():
-            _remove(path)
-        os.replace(draft, path)
+        group.attrs.update({"Conventions": "CF-1.11", "polhode": text})
+        _folders.put(draft, target)
     finally:
         shutil.rmtree(draft, ignore_errors=True)
-
-
-def _remove(path: pathlib.Path) -> None:
-    """Remove a folder that `save` wrote; refuse any other."""
-    try:
-        json.loads((path / "zarr.json").read_bytes())["attributes"]["polhode"]
-    except (OSError, ValueError, LookupError, TypeError):
-        raise InvalidInput(f"path: {path} is there and is not a saved motion") from None
-    shutil.rmtree(path)
-
-
-def read(path: pathlib.Path) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return what a file holds: `about` and the arrays.
-
-    Raises
-    ------
-    InvalidInput
-        For a file that was not saved by polhode, or is damaged.
-    """
-    try:
-        if path.is_dir():
-            group = need("zarr").open_group(str(path), mode="r")
-            return json.loads(group.attrs["polhode"]), {name: np.asarray(array[...]) for name, array in group.arrays()}
-        _files.size_of(path, _files.MESH)
-        with open(path, "rb") as file, np.load(file, allow_pickle=False) as table:
-            arrays = {name: table[name] for name in table.files}
-        return json.loads(str(arrays.pop("about"))), arrays
-    except InvalidInput:
-        raise
-    except Exception as error:   # of zip, zlib, NumPy, Zarr and JSON
-        raise InvalidInput(f"{path}: must be a file that polhode saved ({type(error).__name__})") from None

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import os
 from typing import Any
 
-from . import _export, _files
+from . import _files, _folders, _saved_files
 from ._batch.solve_many import Motions
 from ._core import InvalidInput
 from ._ensemble.ensemble import Ensemble
@@ -38,9 +37,9 @@ def load(path: str | os.PathLike[str]) -> Motion | Motions | Ensemble:
     found = _files.to_path(path, "path")
     if not found.exists():
         raise InvalidInput(f"{found}: cannot be read: no such file")
-    if found.is_dir() and not _is_motion(found):
+    if found.is_dir() and "polhode" not in _folders.attributes(found):
         return open_run(str(found))
-    about, arrays = _export.read(found)
+    about, arrays = _saved_files.read(found)
     readers: dict[Any, Any] = {"motion": _motion, "motions": _motions}
     kind = about.get("kind") if isinstance(about, dict) else None
     try:
@@ -52,13 +51,6 @@ def load(path: str | os.PathLike[str]) -> Motion | Motions | Ensemble:
         if isinstance(error, InvalidInput):
             raise
         raise InvalidInput(f"{found}: must be a file that polhode saved ({type(error).__name__})") from None
-
-
-def _is_motion(folder: Any) -> bool:
-    try:
-        return "polhode" in json.loads((folder / "zarr.json").read_bytes())["attributes"]
-    except (OSError, ValueError, LookupError, TypeError):
-        return False
 
 
 def _motion(about: dict[str, Any], arrays: dict[str, Any]) -> Motion:

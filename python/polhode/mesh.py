@@ -212,9 +212,14 @@ def _require_ply_claims(data: bytes) -> None:
     if not data.startswith(b"ply") or not end:
         raise _Wrong("must begin with a PLY header, which has an end (cut short?)")
     for name, count in re.findall(rb"^element\s+(\S+)\s+(\S+)", header, flags=re.M):
-        if not count.isdigit() or int(count) > len(data):
-            raise _Wrong(f"claims {count.decode(errors='replace')} of element {name.decode(errors='replace')}, but has "
+        if not count.isdigit() or len(count) > 18 or int(count) > len(data):
+            raise _Wrong(f"claims {_short(count)} of element {_short(name)}, but has "
                          f"{len(data)} bytes (cut short?)")
+
+
+def _short(word: bytes) -> str:
+    text = word.decode(errors="replace")
+    return text if len(text) <= 40 else f"{text[:37]}..."
 
 
 def _require_off_claims(data: bytes) -> None:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import pathlib
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .._core import InvalidInput
+from .begin import specs
 from .summary import QUANTILES, arrays_of
 
 if TYPE_CHECKING:
@@ -26,7 +28,9 @@ def to_xarray(run: Ensemble) -> Any:
     """Return the store as a Dataset, or the summaries where there is none."""
     xarray = _need("xarray")
     if run.out is not None:
-        return xarray.open_zarr(run.out, consolidated=False, chunks=None)
+        known = {spec.name for spec in specs(run._task)}
+        others = [path.parent.name for path in pathlib.Path(run.out).glob("*/zarr.json") if path.parent.name not in known]
+        return xarray.open_zarr(run.out, consolidated=False, chunks=None, drop_variables=others)
     lead = ("point",) if len(run.points) > 1 else ()
     variables = {}
     for summary in run.summary.values():

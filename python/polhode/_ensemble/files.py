@@ -14,7 +14,8 @@ from zarr.storage import LocalStore
 TRIES = 5
 
 
-def _sync_folder(folder: pathlib.Path) -> None:
+def sync_folder(folder: pathlib.Path) -> None:
+    """Make the names in a folder last."""
     if os.name != "posix":
         return
     handle = os.open(folder, os.O_RDONLY)
@@ -38,7 +39,7 @@ def write(path: pathlib.Path, data: Any) -> None:
                 file.flush()
                 os.fsync(file.fileno())
             os.replace(draft, path)
-            _sync_folder(path.parent)
+            sync_folder(path.parent)
             return
         except FileNotFoundError:
             if not left:

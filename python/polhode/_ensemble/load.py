@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import pathlib
-import zipfile
 from typing import Any
 
+import numpy as np
+
 from .._core import InvalidInput
+from . import begin
 from . import layout as layouts
 from . import recipe as recipes
 from . import store
@@ -27,6 +29,7 @@ def open_run(out: str) -> Ensemble:
     functions = {name: _absent for name in stamp.get("functions", {})}
     task = Task(recipes.to_message(recipe), layout, {}, str(pathlib.Path(out).resolve()))
     store.check_stamp(out, stamp, {**store.stamp(task), "functions": stamp.get("functions", {})})
+    begin.check(out, task)
     return Ensemble(task._replace(functions=functions))
 
 
@@ -36,17 +39,22 @@ def _absent(*arguments: Any) -> Any:
 
 def from_arrays(path: pathlib.Path, about: dict[str, Any], arrays: Any) -> Ensemble:
     """Return the ensemble of a .npz file."""
+    task, chunks, records = task_of(path, about), arrays["chunks"], arrays["records"]
+    if chunks.size and not 0 <= chunks.min() <= chunks.max() < task.layout.chunks or np.unique(chunks).size < chunks.size:
+        raise InvalidInput(f"{path}: is damaged: its chunks are not those of its recipe")
+    return Ensemble(task, {int(chunk): row for chunk, row in zip(chunks, records, strict=True)})
+
+
+def task_of(path: pathlib.Path, about: dict[str, Any]) -> Task:
+    """Return the task that a .npz file of an ensemble describes."""
     try:
         recipe = recipes.from_content(about["recipe"], about["folder"], str(path))
         stamp, layout = about["stamp"], Layout(**about["layout"])
         layouts.check(recipe, layout, str(path))
         task = Task(recipes.to_message(recipe), layout, {}, None)
         store.check_stamp(str(path), stamp, {**store.stamp(task), "functions": stamp.get("functions", {})})
-        chunks, records = arrays["chunks"], arrays["records"]
-    except (LookupError, TypeError, ValueError, EOFError, OSError, zipfile.BadZipFile) as error:
+        return task
+    except (LookupError, TypeError, ValueError, AttributeError) as error:
         if isinstance(error, InvalidInput):
             raise
         raise InvalidInput(f"{path}: is damaged: {type(error).__name__}") from None
-    if chunks.ndim != 1 or records.shape[:1] != chunks.shape:
-        raise InvalidInput(f"{path}: is damaged: {records.shape} records of {chunks.shape} chunks")
-    return Ensemble(task, {int(chunk): row for chunk, row in zip(chunks, records, strict=True)})

@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 import pathlib
 import time
 from typing import Any
 
+from .. import _files
+from .._core import InvalidInput
+
+LATEST = 1e15        # seconds
 MOST = 64_000_000   # bytes that are read: the end of a longer log
 
 
@@ -23,8 +28,8 @@ class Log:
     def __init__(self, out: str | None) -> None:
         self._file = None
         if out is not None:
-            with contextlib.suppress(OSError):
-                self._file = open(file_of(out), "a", encoding="utf-8")   # noqa: SIM115  closed in close()
+            with contextlib.suppress(OSError, InvalidInput):
+                self._file = _files.open_log(file_of(out))
 
     def write(self, event: str, **content: Any) -> None:
         """Append an event."""
@@ -41,18 +46,27 @@ class Log:
 
 
 def read(out: str) -> list[dict[str, Any]]:
-    """Return the events of a store, oldest first; lines cut short are left out."""
+    """Return the events of a store, oldest first; lines that are damaged are left out."""
     path = file_of(out)
     try:
-        with open(path, "rb") as file:
-            file.seek(max(path.stat().st_size - MOST, 0))
-            lines = file.read(MOST).splitlines()
-    except OSError:
+        with _files.opened(path, 2**62) as (file, size):
+            file.seek(max(size - MOST, 0))
+            lines = file.read(min(size, MOST)).splitlines()
+    except (OSError, InvalidInput):
         return []
     events = []
     for line in lines:
-        with contextlib.suppress(ValueError):
+        with contextlib.suppress(ValueError, RecursionError):
             event = json.loads(line)
-            if isinstance(event, dict) and isinstance(event.get("at"), (int, float)) and "event" in event:
+            if isinstance(event, dict) and _is_event(event):
                 events.append(event)
     return events
+
+
+def _is_event(event: dict[str, Any]) -> bool:
+    """Tell whether the parts of an event that are used are of their types."""
+    numbers = (event.get("at"), event.get("seconds", 0.0))
+    return (isinstance(event.get("event"), str) and isinstance(event.get("why", ""), str)
+            and isinstance(event.get("chunk"), (int, type(None)))
+            and all(isinstance(number, (int, float)) and abs(number) < LATEST and math.isfinite(number)
+                    for number in numbers))

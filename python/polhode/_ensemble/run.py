@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from .._core import InvalidInput
-from . import engine, layout, states, store, summary
+from . import begin, engine, layout, states, store, summary
 from . import recipe as recipes
 from .chunk import Outcome
 from .distributions import Floats
@@ -51,13 +51,17 @@ def open_store(task: Task, resume: bool) -> list[int]:
     store.need_zarr()
     found = store.read_stamp(task.out)
     if found is None:
-        store.discard(task.out)
         with store.disk(task):
-            store.begin(task)
-        return list(range(task.layout.chunks))
-    if not resume:
+            if begin.begin(task):
+                return list(range(task.layout.chunks))
+        found = store.read_stamp(task.out)   # of a run that began at the same time: it writes the same bytes
+        if found is None:
+            raise InvalidInput(f"{task.out}: is being made by another run; start again with --resume")
+    elif not resume:
         raise InvalidInput(f"{task.out}: must be a new folder; resume=True or --resume goes on with a store")
     store.check_stamp(task.out, found["stamp"], store.stamp(task))
+    store.require_own(task.out)
+    begin.check(task.out, task)
     store.clean(task.out)
     done = store.marked(task.out, task.layout)
     spec = recipes.from_message(task.recipe)

@@ -8,18 +8,18 @@ from __future__ import annotations
 
 import contextlib
 import errno
-import json
 import math
 import os
 import pathlib
+import re
 import shutil
-import warnings
 from collections.abc import Iterator
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
+from .. import _files, _folders
 from .._build import build_info
 from .._core import InvalidInput, __version__
 from . import layout as layouts
@@ -27,7 +27,7 @@ from . import states
 from .distributions import Floats
 from .layout import Layout
 from .recipe import EnsembleRecipe, from_content, from_message
-from .summary import create_arrays, shapes
+from .summary import shapes
 from .task import Task, fields
 
 FORMAT = 1
@@ -41,7 +41,9 @@ STAMPS = {   # what a store must share with the run that goes on, and how a diff
     "functions": "the store was made with the functions {0}, and these are {1}",
 }
 CRC = 4   # bytes of a checksum
-COORDINATES = ("time", "state_time", "quantile")   # arrays that a store has from its beginning
+UNFINISHED = re.compile(   # the files of a store that has not begun
+    r"([0-9a-f]+\.partial/)?(\w+/zarr\.json|zarr\.json|(time|state_time|quantile)/c(\.\d+)*)(\.[0-9a-f]+\.partial)?")
+CHUNK = re.compile(r"c\.(\d{1,18})\.0")
 
 
 class DiskFull(OSError):
@@ -75,7 +77,8 @@ def stamp(task: Task) -> dict[str, Any]:
             "recipe": recipe.hash, "functions": names}
 
 
-def _group(out: str, mode: str) -> Any:
+def group_of(out: str, mode: str) -> Any:
+    """Open a store as a group of Zarr."""
     import zarr
 
     from .files import LastingStore
@@ -87,71 +90,6 @@ def _group(out: str, mode: str) -> Any:
 def file_of(out: str, name: str, *index: int) -> pathlib.Path:
     """Return the file of a Zarr chunk."""
     return pathlib.Path(out) / name / ".".join(["c", *map(str, index)])
-
-
-# ---- the arrays
-
-def _create(group: Any, name: str, shape: tuple[int, ...], chunks: tuple[int, ...], dims: tuple[str, ...], dtype: str,
-            fill: float, compress: bool = False, **attributes: Any) -> Any:
-    from zarr.codecs import Crc32cCodec, ZstdCodec
-
-    codecs: Any = [ZstdCodec(level=3), Crc32cCodec()] if compress else [Crc32cCodec()]
-    return group.create_array(name, shape=shape, chunks=chunks, dtype=dtype, fill_value=fill, compressors=codecs,
-                              dimension_names=dims, attributes=attributes,
-                              chunk_key_encoding={"name": "default", "separator": "."})
-
-
-def begin(task: Task) -> None:
-    """Make the arrays of a new store. The stamp comes last: without it, a store has not begun."""
-    recipe, layout = from_message(task.recipe), task.layout
-    assert task.out is not None
-    group = _group(task.out, "w")
-    times = recipe.times
-    swept = layout.points > 1
-    lead: tuple[str, ...] = ("point",) if swept else ()
-    places = fields(task)
-
-    def make(name: str, shape: tuple[int, ...], chunks: tuple[int, ...], dims: tuple[str, ...], dtype: str = "<f8",
-             fill: float = np.nan, **attributes: Any) -> Any:
-        first: tuple[int, ...] = (layout.points,) if swept else ()
-        return _create(group, name, (*first, *shape), (*(1 for _ in first), *chunks), (*lead, *dims), dtype, fill,
-                       **attributes)
-
-    def fixed(name: str, values: Any, **attributes: Any) -> None:
-        array = _create(group, name, values.shape, values.shape, (name,), values.dtype.str, 0, **attributes)
-        array[...] = values
-
-    fixed("time", times, units="s", long_name="time since the epoch of the scene", axis="T")
-    if not all(states.is_free(recipe, point) for point in recipe.points):
-        make("status", (recipe.count,), (layout.chunk,), ("body",), "|i1", -1, long_name="how the body's run ended",
-             flag_values=list(range(-1, len(states.STATUS))), flag_meanings=" ".join(["not_done", *states.STATUS]))
-        make("error", (recipe.count,), (layout.chunk,), ("body",), units="1",
-             long_name="bound of the body's error, NaN if not estimated")
-    if recipe.states != "none":
-        kept = times[::recipe.every]
-        fixed("state_time", kept, units="s", long_name="time of the stored states")
-        kind = "<f4" if recipe.states == "float32" else "<f8"
-        for name, width, axis, units, text in (
-                ("omega", 3, "axis", "rad s-1", "angular velocity in body axes"),
-                ("attitude", 4, "component", "1", "unit quaternion (x, y, z, w), body to space")):
-            make(name, (recipe.count, kept.size, width), (layout.slab, kept.size, width),
-                 ("body", "state_time", axis), kind, units=units, long_name=text)
-    create_arrays(recipe, make, fixed)
-    _create(group, MARKS, (layout.chunks, places.size), (1, places.size), ("chunk", "field"), "<f8", np.nan,
-            compress=True, long_name="sums and histograms of each chunk of bodies",
-            fields={name: [start, list(shape)] for name, (start, shape, _) in places.places.items()})
-    content: dict[str, Any] = {"stamp": stamp(task), "layout": layout._asdict(), "recipe": recipe.raw,
-               "sweep": [point.settings for point in recipe.points] if swept else []}
-    if "mesh" in recipe.raw["body"] or "parts" in recipe.raw["body"]:
-        content["folder"] = recipe.folder
-    import zarr
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")   # the format's standard has no such part yet; xarray reads it at once
-        zarr.consolidate_metadata(group.store)
-    group = zarr.open_group(group.store, mode="r+", use_consolidated=True)
-    group.attrs.update({"Conventions": "CF-1.11", "title": recipe.title, "source": f"polhode {__version__}",
-                        "polhode_ensemble": content})
 
 
 def read_stamp(out: str) -> dict[str, Any] | None:
@@ -171,20 +109,27 @@ def read_stamp(out: str) -> dict[str, Any] | None:
     if not any(path.iterdir()):
         return None
     try:
-        metadata = json.loads((path / "zarr.json").read_bytes())
-        content = metadata["attributes"]["polhode_ensemble"]
+        if not os.path.lexists(path / "zarr.json"):
+            raise FileNotFoundError
+        content = _folders.attributes(path)["polhode_ensemble"]
         Layout(**content["layout"])
         return {"stamp": dict(content["stamp"]), **content}
     except FileNotFoundError:
         pass
-    except ValueError:
-        raise InvalidInput(f"{out}: zarr.json is damaged, or is not that of an ensemble") from None
+    except InvalidInput as error:
+        raise InvalidInput(f"{out}: zarr.json is damaged, or is not that of an ensemble: {error}") from None
     except (LookupError, TypeError, AttributeError):
         pass   # a group without a stamp has not begun
-    for file in filter(pathlib.Path.is_file, path.rglob("*")):
-        if not (file.name == "zarr.json" or file.name.endswith(".partial") or file.parent.name in COORDINATES):
+    for name, is_folder in _folders.walk(path):
+        if not is_folder and not UNFINISHED.fullmatch(name):
             raise InvalidInput(f"{out}: must be a store of an ensemble, got a folder with other files")
     return None
+
+
+def require_own(out: str) -> None:
+    """Refuse a store with links, pipes or devices: nothing is read or written through them."""
+    for _ in _folders.walk(pathlib.Path(out)):
+        pass
 
 
 def recipe_of(out: str) -> tuple[EnsembleRecipe, Layout, dict[str, Any]]:
@@ -192,6 +137,7 @@ def recipe_of(out: str) -> tuple[EnsembleRecipe, Layout, dict[str, Any]]:
     content = read_stamp(out)
     if content is None:
         raise InvalidInput(f"{out}: must be a store of an ensemble, got none that has begun")
+    require_own(out)
     recipe = from_content(content["recipe"], content.get("folder", "."), out)
     layout = Layout(**content["layout"])
     layouts.check(recipe, layout, out)
@@ -205,18 +151,14 @@ def check_stamp(out: str, found: dict[str, Any], wanted: dict[str, Any]) -> None
             raise InvalidInput(f"{out}: {text.format(found.get(key), wanted[key])}")
 
 
-def discard(out: str) -> None:
-    """Remove a store that has not begun."""
-    shutil.rmtree(out, ignore_errors=True)
-
-
 # ---- marks and records
 
 def marked(out: str, layout: Layout) -> list[int]:
     """Return the chunks that are done, in order."""
     folder = pathlib.Path(out) / MARKS
-    names = {entry.name for entry in os.scandir(folder)} if folder.is_dir() else set()
-    return [chunk for chunk in range(layout.chunks) if f"c.{chunk}.0" in names]
+    names = (CHUNK.fullmatch(entry.name) for entry in os.scandir(folder)) if folder.is_dir() else ()
+    return sorted(chunk for name in names if name and (chunk := int(name[1])) < layout.chunks
+                  and name[0] == f"c.{chunk}.0")
 
 
 class Reader:
@@ -224,15 +166,18 @@ class Reader:
 
     def __init__(self, out: str) -> None:
         self.out = out
-        self.group = _group(out, "r")
+        self.group = group_of(out, "r")
         self._records = self.group[MARKS]
+        self._claim = _folders.claim_of(pathlib.Path(out) / MARKS)
 
     def record(self, chunk: int) -> Floats:
         """Return a chunk's record; refuse a damaged one by its name."""
+        path = file_of(self.out, MARKS, chunk, 0)
         try:
+            if path.exists():   # Zarr would inflate to whatever the file says
+                _folders.require_chunk(path, self._claim)
             return np.asarray(self._records[chunk])
         except Exception as error:   # codecs raise what they like
-            path = file_of(self.out, MARKS, chunk, 0)
             raise InvalidInput(f"{path}: the record of chunk {chunk} is damaged ({type(error).__name__}); remove the "
                                f"file to compute the chunk again") from None
 
@@ -274,7 +219,7 @@ def bytes_of(recipe: EnsembleRecipe, layout: Layout, chunk: int) -> int:
 def _array(out: str, name: str, made: str) -> Any:
     """Return an array for writing; `made` is the same for the same metadata. Chunks of NaN are written, too."""
     # Of this array alone: Zarr's own setting is the process's, and a thread that restores it takes it from the others.
-    return _group(out, "r+")[name].with_config({"write_empty_chunks": True})
+    return group_of(out, "r+")[name].with_config({"write_empty_chunks": True})
 
 
 class Writer:
@@ -328,7 +273,8 @@ def need(task: Task) -> int:
 def raise_full(task: Task) -> None:
     """Raise DiskFull with the number of bytes that the rest of the ensemble needs beside what is free."""
     assert task.out is not None
-    with_margin = max(need(task) - shutil.disk_usage(task.out).free, 1)
+    there = next(path for path in (pathlib.Path(task.out), *pathlib.Path(task.out).parents) if path.exists())
+    with_margin = max(need(task) - shutil.disk_usage(there).free, 1)
     raise DiskFull(with_margin, task.out, len(marked(task.out, task.layout)), task.layout.chunks)
 
 
@@ -345,7 +291,7 @@ def disk(task: Task) -> Iterator[None]:
 
 def write_summary(out: str, arrays: dict[str, Any]) -> None:
     """Write the arrays of a summary."""
-    group = _group(out, "r+")
+    group = group_of(out, "r+")
     for name, (_, values, _, _) in arrays.items():
         group[name][...] = values
 
@@ -366,7 +312,7 @@ def _is_whole(path: pathlib.Path) -> bool:
     """Return True if the last four bytes of a file are the CRC-32C of the others."""
     from google_crc32c import value
 
-    data = path.read_bytes()
+    data = _files.read(path, _files.MESH)
     return int(value(data[:-CRC])) == int.from_bytes(data[-CRC:], "little")
 
 
@@ -375,6 +321,9 @@ def clean(out: str) -> int:
     found = 0
     for path in pathlib.Path(out).rglob("*.partial"):
         with contextlib.suppress(FileNotFoundError):
-            path.unlink()
+            if path.is_dir():
+                shutil.rmtree(path, ignore_errors=True)
+            else:
+                path.unlink()
             found += 1
     return found

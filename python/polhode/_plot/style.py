@@ -133,6 +133,6 @@ def save(figure: Figure, folder: pathlib.Path, name: str) -> list[pathlib.Path]:
     """Write PNG and SVG, and return their paths."""
     paths = [folder / f"{name}.{suffix}" for suffix in ("png", "svg")]
     for path in paths:
-        with _files.whole(path) as draft:
+        with _files.whole(path, follow=False) as draft:
             figure.savefig(draft, metadata={"Date": None} if path.suffix == ".svg" else None)
     return paths

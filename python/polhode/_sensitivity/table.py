@@ -14,6 +14,7 @@ from .._core import InvalidInput
 from ..measured import Attitudes, Axis, Direction, Measurement, Rates
 
 SENSORS = {"omega": "xyz", "attitude": "xyzw", "axis": "xyz", "direction": "xyz"}
+KNOWN = {"t", *(f"{sensor}_{part}" for sensor, parts in SENSORS.items() for part in parts)}
 
 
 def _rows(file: pathlib.Path) -> list[list[str]]:
@@ -21,17 +22,24 @@ def _rows(file: pathlib.Path) -> list[list[str]]:
         text = _files.read(file, _files.TEXT).decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise InvalidInput(f"{file}: must be text in UTF-8: {error}") from None
-    rows = [row for row in csv.reader(text.splitlines()) if row and not row[0].lstrip().startswith("#")]
+    try:
+        rows = [row for row in csv.reader(text.splitlines()) if row and not row[0].lstrip().startswith("#")]
+    except csv.Error as error:
+        raise InvalidInput(f"{file}: must be a table of text: {error}") from None
     if len(rows) < 2:
         raise InvalidInput(f"{file}: must have a header and rows, got {len(rows)} lines")
     return rows
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= 60 else text[:57] + "..."
 
 
 def _number(text: str, file: pathlib.Path, line: int) -> float:
     try:
         return float(text) if text.strip() else math.nan
     except ValueError:
-        raise InvalidInput(f"{file}: row {line}: must be numbers, got {text!r}") from None
+        raise InvalidInput(f"{file}: row {line}: must be numbers, got {_short(text)!r}") from None
 
 
 def read(file: pathlib.Path, columns: str | None, sigma: dict[str, float], *, bias: bool = False,
@@ -43,10 +51,16 @@ def read(file: pathlib.Path, columns: str | None, sigma: dict[str, float], *, bi
     width = max(map(len, rows[1:]))
     if len(names) != width:
         raise InvalidInput(f"--columns: must name the {width} columns of {file}, got {len(names)} names")
+    given = _short(", ".join(names))
     if "t" not in names:
-        raise InvalidInput(f"--columns: must name the time 't', got {', '.join(names)}")
-    table = np.array([[_number(text, file, k + 2) for text in row + [""] * (width - len(row))]
-                      for k, row in enumerate(rows[1:])])
+        raise InvalidInput(f"--columns: must name the time 't', got {given}")
+    # The known columns alone: short rows beside one of a million cells would make a large table.
+    places = [k for k, name in enumerate(names) if name in KNOWN and names.index(name) == k]
+    table = np.full((len(rows) - 1, len(places)), math.nan)
+    for k, row in enumerate(rows[1:]):
+        numbers = [_number(text, file, k + 2) for text in row]
+        table[k] = [numbers[place] if place < len(numbers) else math.nan for place in places]
+    names = [names[place] for place in places]
     t = table[:, names.index("t")]
     data: list[Measurement] = []
     for sensor, parts in SENSORS.items():
@@ -74,5 +88,5 @@ def read(file: pathlib.Path, columns: str | None, sigma: dict[str, float], *, bi
             data.append(Direction(t[here], y[here], noise, direction))
     if not data:
         known = "; ".join(", ".join(f"{s}_{p}" for p in parts) for s, parts in SENSORS.items())
-        raise InvalidInput(f"--columns: must name a sensor ({known}), got {', '.join(names)}")
+        raise InvalidInput(f"--columns: must name a sensor ({known}), got {given}")
     return data

@@ -113,8 +113,8 @@ def atlas(
         files += [path.name for path in pictures.draw_matrix(everything, output)]
     files = sorted(files) + [f"{family.name}.json" for family in wanted] + ["atlas.json", "atlas.md"]
     content = document(everything, time.perf_counter() - start, find_broken(everything), files)
-    _files.write(output / "atlas.json", json.dumps(content, indent=1, allow_nan=False) + "\n")
-    _files.write(output / "atlas.md", page(content))
+    _files.write(output / "atlas.json", json.dumps(content, indent=1, allow_nan=False) + "\n", follow=False)
+    _files.write(output / "atlas.md", page(content), follow=False)
     return ordered, content
 
 

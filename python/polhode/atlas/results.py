@@ -77,13 +77,13 @@ def _verdict(verdict: Verdict) -> dict[str, Any]:
 def read_family(path: pathlib.Path, settings: tuple[bool, float] | None = None) -> FamilyResult | None:
     """Read a family's file; None when it is not there, not whole, or not of these settings (`quick`, `limit`)."""
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
+        content = json.loads(_files.read(path, _files.TEXT))
         family = find_family(content["family"])
         if settings is not None and any(content.get(k) != v for k, v in signature(family, *settings).items()):
             return None
         rows = {name: [from_json(p) for p in points] for name, points in content["points"].items()}
         return FamilyResult(family, content["quick"], content["limit"], rows, True, content["made"])
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ArithmeticError, AttributeError, LookupError, RecursionError, TypeError, ValueError):
         return None
 
 
@@ -91,7 +91,7 @@ def write_family(result: FamilyResult, folder: pathlib.Path) -> pathlib.Path:
     """Write a family's file whole or not at all."""
     path = folder / f"{result.family.name}.json"
     text = json.dumps(family_document(result), indent=1, allow_nan=False)
-    _files.write(path, text + "\n")
+    _files.write(path, text + "\n", follow=False)
     return path
 
 

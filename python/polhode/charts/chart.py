@@ -135,5 +135,5 @@ def chart(
     files += pictures.overview(results, output) + pictures.limits(results, output)
     written = [path.name for path in files] + ["results.json"]
     content = document(results, time.perf_counter() - start, written, peers)
-    _files.write(output / "results.json", json.dumps(content, indent=1) + "\n")
+    _files.write(output / "results.json", json.dumps(content, indent=1) + "\n", follow=False)
     return results, content

@@ -159,6 +159,6 @@ def _report(out: str, output: pathlib.Path | None) -> int:
 
     path = output or pathlib.Path(f"{out.rstrip('/')}.html")
     files.check(path, (".html",))
-    _files.write(path, page(open_run(out)))
+    _files.write(path, page(open_run(out)), follow=output is not None)   # else a name beside a foreign store
     print(path)
     return 0

@@ -68,13 +68,11 @@ def run(files: list[str], options: Options) -> int:
             say(str(report.error))
         return 2
     stale = [f"ignore {rule}: no longer applies ({rule.reason})" for rule in excuses if not rule.used]
-    if options.fix:
-        for report in reports:
-            _write_repaired(report)
+    written = [_write_repaired(report, files) for report in reports] if options.fix else []
     _print(reports, options, alone)
     for line in stale:
         print(line, file=sys.stderr)
-    return 1 if any(report.fails(options.fail_on) for report in reports) else 0
+    return 1 if any(report.fails(options.fail_on) for report in reports) or not all(written) else 0
 
 
 def _package(text: str) -> tuple[str, str]:
@@ -91,19 +89,28 @@ def _from_stdin(search: Search, excuses: list[robots.Rule]) -> Report:
     return check_file(pathlib.Path("stdin"), search, excuses, data=data)
 
 
-def _write_repaired(report: Report) -> None:
+def _write_repaired(report: Report, given: list[str]) -> bool:
+    """Write a repaired copy beside a file; return False where it cannot be written. Links are not followed."""
     if report.error:
-        return
-    file = pathlib.Path(report.file)
+        return True
     if report.file == "stdin":
         raise InvalidInput("--fix: must be used with files, got stdin")
-    data, said = robots.repair(_files.read(file, _files.TEXT), report)
-    for line in said:
-        print(f"{report.file}: {line}", file=sys.stderr)
-    if any(line.endswith(": repaired") for line in said):
-        copy = file.with_name(f"{file.stem}.fixed{file.suffix}")
-        _files.write(copy, data)
-        print(f"wrote {copy}", file=sys.stderr)
+    file = pathlib.Path(report.file)
+    folders = (pathlib.Path(name) for name in given if name != report.file)
+    root = next((folder for folder in folders if file.is_relative_to(folder)), file.parent)
+    inner = file.relative_to(root)
+    try:
+        data, said = robots.repair(_files.read_below(root, inner, _files.TEXT), report)
+        for line in said:
+            print(f"{report.file}: {line}", file=sys.stderr)
+        if any(line.endswith(": repaired") for line in said):
+            copy = inner.with_name(f"{file.stem}.fixed{file.suffix}")
+            _files.write_below(root, copy, data)
+            print(f"wrote {root / copy}", file=sys.stderr)
+    except InvalidInput as error:
+        say(str(error))
+        return False
+    return True
 
 
 def _print(reports: list[Report], options: Options, alone: bool) -> None:

@@ -53,5 +53,5 @@ def write(content: dict[str, Any], folder: pathlib.Path) -> pathlib.Path:
     lead = (f"{count} famil{'ies' if count != 1 else 'y'} of hard problems, polhode {content['polhode']['version']}, "
             f"{content['machine']['processor']}, {content['made']}.")
     path = folder / "index.html"
-    _files.write(path, page.render_atlas(part(content, folder, options), lead))
+    _files.write(path, page.render_atlas(part(content, folder, options), lead), follow=False)
     return path

@@ -39,7 +39,7 @@ def motion_pictures(names: Iterable[Any], folder: pathlib.Path) -> list[page.Pic
     for name in names:
         scene = name if isinstance(name, Scene) else Scene.load(name)
         path = folder / f"motion-{scene.name}.png"   # of lines so long that an SVG would be large
-        with _files.whole(path) as draft:
+        with _files.whole(path, follow=False) as draft:
             solve(scene, accuracy=1e-9).plot().savefig(draft, dpi=130)
         found.append(page.picture(path, f"motion of {scene.name}", f"{scene.name}.",
                                   f"polhode run {scene.name} --plot {scene.name}.svg"))
@@ -105,6 +105,6 @@ def report(
     command = "polhode report" + " --full" * full
     text = page.render(content, home / "charts", motions=motions, atlas=atlas, command=command,
                        seconds=time.perf_counter() - start)
-    _files.write(home / SCRIPT, script)
-    _files.write(home / PAGE, text)
+    _files.write(home / SCRIPT, script, follow=False)
+    _files.write(home / PAGE, text, follow=False)
     return home / PAGE

@@ -79,8 +79,10 @@ def repair(data: bytes, report: Report) -> tuple[bytes, list[str]]:
     after the element holds the old ones. All other bytes stay.
     """
     edits, said = _Edits(data), []
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff") or report.expanded:
+    if report.expanded:
         return data, ["nothing is repaired: the numbers do not stand in this file as such"]
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff") or b"\0" in data[:4]:
+        return data, ["nothing is repaired: files in UTF-16 are not repaired; save the file in UTF-8"]
     for each in report.links:
         done = False
         for finding in each.findings:
