@@ -16,7 +16,7 @@ from ._folders import Claim
 
 ABOUT = 4 * _files.TEXT      # characters of a description; ten million times take 170 million
 INFLATED = 64_000_000        # bytes to which a description may inflate, or
-FACTOR = 200                 # times its size in the file; honest ones reach 100
+FACTOR = 400                 # times its size in the file; honest ones reach 185
 REAL, WHOLE, TRUTH = (np.dtype(kind) for kind in (np.float64, np.int64, np.bool_))
 WIDTHS = {"omega": 3, "attitude": 4}
 

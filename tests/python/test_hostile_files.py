@@ -158,3 +158,54 @@ def test_a_glb_file_that_lies_about_its_json_is_refused(tmp_path):
         (tmp_path / "a.glb").write_bytes(data)
         with pytest.raises(ph.InvalidInput, match=f"with {len(body) + more} of them JSON"):
             ph.mesh.read(tmp_path / "a.glb")
+
+
+@pytest.mark.parametrize("count", ["9" * 5000, "9" * 19, "-1", "x" * 5000, "\u0663"])
+def test_a_ply_file_claims_a_count_in_one_line(count, tmp_path):
+    (tmp_path / "a.ply").write_text(f"ply\nformat ascii 1.0\nelement vertex {count}\nend_header\n")
+    with pytest.raises(ph.InvalidInput, match="claims .* of element vertex, but has") as refused:
+        ph.mesh.read(tmp_path / "a.ply")
+    assert len(str(refused.value)) < 600
+
+
+TABLES = {
+    "a cell of 200 000 letters": ("t,omega_x,omega_y,omega_z\n" + "x" * 200_000 + ",1,2,3\n", "must be a table of text"),
+    "a cell of 100 000 letters": ("t,omega_x,omega_y,omega_z\n" + "x" * 100_000 + ",1,2,3\n", "must be numbers, got 'xxx"),
+    "a million names": ("n," * 1_000_000 + "t\n" + "1," * 1_000_000 + "1\n" + "1\n" * 50_000, "must name a sensor"),
+    "bytes": ("\udcff\udcfe\0", "must be text in UTF-8"), "nothing": ("", "must have a header and rows"),
+}
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_a_table_of_measurements_that_is_none(name, tmp_path):
+    """Short rows beside one of a million cells would fill 400 GB, if each had its place in a table."""
+    from polhode._sensitivity import table
+
+    text, message = TABLES[name]
+    (tmp_path / "a.csv").write_bytes(text.encode(errors="surrogateescape"))
+    with pytest.raises(ph.InvalidInput, match=message) as refused:
+        table.read(tmp_path / "a.csv", None, {"omega": 0.1})
+    assert "\n" not in str(refused.value) and len(str(refused.value)) < 600
+
+
+@pytest.mark.parametrize("content", ["[" * 100_000, "[]", "null", '{"family": []}', "pipe", "zero", "\udcff"], ids=range(7))
+def test_an_earlier_result_of_the_atlas_that_is_none_is_not_kept(content, tmp_path):
+    from polhode.atlas.results import read_family
+
+    path = tmp_path / "a.json"
+    if content == "pipe":
+        os.mkfifo(path)
+    elif content == "zero":
+        path.symlink_to("/dev/zero")
+    else:
+        path.write_bytes(content.encode(errors="surrogateescape"))
+    assert read_family(path) is None
+
+
+def test_a_pipe_that_takes_the_place_of_a_file_does_not_hang(tmp_path, monkeypatch):
+    from polhode import _files
+
+    os.mkfifo(tmp_path / "a")
+    monkeypatch.setattr(_files, "size_of", lambda path, most: 1)   # the look found a file
+    with pytest.raises(ph.InvalidInput, match="a device or a pipe"):
+        _files.read(tmp_path / "a", 100)
