@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from . import _files, _folders, _saved_files
+from . import _files, _folders
 from ._core import InvalidInput, __version__
 
 COMPONENTS = {"omega": ("x", "y", "z"), "attitude": ("x", "y", "z", "w")}
@@ -82,7 +82,7 @@ def check_path(path: str | os.PathLike[str]) -> pathlib.Path:
 
 def save(path: pathlib.Path, about: dict[str, Any], arrays: dict[str, Any]) -> None:
     """Write arrays and what they are to a .npz file, or to a folder of Zarr."""
-    text = _saved_files.require_about(json.dumps({**about, "polhode": __version__}))
+    text = _folders.require_about(json.dumps({**about, "polhode": __version__}))
     if path.suffix == ".npz":
         if path.is_dir():
             raise InvalidInput(f"path: {path} is a folder")

@@ -103,8 +103,8 @@ def draft_of(name: str) -> str:
 def whole(path: pathlib.Path, follow: bool = True) -> Iterator[pathlib.Path]:
     """Give a draft to write, which takes the file's place when it is whole; on an error the old file stays.
 
-    The draft has the file's suffix. With `follow`, for names that the caller gave, links are followed, and what is there
-    and is no regular file is written itself. Without, for names that polhode chose, both are refused.
+    The draft has the file's suffix. With `follow`, for names that the caller gave, links are followed, and what is
+    there and is no regular file is written itself. Without, for names that polhode chose, both are refused.
     """
     target = pathlib.Path(os.path.realpath(path)) if follow else path
     if not follow:

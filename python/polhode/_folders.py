@@ -17,10 +17,18 @@ import numpy as np
 from . import _files
 from ._core import InvalidInput
 
-METADATA = 1_000_000   # bytes of the metadata of an array, which take a thousand
+ABOUT = 4 * _files.TEXT   # characters of a description; ten million times take 170 million
+METADATA = 1_000_000      # bytes of the metadata of an array, which take a thousand
 CODECS = {"bytes", "zstd", "crc32c"}
 CHUNK = re.compile(r"(?P<name>[A-Za-z]\w*)/c(/\d+)*")   # a file of an array of a saved motion, or a folder of them
 TRIES = 1000
+
+
+def require_about(text: str) -> str:
+    """Refuse to save a description that could not be loaded."""
+    if len(text) > ABOUT:
+        raise InvalidInput(f"motion: must be described by at most {ABOUT} characters, got {len(text)}")
+    return text
 
 
 class Claim(NamedTuple):
@@ -119,7 +127,7 @@ def attributes(folder: pathlib.Path) -> dict[str, Any]:
         return {}
     if (folder / "zarr.json").is_symlink():
         raise InvalidInput(f"{folder / 'zarr.json'}: cannot be read: it is a link")
-    content = _files.read_json(folder / "zarr.json", 4 * _files.TEXT)
+    content = _files.read_json(folder / "zarr.json", 2 * ABOUT)
     found = content.get("attributes") if isinstance(content, dict) else None
     return found if isinstance(found, dict) else {}
 

@@ -9,7 +9,7 @@ from . import _files, _folders, _saved_files
 from ._batch.solve_many import Motions
 from ._core import InvalidInput
 from ._ensemble.ensemble import Ensemble
-from ._ensemble.load import from_arrays, open_run
+from ._ensemble.load import from_arrays, open_run, sizes
 from ._scene.plain import from_plain
 from ._solve.motion import EventHit, Motion
 from ._solve.plan import Plan
@@ -39,7 +39,7 @@ def load(path: str | os.PathLike[str]) -> Motion | Motions | Ensemble:
         raise InvalidInput(f"{found}: cannot be read: no such file")
     if found.is_dir() and "polhode" not in _folders.attributes(found):
         return open_run(str(found))
-    about, arrays = _saved_files.read(found)
+    about, arrays = _saved_files.read(found, sizes)
     readers: dict[Any, Any] = {"motion": _motion, "motions": _motions}
     kind = about.get("kind") if isinstance(about, dict) else None
     try:

@@ -2,34 +2,32 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import math
 import pathlib
 import zipfile
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from . import _files, _folders
 from ._core import InvalidInput
+from ._export import need
 from ._folders import Claim
 
-ABOUT = 4 * _files.TEXT      # characters of a description; ten million times take 170 million
 INFLATED = 64_000_000        # bytes to which a description may inflate, or
 FACTOR = 400                 # times its size in the file; honest ones reach 185
 REAL, WHOLE, TRUTH = (np.dtype(kind) for kind in (np.float64, np.int64, np.bool_))
 WIDTHS = {"omega": 3, "attitude": 4}
+Sums = Callable[[pathlib.Path, dict[str, Any]], tuple[int, int]]
 
 
-def require_about(text: str) -> str:
-    """Refuse to save a description that could not be loaded."""
-    if len(text) > ABOUT:
-        raise InvalidInput(f"motion: must be described by at most {ABOUT} characters, got {len(text)}")
-    return text
-
-
-def read(path: pathlib.Path) -> tuple[dict[str, Any], dict[str, Any]]:
+def read(path: pathlib.Path, sums: Sums) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return what a file holds: `about` and the arrays, whose shapes and types are those that it describes.
+
+    `sums` returns the number of chunks of an ensemble, and the numbers in a record.
 
     Raises
     ------
@@ -37,7 +35,7 @@ def read(path: pathlib.Path) -> tuple[dict[str, Any], dict[str, Any]]:
         For a file that was not saved by polhode, or is damaged.
     """
     try:
-        about, arrays = _read_folder(path) if path.is_dir() else _read_file(path)
+        about, arrays = (_read_folder if path.is_dir() else _read_file)(path, sums)
     except (InvalidInput, MemoryError, KeyboardInterrupt):
         raise
     except Exception as error:   # of zip, zlib, NumPy, Zarr and JSON
@@ -48,9 +46,9 @@ def read(path: pathlib.Path) -> tuple[dict[str, Any], dict[str, Any]]:
 # ---- what belongs together
 
 
-def wanted(path: pathlib.Path, about: Any, claims: dict[str, Claim]) -> list[str]:
+def wanted(path: pathlib.Path, about: Any, claims: dict[str, Claim], sums: Sums) -> list[str]:
     """Return the arrays to read; refuse those that do not fit the description, or each other."""
-    kinds = {"motion": _motion, "motions": _motions, "ensemble": _ensemble}
+    kinds: dict[str, Any] = {"motion": _motion, "motions": _motions, "ensemble": functools.partial(_ensemble, sums)}
     kind = about.get("kind") if isinstance(about, dict) else None
     if not isinstance(kind, str) or kind not in kinds:
         raise InvalidInput(f"{path}: must be a file that polhode saved")
@@ -117,34 +115,31 @@ def _motions(path: pathlib.Path, about: dict[str, Any], claims: dict[str, Claim]
     return expected
 
 
-def _ensemble(path: pathlib.Path, about: dict[str, Any], claims: dict[str, Claim]) -> dict[str, Any]:
-    from ._ensemble.load import task_of
-    from ._ensemble.task import fields
-
-    task = task_of(path, about)
+def _ensemble(sums: Sums, path: pathlib.Path, about: dict[str, Any], claims: dict[str, Claim]) -> dict[str, Any]:
+    most, numbers = sums(path, about)
     (chunks,) = claims["chunks"].shape if len(claims["chunks"].shape) == 1 else (-1,)
-    if not 0 <= chunks <= task.layout.chunks:
+    if not 0 <= chunks <= most:
         raise InvalidInput(f"{path}: is damaged: chunks has the shape {claims['chunks'].shape}, and the recipe has "
-                           f"{task.layout.chunks} chunks")
-    records = (chunks, fields(task).size) if chunks else (0,)
+                           f"{most} chunks")
+    records = (chunks, numbers) if chunks else (0,)
     return {"chunks": ((chunks,), WHOLE), "records": (records, REAL)}
 
 
 # ---- .npz
 
 
-def _read_file(path: pathlib.Path) -> tuple[Any, dict[str, Any]]:
+def _read_file(path: pathlib.Path, sums: Sums) -> tuple[Any, dict[str, Any]]:
     with _files.opened(path, _files.MESH) as (file, _), zipfile.ZipFile(file) as table:
         entries = {info.filename.removesuffix(".npy"): info for info in table.infolist()}
         claims = {name: _claim(table, info) for name, info in entries.items()}
         kind = claims["about"]
         size = entries["about"].file_size
-        if kind.shape != () or kind.dtype.kind != "U" or kind.dtype.itemsize > 4 * ABOUT:
+        if kind.shape != () or kind.dtype.kind != "U" or kind.dtype.itemsize > 4 * _folders.ABOUT:
             raise ValueError("about")
         if size > max(INFLATED, FACTOR * entries["about"].compress_size):
             raise InvalidInput(f"{path}: is damaged: its description inflates to {size} bytes")
         about = _loads(path, str(_array(table, entries["about"])))
-        return about, {name: _array(table, entries[name]) for name in wanted(path, about, claims)}
+        return about, {name: _array(table, entries[name]) for name in wanted(path, about, claims, sums)}
 
 
 def _claim(table: zipfile.ZipFile, info: zipfile.ZipInfo) -> Claim:
@@ -173,13 +168,11 @@ def _loads(path: pathlib.Path, text: str) -> Any:
 # ---- Zarr
 
 
-def _read_folder(path: pathlib.Path) -> tuple[Any, dict[str, Any]]:
-    from ._export import need
-
+def _read_folder(path: pathlib.Path, sums: Sums) -> tuple[Any, dict[str, Any]]:
     about = _loads(path, _folders.attributes(path)["polhode"])
     files = _folders.require_saved(path)
     claims = {name: _folders.claim_of(path / name) for name in files}
-    names = wanted(path, about, claims)
+    names = wanted(path, about, claims, sums)
     for name in names:
         for file in files[name]:
             _folders.require_chunk(path / file, claims[name])

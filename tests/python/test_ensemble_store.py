@@ -295,7 +295,8 @@ def test_states_are_on_the_disk_before_their_mark(recipe, tmp_path, monkeypatch)
     monkeypatch.setattr(os, "fsync", lambda number: (seen.append("sync"), sync(number)))
     monkeypatch.setattr(os, "replace", lambda draft, path: (seen.append(path), replace(draft, path)))
     ph.ensemble(recipe, out=tmp_path / "out.zarr", executor=0)
-    names = [pathlib.Path(item).relative_to(tmp_path).parts[1:] for item in seen if item != "sync"]   # a store begins aside
+    # A store begins in a folder aside.
+    names = [pathlib.Path(item).relative_to(tmp_path).parts[1:] for item in seen if item != "sync"]
     files = [pathlib.Path(*parts) for parts in names]
     for place, item in enumerate(seen):   # each file, and its folder after the change of name
         assert item == "sync" or seen[place - 1] == seen[place + 1] == "sync", item

@@ -169,8 +169,10 @@ def test_a_ply_file_claims_a_count_in_one_line(count, tmp_path):
 
 
 TABLES = {
-    "a cell of 200 000 letters": ("t,omega_x,omega_y,omega_z\n" + "x" * 200_000 + ",1,2,3\n", "must be a table of text"),
-    "a cell of 100 000 letters": ("t,omega_x,omega_y,omega_z\n" + "x" * 100_000 + ",1,2,3\n", "must be numbers, got 'xxx"),
+    "a cell of 200 000 letters": (
+        "t,omega_x,omega_y,omega_z\n" + "x" * 200_000 + ",1,2,3\n", "must be a table of text"),
+    "a cell of 100 000 letters": (
+        "t,omega_x,omega_y,omega_z\n" + "x" * 100_000 + ",1,2,3\n", "must be numbers, got 'xxx"),
     "a million names": ("n," * 1_000_000 + "t\n" + "1," * 1_000_000 + "1\n" + "1\n" * 50_000, "must name a sensor"),
     "bytes": ("\udcff\udcfe\0", "must be text in UTF-8"), "nothing": ("", "must have a header and rows"),
 }
@@ -188,7 +190,8 @@ def test_a_table_of_measurements_that_is_none(name, tmp_path):
     assert "\n" not in str(refused.value) and len(str(refused.value)) < 600
 
 
-@pytest.mark.parametrize("content", ["[" * 100_000, "[]", "null", '{"family": []}', "pipe", "zero", "\udcff"], ids=range(7))
+@pytest.mark.parametrize("content", ["[" * 100_000, "[]", "null", '{"family": []}', "pipe", "zero", "\udcff"],
+                         ids=range(7))
 def test_an_earlier_result_of_the_atlas_that_is_none_is_not_kept(content, tmp_path):
     from polhode.atlas.results import read_family
 

@@ -46,7 +46,8 @@ def test_the_copy_is_written_where_nothing_stands_in_the_way(repo):
     assert sorted(path.name for path in (repo / "sub").iterdir()) == ["r.fixed.urdf", "r.urdf"]
 
 
-@pytest.mark.parametrize("target", ["../../outside/precious", "../../outside/new", "r.urdf", "r.fixed.urdf", "/dev/null"])
+@pytest.mark.parametrize("target", ["../../outside/precious", "../../outside/new", "r.urdf", "r.fixed.urdf",
+                                    "/dev/null"])
 def test_a_link_in_the_place_of_the_copy_is_not_followed(repo, target):
     (repo / "sub/r.fixed.urdf").symlink_to(target)
     before = everything(repo.parent)

@@ -120,7 +120,8 @@ def test_metadata_that_are_none(folder, loader, name, inner, kind, message):
         assert status == 2 and err.count("\n") == 1 and "Traceback" not in err, err
 
 
-CLAIMS = {"3e8 samples": {"shape": [300_000_000, 3]}, "a negative size": {"shape": [-1, 3]}, "1e30": {"shape": [10**30]},
+CLAIMS = {"3e8 samples": {"shape": [300_000_000, 3]}, "a negative size": {"shape": [-1, 3]},
+          "1e30": {"shape": [10**30]},
           "text": {"shape": "201"}, "bytes": {"data_type": "S8"}, "objects": {"data_type": "object"},
           "a shape in another order": {"shape": [3, 201]}, "0-d": {"shape": [], "chunk_grid": {
               "name": "regular", "configuration": {"chunk_shape": []}}},
@@ -196,8 +197,9 @@ def test_a_log_that_is_none_is_as_good_as_no_log(folder):
     from polhode._ensemble import status
 
     log = folder / "store.zarr.log"
-    wrong = ['{"at": 1, "event": ["x"]}', '{"at": 1, "event": "done", "chunk": [], "seconds": 1}', '{"at": 1e400, "event": '
-             '"done"}', '{"at": 1, "event": "done", "chunk": 1, "seconds": "x"}', '{"at": 1' + "0" * 500 + ', "event": "x"}',
+    wrong = ['{"at": 1, "event": ["x"]}', '{"at": 1, "event": "done", "chunk": [], "seconds": 1}',
+             '{"at": 1e400, "event": "done"}', '{"at": 1, "event": "done", "chunk": 1, "seconds": "x"}',
+             '{"at": 1' + "0" * 500 + ', "event": "x"}',
              DEEP, "\udcff", '{"at": NaN, "event": "end"}', '{"at": 1, "event": "failed", "chunk": 1, "why": {}}']
     log.write_bytes("\n".join(wrong).encode(errors="surrogateescape"))
     content = []
@@ -260,7 +262,8 @@ LIES = {
     "bounds of another shape": {"omega_lower.npy": array((201, 4), values=bytes(6432))},
     "a deep description": {"about.npy": array((), f"<U{len(DEEP)}", DEEP.encode("utf-32-le"))},
     "a description that is none": {"about.npy": array((2,), "<U1", b"{\0\0\0" * 2)},
-    "a header of a megabyte": {"omega.npy": b"\x93NUMPY\x02\x00" + (1_000_000).to_bytes(4, "little") + b" " * 1_000_000},
+    "a header of a megabyte": {
+        "omega.npy": b"\x93NUMPY\x02\x00" + (1_000_000).to_bytes(4, "little") + b" " * 1_000_000},
     "no array": {"omega.npy": b"omega"},
 }
 
@@ -291,7 +294,8 @@ def changed(path, **changes):
 
 
 @pytest.mark.parametrize("changes", [
-    {"stats": {}}, {"stats": []}, {"stats": {"steps": "1", "seconds": 1}}, {"status": 3}, {"error": "x"}, {"options": 1},
+    {"stats": {}}, {"stats": []}, {"stats": {"steps": "1", "seconds": 1}}, {"status": 3}, {"error": "x"},
+    {"options": 1},
     {"events": [[0, 1.0, [1, 2], [0, 0, 0, 1]]]}, {"events": [[0, "x", [1, 2, 3], [0, 0, 0, 1]]]}, {"events": {}},
     {"asked": None}, {"message": None}, {"plan": {"wishes": {}}}], ids=str)
 def test_parts_of_a_description_that_are_none(folder, changes):
@@ -319,14 +323,15 @@ def test_many_motions_whose_arrays_do_not_fit(folder, name, data):
 @pytest.mark.parametrize("name, data", [
     ("records.npy", zeros((100_000_000, 3))), ("records.npy", array((2, 3), values=bytes(48))),
     ("chunks.npy", array((2,), values=bytes(16))), ("chunks.npy", array((3,), "<i8", bytes(24))),
-    ("chunks.npy", array((2,), "<i8", bytes(16))), ("chunks.npy", array((2,), "<i8", bytes(8) + b"\xff" * 8))], ids=range(6))
+    ("chunks.npy", array((2,), "<i8", bytes(16))), ("chunks.npy", array((2,), "<i8", bytes(8) + b"\xff" * 8))],
+                         ids=range(6))
 def test_sums_that_are_not_those_of_their_recipe(folder, loader, name, data):
     write(folder / "sums.npz", entries(folder / "sums.npz") | {name: data})
     loader.refused(folder / "sums.npz", "sums.npz: is damaged")
 
 
 def test_a_file_that_cannot_be_loaded_again_is_not_saved(tmp_path, monkeypatch):
-    monkeypatch.setattr(_saved_files, "ABOUT", 1000)
+    monkeypatch.setattr(_folders, "ABOUT", 1000)
     for name in ("a.npz", "a.zarr"):
         with pytest.raises(ph.InvalidInput, match="must be described by at most 1000 characters"):
             MOTION.save(tmp_path / name)

@@ -81,7 +81,8 @@ def saved(tmp_path):
     return tmp_path / "a.zarr"
 
 
-@pytest.mark.parametrize("name", ["notes.txt", "omega/notes.txt", "omega/c/notes.txt", "mine/x", "c/0", "empty/", "link"])
+@pytest.mark.parametrize("name", ["notes.txt", "omega/notes.txt", "omega/c/notes.txt", "mine/x", "c/0", "empty/",
+                                  "link"])
 def test_a_folder_with_a_file_of_the_user_is_not_replaced(saved, name):
     mine = saved / name
     mine.parent.mkdir(exist_ok=True)

@@ -29,8 +29,8 @@ def to_xarray(run: Ensemble) -> Any:
     xarray = _need("xarray")
     if run.out is not None:
         known = {spec.name for spec in specs(run._task)}
-        others = [path.parent.name for path in pathlib.Path(run.out).glob("*/zarr.json") if path.parent.name not in known]
-        return xarray.open_zarr(run.out, consolidated=False, chunks=None, drop_variables=others)
+        there = {path.parent.name for path in pathlib.Path(run.out).glob("*/zarr.json")}
+        return xarray.open_zarr(run.out, consolidated=False, chunks=None, drop_variables=sorted(there - known))
     lead = ("point",) if len(run.points) > 1 else ()
     variables = {}
     for summary in run.summary.values():

@@ -14,7 +14,7 @@ from . import recipe as recipes
 from . import store
 from .ensemble import Ensemble
 from .layout import Layout
-from .task import Task
+from .task import Task, fields
 
 
 def open_run(out: str) -> Ensemble:
@@ -40,9 +40,16 @@ def _absent(*arguments: Any) -> Any:
 def from_arrays(path: pathlib.Path, about: dict[str, Any], arrays: Any) -> Ensemble:
     """Return the ensemble of a .npz file."""
     task, chunks, records = task_of(path, about), arrays["chunks"], arrays["records"]
-    if chunks.size and not 0 <= chunks.min() <= chunks.max() < task.layout.chunks or np.unique(chunks).size < chunks.size:
+    numbers = np.unique(chunks)
+    if numbers.size < chunks.size or numbers.size and not 0 <= numbers[0] <= numbers[-1] < task.layout.chunks:
         raise InvalidInput(f"{path}: is damaged: its chunks are not those of its recipe")
     return Ensemble(task, {int(chunk): row for chunk, row in zip(chunks, records, strict=True)})
+
+
+def sizes(path: pathlib.Path, about: dict[str, Any]) -> tuple[int, int]:
+    """Return the number of chunks that a .npz file of an ensemble describes, and the numbers in a record."""
+    task = task_of(path, about)
+    return task.layout.chunks, fields(task).size
 
 
 def task_of(path: pathlib.Path, about: dict[str, Any]) -> Task:
