@@ -57,7 +57,7 @@ def test_names_with_the_same_first_letters_do_not_share_a_draft(tmp_path):
 
 
 def test_a_long_name_beyond_ascii_has_a_draft(tmp_path):
-    _files.write(tmp_path / f"{'é' * 120}.txt", "whole")   # 244 bytes
+    _files.write(tmp_path / f"{'日' * 80}.txt", "whole")   # 244 bytes
     assert [path.read_text() for path in tmp_path.iterdir()] == ["whole"]
 
 
