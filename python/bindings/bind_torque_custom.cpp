@@ -87,7 +87,13 @@ bool is_compiled(py::handle function) {
 }
 
 std::unique_ptr<OwnCustom> make_custom(const py::object& function, bool uses_time, bool uses_attitude, bool uses_rates,
-                                       const py::object& potential, const py::object& data) {
+                                       const py::object& potential, const py::object& data,
+                                       const py::object& breaks) {
+  const Array times = to_array(breaks, "Custom.breaks");
+  if (times.ndim() != 1) {
+    throw InvalidInput("Custom.breaks", "a list of times", std::to_string(times.ndim()) + " dimensions");
+  }
+  const std::vector<double> cuts(times.data(), times.data() + times.size());
   auto own = std::make_unique<OwnCustom>();
   own->function = function, own->potential = potential, own->data = data;
   own->claims = {uses_time, uses_attitude, uses_rates};
@@ -103,6 +109,7 @@ std::unique_ptr<OwnCustom> make_custom(const py::object& function, bool uses_tim
     }
     own->torque.emplace(reinterpret_cast<Custom::Function>(address), reinterpret_cast<void*>(user), own->claims,
                         compiled_potential);
+    own->torque = own->torque->with_breaks(cuts);
     return own;
   }
   if (!PyCallable_Check(function.ptr())) {
@@ -118,16 +125,19 @@ std::unique_ptr<OwnCustom> make_custom(const py::object& function, bool uses_tim
                        "only a compiled function receives the pointer");
   }
   own->torque.emplace(&call_python, own.get(), own->claims, potential.is_none() ? nullptr : &call_python_potential);
+  own->torque = own->torque->with_breaks(cuts);
   return own;
 }
 
+py::tuple get_breaks(const OwnCustom& own) { return py::tuple(py::cast(own.get().breaks())); }
+
 py::tuple get_custom_state(const OwnCustom& own) {
   return py::make_tuple(own.function, own.claims.uses_time, own.claims.uses_attitude, own.claims.uses_rates,
-                        own.potential, own.data);
+                        own.potential, own.data, get_breaks(own));
 }
 
 constexpr const char* custom_doc =
-    R"doc(Custom(function, *, uses_time=True, uses_attitude=True, uses_rates=True, potential=None, data=None)
+    R"doc(Custom(function, *, uses_time=True, uses_attitude=True, uses_rates=True, potential=None, data=None, breaks=())
 
 A torque of your own.
 
@@ -145,6 +155,9 @@ potential : callable, optional
     (``double (double t, const double *attitude, void *data)``), when the torque is conservative: energy is then watched.
 data : int, optional
     The address handed to a compiled function.
+breaks : sequence of float
+    Times at which the function may jump or kink [s]: the edges of a pulse, the knots of a table. `solve` divides the
+    span there, so that no step crosses one. At the end of a part the function is called slightly before it.
 
 Raises
 ------
@@ -166,8 +179,9 @@ void bind_torque_custom(py::module_& m) {
   py::class_<OwnCustom> type(m, "Custom", custom_doc, py::custom_type_setup(&show_references<OwnCustom>));
   type.def(py::init(&make_custom), py::arg("function"), py::kw_only(), py::arg("uses_time") = true,
            py::arg("uses_attitude") = true, py::arg("uses_rates") = true, py::arg("potential") = py::none(),
-           py::arg("data") = py::none());
+           py::arg("data") = py::none(), py::arg("breaks") = py::tuple());
   type.def_property_readonly("function", [](const OwnCustom& own) { return own.function; });
+  type.def_property_readonly("breaks", &get_breaks);
   type.def_property_readonly("traits", [](const OwnCustom& own) {
     return describe_traits(own.get().traits());
   });
@@ -179,8 +193,8 @@ void bind_torque_custom(py::module_& m) {
   });
   type.def("__hash__", [](const OwnCustom& own) { return py::hash(own.function); });
   type.def(py::pickle(&get_custom_state, [](const py::tuple& state) {
-    return from_state("Custom", state, 6, [](const py::tuple& s) {
-      return make_custom(s[0], s[1].cast<bool>(), s[2].cast<bool>(), s[3].cast<bool>(), s[4], s[5]);
+    return from_state("Custom", state, 7, [](const py::tuple& s) {
+      return make_custom(s[0], s[1].cast<bool>(), s[2].cast<bool>(), s[3].cast<bool>(), s[4], s[5], s[6]);
     });
   }));
 }

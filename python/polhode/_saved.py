@@ -68,6 +68,8 @@ def _motion(about: dict[str, Any], arrays: dict[str, Any]) -> Motion:
         plan=Plan(scene, plan, wishes),
         events=tuple(EventHit(int(event), float(t), _array(omega), _array(attitude))
                      for event, t, omega, attitude in about["events"]))
+    if "drift" in about:
+        motion.__dict__["_drift"] = {str(name): float(value) for name, value in about["drift"].items()}
     return motion
 
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "method/samples.hpp"
@@ -82,6 +83,35 @@ class SampleRows {
   std::vector<double> omega_, attitude_;
 };
 
+/// The torques at a time, with the state held, as the largest difference of two times relative to their size.
+bool jumps_with_time(const Scene& scene, const State& state) {
+  const double q[4] = {state.attitude.x, state.attitude.y, state.attitude.z, state.attitude.w};
+  const bool known = std::isfinite(q[0] + q[1] + q[2] + q[3]);
+  const Quat& start = scene.attitude();
+  const double at_start[4] = {start.x, start.y, start.z, start.w};
+  Vector3d before = Vector3d::Zero(), after = Vector3d::Zero();
+  const double around = 64 * std::numeric_limits<double>::epsilon() * std::abs(state.t);
+  for (const AnyTorque& torque : scene.torques()) {
+    if (!std::holds_alternative<torques::Custom>(torque)) continue;
+    for (const auto& [t, sum] : {std::pair{state.t - around, &before}, std::pair{state.t + around, &after}})
+      std::get<torques::Custom>(torque).add(
+          TorqueInput{t, state.omega.data(), known ? q : at_start, scene.inertia_B().matrix()}, sum->data());
+  }
+  return (after - before).norm() > 1e-6 * std::max(after.norm(), before.norm());
+}
+
+/// Why steps became too short, where a torque of the user's own acts.
+std::string explain_underflow(const Scene& scene, const State& state) {
+  const auto is_custom = [](const AnyTorque& torque) { return std::holds_alternative<torques::Custom>(torque); };
+  if (std::none_of(scene.torques().begin(), scene.torques().end(), is_custom)) return "";
+  const std::string at = polhode::to_text(state.t);
+  if (jumps_with_time(scene, state)) {
+    return "; your torque jumps near t = " + at + " s: give Custom this time in breaks=, or put the torque into During";
+  }
+  return "; near t = " + at + " s your torque jumps with the state or grows without limit: smooth it, or end the span "
+         "there by an event and go on from its state";
+}
+
 struct EndingText {
   Status status;
   std::string message;
@@ -140,6 +170,8 @@ Trajectory integrate(const Scene& scene, const RunOptions& options, const double
     if (result.ending == ode::Ending::finished) return true;
     EndingText text = describe(result.ending, result.t, options.max_steps);
     trajectory.status = text.status, trajectory.message = std::move(text.message);
+    if (result.ending == ode::Ending::underflow)
+      trajectory.message += explain_underflow(scene, to_state(unpack, result.t, stepper->y()));
     return trajectory.status == Status::event;
   };
   const SampleOrder order(times, scene.t0());

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "polhode/core/error.hpp"
 #include "polhode/math/detail/functions.hpp"
 #include "solve/candidates.hpp"
 #include "solve/certify_carried.hpp"
@@ -93,6 +94,11 @@ class Certifier {
     for (int round = 0;; ++round) {
       Attempt attempt = pair.run(coarse, std::max(coarse / ratio_, least));
       const double error = attempt.error;
+      if (decision_.may_cut && !pair.looks().breaks.empty()) {
+        best_ = std::move(attempt);
+        best_.motion.found_breaks = pair.looks().breaks;
+        return finish();
+      }
       const bool done = !attempt.finished() || error <= accuracy_;
       const bool lost = error > 0.5 && best_.error > 0.5;
       stalled = round == 0 || error < 0.5 * best_.error || (lost && is_better(attempt)) ? 0 : stalled + 1;
@@ -102,6 +108,7 @@ class Certifier {
       coarse = std::max(coarse / std::clamp(math::fast_pow(2 * error / accuracy_, 1.2), 3.0, 1e4), ratio_ * least);
     }
     pair.drop_added_times(best_.motion);
+    looks_ = pair.looks();
     return conclude();
   }
 
@@ -164,7 +171,11 @@ class Certifier {
       return finish();
     }
     if (best_.error <= accuracy_) {
-      motion.error_kind = "bounded";
+      motion.error_kind = jumps_within_steps() ? "estimated" : "bounded";
+      if (motion.error_kind == "estimated") {
+        note(describe_jump());
+        return finish();
+      }
       note(carries_error() ? "certified: the truncation and rounding errors of all steps, propagated to the end, stay "
                              "within the bound"
                            : "certified: a coarser run, with inputs changed by eight units in the last place, stays "
@@ -175,6 +186,16 @@ class Certifier {
       note(describe_limit());
     }
     return finish();
+  }
+
+  bool jumps_within_steps() const {
+    return !std::isnan(looks_.state_jump) || looks_.too_many || !looks_.breaks.empty();
+  }
+
+  std::string describe_jump() const {
+    const std::string end = ": a coarser run estimates the error, and no step ends at a jump";
+    if (std::isnan(looks_.state_jump)) return "your torque jumps or kinks at many times" + end;
+    return "your torque jumps with the state, as near t = " + to_text(looks_.state_jump) + " s" + end;
   }
 
   std::string describe_limit() const {
@@ -219,6 +240,7 @@ class Certifier {
   const double accuracy_;
   double safety_ = 1.5, ratio_ = pair_ratio;
   Attempt best_;
+  Looks looks_;
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "solve/attempt.hpp"
+#include "solve/custom_looks.hpp"
 
 namespace polhode {
 
@@ -15,16 +16,24 @@ class PairCertificate {
 
   Attempt run(double coarse, double fine);
 
+  /// What the first runs found of the user's own torques.
+  const Looks& looks() const { return looks_; }
+
   /// Removes the rows of times that were added for the comparison.
   void drop_added_times(Motion& motion) const;
 
  private:
+  /// The scene of the comparison run, with the times of the looks behind its own.
+  Scene add_looks(const Scene& scene) const;
+  void look_after_failure();
   double find_factor(const Motion& fine, const Motion& coarse) const;
 
   CountedRuns& runs_;
   double safety_;
   SolveOptions comparison_options_;
   std::optional<Scene> longer_, perturbed_;
+  bool must_look_;
+  Looks looks_;
 };
 
 /// `count` + 1 evenly spaced times over the whole span.

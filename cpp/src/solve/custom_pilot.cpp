@@ -24,6 +24,14 @@ constexpr double usual_steps = 1.4;       // steps at this tolerance over their 
 constexpr double stiff_steps = 100.0;     // explicit steps of stability from which the pilot run is implicit
 constexpr int timed_calls = 4;            // the first may compile the function, and any may be interrupted
 
+/// Looks at the torques along a run whose first rows, `first` of them, are others. Removes the rows of the looks.
+void take_looks(Decision& decision, std::size_t first, double accuracy, Trajectory& run) {
+  decision.looked = run.status == Status::finished;
+  if (decision.looked) decision.looks = look(decision.scene, run, first, accuracy);
+  run.t.resize(first), run.omega.resize(3 * first);
+  if (!run.attitude.empty()) run.attitude.resize(4 * first);
+}
+
 /// Averages the rate of decay over the times of the run, and keeps the fastest. Where the run ended early, its last
 /// state stands for the later ones, so that damping which begins late is seen.
 void measure_decay(const Scene& scene, const std::vector<double>& times, const Trajectory& run, Decision& decision) {
@@ -84,6 +92,8 @@ void pilot_custom(Decision& decision, const SolveOptions& options) {
   SceneParts parts = scene.parts();
   const std::vector<double> times = spread_times(decision, intervals);
   parts.times = times;
+  const std::vector<double> looks = spread_looks(times.front(), times.back());
+  parts.times.insert(parts.times.end(), looks.begin(), looks.end());
   parts.want = {true, facts.torques.uses_attitude};
   SolveOptions limited;
   limited.max_steps = std::min(most_pilot_steps, options.max_steps);
@@ -92,10 +102,13 @@ void pilot_custom(Decision& decision, const SolveOptions& options) {
   const BodyMethod& method = starts_stiff ? radau_method : dop853_method;
   const ode::Forecast& forecast = method.record.forecast;
   const double absolute = find_atol(method.record, scene, custom_rtol);
-  const Trajectory run =
+  Trajectory run =
       method.integrate(Scene(std::move(parts)), to_run_options(limited, {.rtol = custom_rtol, .atol = absolute}));
   decision.pilot = run.stats;
   decision.pilot.derivatives += timed_calls;
+  std::size_t reached = 0;
+  while (reached < std::min(run.t.size(), times.size()) && run.t[reached] == times[reached]) ++reached;
+  take_looks(decision, reached, get_accuracy(options), run);
   if (run.t.empty() || run.status == Status::stopped) return;
   const double sampled = static_cast<double>(run.t.size() - 1) / intervals;
   const double share = std::clamp(std::max(sampled, std::abs(run.t_reached - scene.t0()) / facts.span()), 1e-12, 1.0);

@@ -60,6 +60,12 @@ Decision decide(const Scene& scene, const SolveOptions& options) {
     }
   }
   pilot_custom(decision, options);
+  if (!decision.looks.breaks.empty()) {
+    Decision divided = decide(add_breaks(scene, decision.looks.breaks), options);
+    divided.looks = std::move(decision.looks);
+    divided.pilot += decision.pilot;
+    return divided;
+  }
   if (!plan_damped(decision, options)) decision.plan = make_method_plan(decision.scene, decision.facts, options);
   decision.plan.predicted_seconds += static_cast<double>(decision.pilot.derivatives) * decision.facts.call_seconds;
   return decision;

@@ -5,6 +5,7 @@
 #include "polhode/ode/problem.hpp"
 #include "polhode/solve/closed_form.hpp"
 #include "polhode/solve/plan.hpp"
+#include "solve/custom_looks.hpp"
 #include "solve/pieces.hpp"
 
 namespace polhode {
@@ -18,6 +19,9 @@ struct Decision {
   std::optional<ClosedForm> form = {};     ///< of the whole span
   std::size_t slow_forms = 0;              ///< pieces whose closed form holds, but takes longer than steps
   double turns = 0.0;                      ///< revolutions of all pieces together
+  bool looked = false;                     ///< the pilot run looked at the user's own torques over the whole span
+  Looks looks = {};                        ///< what it found; the span is divided at its breaks
+  bool may_cut = true;                     ///< a run may end early where a torque of the user's own is found to jump
   ode::Counts pilot = {};                  ///< what the pilot run of a user's own torque took
 };
 

@@ -20,6 +20,19 @@ AnyTorque drop_window(const AnyTorque& torque) {
   return std::visit([](const auto& lasting) { return AnyTorque(lasting); }, during->torque());
 }
 
+/// The user's own torque behind one with windows or none.
+const torques::Custom* find_custom(const AnyTorque& torque) {
+  const auto* during = std::get_if<During>(&torque);
+  return during != nullptr ? std::get_if<torques::Custom>(&during->torque()) : std::get_if<torques::Custom>(&torque);
+}
+
+/// The torque for a span without breaks.
+AnyTorque drop_breaks(AnyTorque torque, double begin, double end) {
+  const auto* custom = std::get_if<torques::Custom>(&torque);
+  if (custom != nullptr && !custom->breaks().empty()) return custom->between(begin, end);
+  return torque;
+}
+
 /// The first and the last time, including the start.
 std::pair<double, double> find_span(const Scene& scene) {
   const auto [least, most] = std::minmax_element(scene.times().begin(), scene.times().end());
@@ -32,7 +45,7 @@ std::vector<AnyTorque> find_acting(const Scene& scene, double begin, double end)
   for (const AnyTorque& torque : scene.torques()) {
     const auto* during = std::get_if<During>(&torque);
     if (during != nullptr && !(begin < end ? during->acts_throughout(begin, end) : during->acts_at(begin))) continue;
-    acting.push_back(drop_window(torque));
+    acting.push_back(drop_breaks(drop_window(torque), begin, end));
   }
   return acting;
 }
@@ -54,7 +67,28 @@ std::vector<Rotor> find_rotating(const std::vector<Rotor>& rotors, double begin,
 bool has_windows(const Scene& scene) {
   return has_rotor_windows(scene) ||
          std::any_of(scene.torques().begin(), scene.torques().end(),
-                     [](const AnyTorque& torque) { return std::holds_alternative<During>(torque); });
+                     [](const AnyTorque& torque) {
+                       if (std::holds_alternative<During>(torque)) return true;
+                       const auto* custom = std::get_if<torques::Custom>(&torque);
+                       return custom != nullptr && !custom->breaks().empty();
+                     });
+}
+
+Scene add_breaks(const Scene& scene, const std::vector<double>& times) {
+  SceneParts parts = scene.parts();
+  for (AnyTorque& torque : parts.torques) {
+    const torques::Custom* custom = find_custom(torque);
+    if (custom == nullptr) continue;
+    std::vector<double> all = custom->breaks();
+    all.insert(all.end(), times.begin(), times.end());
+    const torques::Custom cut = custom->with_breaks(std::move(all));
+    if (const auto* during = std::get_if<During>(&torque)) {
+      torque = During(cut, during->windows());
+    } else {
+      torque = cut;
+    }
+  }
+  return Scene(std::move(parts));
 }
 
 bool has_rotor_windows(const Scene& scene) {
@@ -74,6 +108,11 @@ Pieces cut(const Scene& scene, std::vector<double> method_switches) {
   const double t0 = scene.t0();
   std::vector<double> edges = method_switches;
   for (const AnyTorque& torque : scene.torques()) {
+    if (const torques::Custom* custom = find_custom(torque); custom != nullptr) {
+      for (const double t : custom->breaks()) {
+        if (first < t && t < last) edges.push_back(t);
+      }
+    }
     const During* during = find_windows(torque);
     if (during == nullptr) continue;
     for (const torques::Window& window : during->windows()) {

@@ -28,7 +28,10 @@ struct Pieces {
   std::vector<const Piece*> all() const;
 };
 
+/// True if a torque or a rotor has windows, or a torque of the user's own has breaks.
 bool has_windows(const Scene& scene);
+/// The scene whose own torques of the user have these breaks as well.
+Scene add_breaks(const Scene& scene, const std::vector<double>& times);
 bool has_rotor_windows(const Scene& scene);
 
 /// The change of omega where the momentum of the rotors jumps by dh: -J^-1 dh, because J w + h is continuous.

@@ -1,5 +1,6 @@
 #include "polhode/torque/custom.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "checks.hpp"
@@ -16,6 +17,32 @@ const TorqueRecord& Custom::record() {
                                        "A torque of the user's own: a Python callable or a compiled function pointer.",
                                        "", {}};
   return record;
+}
+
+Custom Custom::with_breaks(std::vector<double> times) const {
+  for (const double t : times) {
+    if (!std::isfinite(t)) throw InvalidInput("Custom.breaks", "finite times", to_text(t));
+  }
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  Custom other = *this;
+  other.breaks_ = std::move(times);
+  return other;
+}
+
+Custom Custom::between(double begin, double end) const {
+  // A few units in the last place, because the function may compare a rounded quotient of the time.
+  constexpr double units = 4 * std::numeric_limits<double>::epsilon();
+  Custom other = *this;
+  other.breaks_.clear();
+  if (!(begin < end)) return other;
+  const double most = (end - begin) / 1024;
+  const auto step = [most](double t) {
+    return std::min(most, std::max(units * std::abs(t), std::numeric_limits<double>::min()));
+  };
+  other.begin_ = begin + step(begin);
+  other.end_ = end - step(end);
+  return other;
 }
 
 double Custom::compute_potential(const TorqueInput& in) const {

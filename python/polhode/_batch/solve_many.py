@@ -95,7 +95,7 @@ class Motions:
         Raises
         ------
         InvalidInput
-            For another suffix, and for a scene with a torque that is a function.
+            For another suffix.
         """
         scenes = to_plain(self.scenes) if isinstance(self.scenes, Scene) else [to_plain(scene) for scene in self.scenes]
         starts = {f"start_{name}": value for name, value in self.options.items() if isinstance(value, np.ndarray)}

@@ -28,30 +28,56 @@ def _made(kind: Any, state: list[Any]) -> Any:
     return made
 
 
+class LostFunction:
+    """Stands for the function of a torque in a scene from a file. Whatever calls it is refused."""
+
+    def __init__(self, name: str) -> None:
+        self.__qualname__ = name
+
+    def __call__(self, t: float, omega: Any, attitude: Any) -> Any:
+        raise InvalidInput(f"scene: must have its torque {self.__qualname__!r}, a function, which no file holds; "
+                           "give it again: scene.replace(torques=[...])")
+
+    def __repr__(self) -> str:
+        return f"<{self.__qualname__}, not in the file>"
+
+
+def _own_torque(torque: Any) -> dict[str, Any]:
+    """Return the name of a torque that is a function, and what was declared of it."""
+    function, traits = torque.function, torque.traits
+    name = str(getattr(function, "__qualname__", None) or getattr(function, "__name__", type(function).__name__))
+    claims = {name: bool(traits[name]) for name in ("uses_time", "uses_attitude", "uses_rates")}
+    return {"kind": "Custom", "name": name, "claims": claims, "breaks": list(torque.breaks)}
+
+
+def _lost_torque(data: dict[str, Any]) -> Any:
+    claims = {name: bool(data["claims"][name]) for name in ("uses_time", "uses_attitude", "uses_rates")}
+    return torques.Custom(LostFunction(str(data["name"])), breaks=data["breaks"], **claims)
+
+
 def _torque(torque: Any) -> dict[str, Any]:
     if isinstance(torque, torques.During):
         return {**_torque(torque.torque), "during": _plain(torque.windows)}
     name = type(torque).__name__
-    if name == "Custom" or name not in torques.__all__:
-        raise InvalidInput(f"scene: must have torques that a file can hold, got {name}, a function")
+    if name == "Custom":
+        return _own_torque(torque)
+    if name not in torques.__all__:
+        raise InvalidInput(f"scene: must have torques that a file can hold, got {name}")
     return {"kind": name, "state": _state(torque)}
 
 
 def _from_torque(data: dict[str, Any]) -> Any:
-    if data["kind"] not in torques.__all__ or data["kind"] in ("Custom", "During", "records"):
+    if data["kind"] not in torques.__all__ or data["kind"] in ("During", "records"):
         raise ValueError(data["kind"])
-    torque = _made(getattr(torques, data["kind"]), data["state"])
+    if data["kind"] == "Custom":
+        torque = _lost_torque(data)
+    else:
+        torque = _made(getattr(torques, data["kind"]), data["state"])
     return torques.During(torque, data["during"]) if "during" in data else torque
 
 
 def to_plain(scene: Scene) -> dict[str, Any]:
-    """Return a scene as lists, numbers and text.
-
-    Raises
-    ------
-    InvalidInput
-        For a torque that is a function.
-    """
+    """Return a scene as lists, numbers and text. Of a torque that is a function, its name stands there."""
     matrix, physical = _state(scene.inertia)
     return {"inertia": matrix, "physical": physical, "omega": scene.omega.tolist(), "attitude": scene.attitude.tolist(),
             "torques": [_torque(torque) for torque in scene.torques],

@@ -263,7 +263,8 @@ class Motion:
         plan = {key: value for key, value in vars(self.plan).items() if key not in ("scene", "_report")}
         plan["pieces"] = [piece._asdict() for piece in self.plan.pieces]
         hits = [[hit.event, hit.t, list(hit.omega), list(hit.attitude)] for hit in self.events]
-        return {"kind": "motion", "scene": to_plain(self.scene), "options": self.options, "plan": plan,
+        # The drift of the energy needs the potential of an own torque, which no file holds.
+        return {"kind": "motion", "scene": to_plain(self.scene), "drift": self.drift, "options": self.options, "plan": plan,
                 "status": self.status, "message": self.message, "stats": self.stats, "error": self.error,
                 "error_kind": self.error_kind, "asked": self.asked, "proved_span": self.proved_span, "events": hits}
 
@@ -281,7 +282,12 @@ class Motion:
         Raises
         ------
         InvalidInput
-            For another suffix, and for a scene with a torque that is a function.
+            For another suffix.
+
+        Notes
+        -----
+        Of a `Custom` torque the name is stored. The loaded motion has its samples, but its scene cannot be solved again
+        before ``scene.replace(torques=...)``.
         """
         _export.save(_export.check_path(path), self._about(), {"t": self.t, **self._arrays()})
 

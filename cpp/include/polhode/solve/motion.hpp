@@ -44,7 +44,8 @@ struct Motion : Trajectory {
   double rtol_used = 0.0;                ///< of the run that is returned, if an accuracy was requested; else 0
   double error = std::numeric_limits<double>::quiet_NaN();   ///< of all samples; NaN if not estimated
   std::string error_kind =
-      "not estimated";                   ///< "bounded" | "proved" | "expected" | "limit" (above the accuracy) | "not estimated"
+      "not estimated";                   ///< "bounded" | "proved" | "expected" | "estimated" | "limit" (above the accuracy) |
+                                         ///< "not estimated"
   double asked = 0.0;                    ///< the requested accuracy, or the requested relative tolerance
   std::shared_ptr<const ClosedForm> closed_form = nullptr;   ///< replaces dense output if there is one
   std::vector<std::shared_ptr<const Motion>> pieces = {};    ///< replace dense output if the span is cut
@@ -54,6 +55,8 @@ struct Motion : Trajectory {
   /// Of a proof: the times between which every sample has the accuracy [s].
   double proved_begin = std::numeric_limits<double>::quiet_NaN();
   double proved_end = std::numeric_limits<double>::quiet_NaN();
+  /// Times at which a torque of the user's own was found to jump or kink; the span was divided there [s].
+  std::vector<double> found_breaks = {};
   double t_begin = 0.0;                  ///< start of the span of a closed form or a piece
 
   Motion() = default;

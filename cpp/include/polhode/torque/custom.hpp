@@ -1,8 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <type_traits>
+#include <vector>
 
 #include "polhode/torque/record.hpp"
 
@@ -42,6 +45,15 @@ class Custom {
 
   static const TorqueRecord& record();
 
+  /// The same torque, which may jump or kink at these times [s]. solve() divides the span there.
+  /// @throws InvalidInput for a time that is not finite
+  Custom with_breaks(std::vector<double> times) const;
+  const std::vector<double>& breaks() const { return breaks_; }   ///< sorted, separate
+
+  /// The same torque without breaks, for a span between two of them. At the ends the function gets times slightly
+  /// within, so that it need not know on which side of a jump a step ends.
+  Custom between(double begin, double end) const;
+
   TorqueTraits traits() const {
     return {.uses_time = claims_.uses_time,
             .uses_attitude = claims_.uses_attitude,
@@ -53,7 +65,7 @@ class Custom {
   void add(const TorqueInput& in, double* tau_B) const {
     double unit[4], torque[3] = {NAN, NAN, NAN};
     normalise(in.attitude, unit);
-    function_(in.t, in.omega, unit, torque, data_);
+    function_(std::clamp(in.t, begin_, end_), in.omega, unit, torque, data_);
     // Read one by one, as they were written: a wider load would stall until the stores are done.
     const volatile double* written = torque;
     for (int i = 0; i < 3; ++i) tau_B[i] += written[i];
@@ -75,6 +87,8 @@ class Custom {
   Claims claims_;
   Potential potential_;
   std::shared_ptr<const void> owner_;
+  std::vector<double> breaks_ = {};
+  double begin_ = -std::numeric_limits<double>::infinity(), end_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace polhode::torques
