@@ -115,12 +115,8 @@ def test_an_ensemble_without_a_store_has_tables_too(tmp_path):
 
 
 def test_what_cannot_be_saved_is_refused(tmp_path):
-    custom = ph.torques.Custom(lambda t, omega, attitude: np.zeros(3))
-    motion = ph.solve(scene("S5").replace(torques=[custom]), rtol=1e-6)
-    with pytest.raises(ph.InvalidInput, match="must have torques that a file can hold, got Custom, a function"):
-        motion.save(tmp_path / "a.npz")
     with pytest.raises(ph.InvalidInput, match="path: must end in .npz or .zarr, got 'a.csv'"):
-        motion.save("a.csv")
+        ph.solve(scene("S5")).save("a.csv")
     assert not list(tmp_path.iterdir())
 
 

@@ -93,7 +93,8 @@ Candidate evaluate_method(const Scene& scene, const Facts& facts, const SolveOpt
   candidate.predicted_seconds = factor * solve_seconds;
   const auto add_run = [&](double rtol, double share) {
     const double steps = share * forecast.compute_steps(rtol, facts.work(), facts.stiffness);
-    const double calls = steps * forecast.calls_per_step;
+    const double repeats = options.certify && record.implicit ? implicit_pair_calls : 1.0;
+    const double calls = repeats * steps * forecast.calls_per_step;
     candidate.predicted_calls += calls;
     const double own = steps * forecast.compute_step_seconds(rtol) + samples * forecast.sample_seconds;
     candidate.predicted_seconds += factor * own + calls * facts.call_seconds;
@@ -104,6 +105,11 @@ Candidate evaluate_method(const Scene& scene, const Facts& facts, const SolveOpt
     const double share = options.certify && !record.implicit ? pair_cost : 1.0;
     add_run(candidate.rtol, share);
     if (options.certify) add_run(compared, share);
+    if (options.certify && record.implicit) {
+      // The third run of such a certificate is explicit, and stops after some steps (certify_pair.cpp).
+      const double third = 100 + forecast.compute_steps(candidate.rtol, facts.work(), facts.stiffness) / 4;
+      candidate.predicted_calls += third * find_method("dop853").forecast.calls_per_step;
+    }
   }
   // The certificate will claim the error of the coarser run.
   const double shown = options.certify ? compared : candidate.rtol;

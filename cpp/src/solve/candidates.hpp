@@ -18,6 +18,8 @@ inline constexpr double piece_seconds = 3e-6;         ///< to set up a run of on
 inline constexpr double carried_cost = 2.4, carried_cost_stiff = 3.0;
 /// The cost of a pair of explicit runs, as a multiple of what both take: the first pair often proves too little.
 inline constexpr double pair_cost = 1.6;
+/// The calls of the implicit runs of a certificate, as a multiple of what a pair takes: there may be a second round.
+inline constexpr double implicit_pair_calls = 1.2;
 inline constexpr double pair_ratio = 5.0;             ///< ratio of the tolerances of the two runs of a certificate
 
 double get_accuracy(const SolveOptions& options);

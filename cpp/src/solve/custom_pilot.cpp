@@ -22,6 +22,7 @@ constexpr std::size_t pilot_stride = 4;         // samples between two looks at 
 constexpr long most_pilot_steps = 300;    // some 4000 calls
 constexpr double usual_steps = 1.4;       // steps at this tolerance over their forecast, by benchmarks/planner
 constexpr double stiff_steps = 100.0;     // explicit steps of stability from which the pilot run is implicit
+constexpr double followed_decay = 30.0;   // e-foldings until a rate is negligible, as in the forecast of steps
 constexpr int timed_calls = 4;            // the first may compile the function, and any may be interrupted
 
 /// Looks at the torques along a run whose first rows, `first` of them, are others. Removes the rows of the looks.
@@ -123,7 +124,9 @@ void pilot_custom(Decision& decision, const SolveOptions& options) {
   facts.piloted = true;
   // Where damping limits the steps, they tell nothing of those that accuracy needs.
   const bool is_stiff = forecast.stability > 0 && facts.stiffness / forecast.stability > 0.5 * steps;
-  facts.effort = is_stiff ? facts.turns : (steps - 1) / a_turn;
+  // The decay itself makes errors, as much as rotation by one radian for each e-folding that is followed.
+  const double decaying = std::min(facts.stiffness, followed_decay) / (2 * std::numbers::pi);
+  facts.effort = is_stiff ? facts.turns + decaying : (steps - 1) / a_turn;
 }
 
 }  // namespace polhode

@@ -69,9 +69,10 @@ class Motion:
     error : float
         The error of all samples, as `accuracy` is defined in `solve`; NaN if not estimated. Errors of the times of
         events are not in it.
-    error_kind : {"bounded", "proved", "expected", "limit", "not estimated"}
+    error_kind : {"bounded", "proved", "expected", "estimated", "limit", "not estimated"}
         "bounded": a certificate, or the rounding of a closed form, bounds the error. "proved": the error is a theorem.
-        "expected": no certificate was requested. "limit": the error exceeds the accuracy, because float64 allows no
+        "expected": no certificate was requested. "estimated": a torque of your own jumps within steps, so a coarser run
+        estimates the error without bounding it. "limit": the error exceeds the accuracy, because float64 allows no
         smaller one, or because a proof reaches no farther than `proved_span`.
     asked : float
         The requested accuracy, or the requested relative tolerance.
