@@ -242,7 +242,7 @@ class AngularDamping:
         """
 class Custom:
     """
-    Custom(function, *, uses_time=True, uses_attitude=True, uses_rates=True, potential=None, data=None)
+    Custom(function, *, uses_time=True, uses_attitude=True, uses_rates=True, potential=None, data=None, breaks=())
 
     A torque of your own.
 
@@ -260,6 +260,9 @@ class Custom:
         (``double (double t, const double *attitude, void *data)``), when the torque is conservative: energy is then watched.
     data : int, optional
         The address handed to a compiled function.
+    breaks : sequence of float
+        Times at which the function may jump or kink [s]: the edges of a pulse, the knots of a table. `solve` divides the
+        span there, so that no step crosses one. At the end of a part the function is called slightly before it.
 
     Raises
     ------
@@ -273,7 +276,7 @@ class Custom:
         ...
     def __hash__(self) -> int:
         ...
-    def __init__(self, function: typing.Any, *, uses_time: bool = True, uses_attitude: bool = True, uses_rates: bool = True, potential: typing.Any = None, data: typing.Any = None) -> None:
+    def __init__(self, function: typing.Any, *, uses_time: bool = True, uses_attitude: bool = True, uses_rates: bool = True, potential: typing.Any = None, data: typing.Any = None, breaks: typing.Any = ()) -> None:
         ...
     def __reduce__(self) -> tuple[typing.Any, ...]:
         """
@@ -282,6 +285,9 @@ class Custom:
     def __repr__(self) -> str:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
+        ...
+    @property
+    def breaks(self) -> tuple[typing.Any, ...]:
         ...
     @property
     def function(self) -> typing.Any:

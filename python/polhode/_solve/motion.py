@@ -265,8 +265,8 @@ class Motion:
         plan["pieces"] = [piece._asdict() for piece in self.plan.pieces]
         hits = [[hit.event, hit.t, list(hit.omega), list(hit.attitude)] for hit in self.events]
         # The drift of the energy needs the potential of an own torque, which no file holds.
-        return {"kind": "motion", "scene": to_plain(self.scene), "drift": self.drift, "options": self.options, "plan": plan,
-                "status": self.status, "message": self.message, "stats": self.stats, "error": self.error,
+        return {"kind": "motion", "scene": to_plain(self.scene), "drift": self.drift, "options": self.options,
+                "plan": plan, "status": self.status, "message": self.message, "stats": self.stats, "error": self.error,
                 "error_kind": self.error_kind, "asked": self.asked, "proved_span": self.proved_span, "events": hits}
 
     def to_pandas(self) -> Any:

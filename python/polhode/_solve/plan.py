@@ -84,7 +84,7 @@ class Plan:
     def __init__(self, scene: Scene, parts: dict[str, Any], options: dict[str, Any]) -> None:
         self.scene = scene
         vars(self).update(parts)
-        self.pieces = tuple(Piece(**piece) for piece in parts["pieces"])
+        self.pieces = tuple(Piece(**{**piece, "torques": tuple(piece["torques"])}) for piece in parts["pieces"])
         self.wishes = options
 
     @functools.cached_property

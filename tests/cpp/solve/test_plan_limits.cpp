@@ -63,3 +63,20 @@ TEST_CASE("damping of any strength is planned") {
     CHECK(plan.method == "radau");
   }
 }
+
+TEST_CASE("the span is divided at the breaks of an own torque, given or found") {
+  const auto pulse = [](double t, const double*, const double*, double* torque) {
+    torque[0] = torque[1] = 0.0, torque[2] = 3.0 <= t && t < 3.02 ? 5.0 : 0.0;
+  };
+  const torques::Custom torque = torques::Custom::from(pulse, {});
+  CHECK(torque.with_breaks({2.0, 1.0, 2.0}).breaks() == std::vector{1.0, 2.0});
+  CHECK_THROWS_AS(torque.with_breaks({std::numeric_limits<double>::infinity()}), InvalidInput);
+  SolveOptions options;
+  options.accuracy = 1e-9;
+  for (const torques::Custom& one : {torque, torque.with_breaks({3.0, 3.02})}) {
+    const Plan plan = make_plan(make_plan_scene(one, 20.0), options);
+    REQUIRE(plan.pieces.size() == 3);
+    CHECK(plan.pieces[1].begin == 3.0);
+    CHECK(plan.pieces[1].end == 3.02);
+  }
+}
