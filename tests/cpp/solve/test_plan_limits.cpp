@@ -3,7 +3,9 @@
 #include <chrono>
 #include <limits>
 #include <memory>
+#include <vector>
 
+#include "polhode/core/error.hpp"
 #include "polhode/solve/plan.hpp"
 #include "polhode/torque/torques.hpp"
 
