@@ -14,8 +14,7 @@ constexpr std::pair<const char*, SensitivityTo> names[] = {{"omega", Sensitivity
                                                            {"time", SensitivityTo::time}};
 
 std::vector<SensitivityTo> to_wrt(py::handle given) {
-  const bool is_one = py::isinstance<py::str>(given);
-  const py::tuple wanted = is_one ? py::make_tuple(given) : py::tuple(given.cast<py::object>());
+  const py::tuple wanted = py::module_::import("polhode._sensitivity.sensitivity").attr("to_names")(given);
   std::vector<SensitivityTo> wrt;
   for (const py::handle item : wanted) {
     const std::string text = py::str(item).cast<std::string>();

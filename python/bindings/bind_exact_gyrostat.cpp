@@ -18,7 +18,7 @@ Gyrostat make_with_rotors(const InertiaTensor& inertia, const py::object& rotors
   for (const py::handle rotor : rotors) {
     const std::string where = "rotors[" + std::to_string(wheels.size()) + "]";
     wheels.push_back(to_rotor(rotor, where));
-    if (wheels.back().windows().empty()) continue;
+    if (!wheels.back().has_windows()) continue;
     throw InvalidInput(where, "one that always turns", "one with windows of time", "solve a Scene with such rotors");
   }
   const Scene scene(SceneParts{.inertia_B = inertia, .omega = omega, .times = {0.0}, .rotors = std::move(wheels)});

@@ -57,6 +57,11 @@ void bind_scene(py::module_& m) {
                        py::handle times, py::handle want, py::handle t0, const py::object& name,
                        const py::iterable& rotors) {
              if (!py::isinstance<py::str>(name)) throw InvalidInput("scene.name", "text", std::string(py::repr(name)));
+             if (PyUnicode_AsUTF8(name.ptr()) == nullptr) {
+               PyErr_Clear();
+               throw InvalidInput("scene.name", "text that UTF-8 can write", std::string(py::str(py::repr(name))),
+                                  "part of a file name in another encoding");
+             }
              std::vector<AnyTorque> list;
              for (const py::handle one : torques)
                list.push_back(to_torque(one, "scene.torques[" + std::to_string(list.size()) + "]"));

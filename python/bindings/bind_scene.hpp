@@ -19,6 +19,6 @@ Rotor to_rotor(py::handle value, const std::string& name);
 
 /// Windows of time: pairs (begin, end), or one pair.
 std::vector<torques::Window> to_windows(py::handle value, const char* name);
-py::tuple from_windows(const std::vector<torques::Window>& windows);
+py::tuple from_windows(std::span<const torques::Window> windows);
 
 }  // namespace polhode::python

@@ -14,6 +14,11 @@ std::optional<double> to_optional(py::handle value, const char* name) {
   return to_real(value, name);
 }
 
+std::optional<std::vector<torques::Window>> to_optional_windows(py::handle during) {
+  if (during.is_none()) return std::nullopt;
+  return to_windows(during, "Rotor.during");
+}
+
 Rotor make_rotor(py::handle axis, py::handle momentum, py::handle inertia, py::handle speed, py::handle free,
                  py::handle during) {
   const Array direction = to_array(axis, "Rotor.axis");
@@ -25,11 +30,11 @@ Rotor make_rotor(py::handle axis, py::handle momentum, py::handle inertia, py::h
                 .inertia = to_optional(inertia, "Rotor.inertia"),
                 .speed = to_optional(speed, "Rotor.speed"),
                 .free = free.cast<bool>(),
-                .windows = during.is_none() ? std::vector<torques::Window>() : to_windows(during, "Rotor.during")});
+                .windows = to_optional_windows(during)});
 }
 
 py::object get_during(const Rotor& rotor) {
-  if (rotor.windows().empty()) return py::none();
+  if (!rotor.has_windows()) return py::none();
   return from_windows(rotor.windows());
 }
 
@@ -75,7 +80,8 @@ speed : float, optional
 free : bool
     True if no motor holds the speed. Without `inertia`, the scene's inertia must leave out the axial moment already.
 during : array_like, shape (n, 2) or (2,), optional
-    Windows of time [s] in which a held rotor rotates; outside them it is at rest in the body. J omega + h is continuous
+    Windows of time [s] in which a held rotor rotates; outside them it is at rest in the body. An
+    empty list means never, no list means always. J omega + h is continuous
     where it starts or stops, so omega jumps by ``-J^-1 dh``.
 
 Raises
@@ -107,7 +113,7 @@ void bind_scene_rotor(py::module_& m) {
       .def_property_readonly("inertia", &Rotor::inertia, "Moment about the axis [kg m^2], or None.")
       .def_property_readonly("speed", &Rotor::speed, "Relative to the body at the start [rad/s], or None.")
       .def_property_readonly("free", &Rotor::free, "True if it is free on its bearing.")
-      .def_property_readonly("during", &get_during, "tuple of (begin, end) [s], in the order of time, or None.")
+      .def_property_readonly("during", &get_during, "tuple of (begin, end) [s], in the order of time; None if it always rotates.")
       .def("__repr__", &show)
       .def("__eq__",
            [](const Rotor& a, const py::object& b) {

@@ -37,7 +37,7 @@ std::vector<Window> to_windows(py::handle value, const char* name) {
   return windows;
 }
 
-py::tuple from_windows(const std::vector<Window>& windows) {
+py::tuple from_windows(std::span<const Window> windows) {
   py::tuple pairs(windows.size());
   for (std::size_t i = 0; i < windows.size(); ++i) pairs[i] = py::make_tuple(windows[i].begin, windows[i].end);
   return pairs;
@@ -67,7 +67,8 @@ Parameters
 torque : a torque of polhode.torques
     Without windows of its own.
 windows : array_like, shape (n, 2) or (2,)
-    A begin and a later end each [s], in any order; either may be infinite. Windows that touch are one.
+    A begin and a later end each [s], in any order; either may be infinite. Windows that touch are one. An empty list
+    means that the torque never acts.
 
 Raises
 ------

@@ -1,7 +1,11 @@
+#include <pybind11/numpy.h>
+
 #include <vector>
 
 #include "bind.hpp"
 #include "calls.hpp"
+#include "polhode/inertia/shapes.hpp"
+#include "polhode/method/methods.hpp"
 #include "reduce.hpp"
 #include "uninitialised.hpp"
 
@@ -22,13 +26,33 @@ std::vector<py::type> list_classes(const py::module_& m) {
   return classes;
 }
 
+/// What would be made at the first call, behind a lock. A thread that makes it while the process forks would leave the
+/// lock closed in the child.
+void make_constants() {
+  py::detail::npy_api::get();
+  methods();
+  shapes::all();
+}
+
 }  // namespace
 }  // namespace polhode::python
 
+extern "C" PYBIND11_EXPORT PyObject* PyInit_polhode_core();
+
+// pybind11's own start waits for ever in a subinterpreter, and NumPy supports none.
+extern "C" PYBIND11_EXPORT PyObject* PyInit__core() {
+  if (PyInterpreterState_Get() == PyInterpreterState_Main()) return PyInit_polhode_core();
+  PyErr_SetString(PyExc_ImportError,
+                  "polhode cannot be imported in a subinterpreter, as NumPy and pybind11 keep one state for the whole "
+                  "process; import it in the main interpreter, or use processes");
+  return nullptr;
+}
+
 // The table of contents: one line a word, in the order in which they may use each other.
-PYBIND11_MODULE(_core, m, pybind11::mod_gil_not_used()) {
+PYBIND11_MODULE(polhode_core, m, pybind11::mod_gil_not_used()) {
   m.doc() = "The compiled core of polhode. Use the names of the package `polhode`, not these.";
   using namespace polhode::python;
+  make_constants();
   bind_core(m);
   bind_math(m);
   bind_attitude(m);

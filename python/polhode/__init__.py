@@ -4,6 +4,10 @@ import importlib as _importlib
 from typing import TYPE_CHECKING as _TYPE_CHECKING
 from typing import Any as _Any
 
+from . import _process   # first: it refuses subinterpreters and second copies
+
+_process.require_one_copy(__file__)
+
 from . import elliptic as elliptic
 from . import inertia as inertia
 from . import measured as measured

@@ -9,6 +9,7 @@
 #include "batch/lanes/step_kernels.hpp"
 #include "batch/parallel.hpp"
 #include "batch/rows.hpp"
+#include "core/choose_once.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/core/simd.hpp"
 #include "polhode/inertia/inertia_tensor.hpp"
@@ -20,13 +21,13 @@ constexpr std::size_t grain = 64;         // bodies; a multiple of every block o
 constexpr std::size_t round_work = 65536;   // steps of bodies between two looks for Ctrl-C
 
 const StepKernels& choose_kernels() {
-  static const StepKernels& chosen = [&]() -> const StepKernels& {
+  static constinit std::atomic<const StepKernels*> chosen{nullptr};
+  return choose_once(chosen, []() -> const StepKernels& {
     const StepKernels* found = nullptr;
     if (simd_level() == SimdLevel::avx512) found = avx512_step_lanes();
     if (found == nullptr && simd_level() != SimdLevel::baseline) found = avx2_step_lanes();
     return found != nullptr ? *found : *baseline_step_lanes();
-  }();
-  return chosen;
+  });
 }
 
 template <class T>
@@ -42,6 +43,28 @@ bool is_unit(const T* q) {
   return !(error > (std::is_same_v<T, float> ? T(1e-5) : T(2e-6)));   // NaN passes: it is the body's own
 }
 
+template <class T>
+constexpr double most_turning = std::is_same_v<T, float> ? 1e10 : 1e25;   // [rad]: beyond it no digit of a phase is left
+
+/// Bound on the sum of a body's components of momentum in all steps. Not finite for a body that becomes NaN.
+template <class T>
+double bound_momentum(const StepBatch<T>& b, std::size_t body) {
+  const auto sum = [](const T* v) {
+    return std::abs(static_cast<double>(v[0])) + std::abs(static_cast<double>(v[1])) +
+           std::abs(static_cast<double>(v[2]));
+  };
+  const double kicks = b.torque == nullptr ? 0.0 : sum(b.torque + (b.one_torque ? 0 : 3 * body));
+  return sum(b.momentum + 3 * body) + kicks * std::abs(static_cast<double>(b.step)) * static_cast<double>(b.count);
+}
+
+/// Bound on the angle of rotation in one step. NaN passes every comparison: it is the body's own.
+template <class T>
+double bound_turning(const StepBatch<T>& b, std::size_t body) {
+  const T* I = b.moments + (b.one_inertia ? 0 : 3 * body);
+  const double size = bound_momentum(b, body), least = static_cast<double>(std::min({I[0], I[1], I[2]}));
+  return size <= std::numeric_limits<double>::max() ? size * std::abs(static_cast<double>(b.step)) / least : 0.0;
+}
+
 /// The first body that is refused, or the number of bodies.
 template <class T>
 std::size_t find_refused(const StepBatch<T>& b, std::size_t begin, std::size_t end) {
@@ -49,9 +72,12 @@ std::size_t find_refused(const StepBatch<T>& b, std::size_t begin, std::size_t e
   if (!b.one_inertia)
     for (std::size_t i = begin; i < end; ++i) good &= is_body(b.moments + 3 * i);
   for (std::size_t i = begin; i < end; ++i) good &= is_unit(b.attitude + 4 * i);
+  for (std::size_t i = begin; i < end; ++i) good &= !(bound_turning(b, i) > most_turning<T>);
   if (good) return b.bodies;
-  for (std::size_t i = begin; i < end; ++i)
-    if ((!b.one_inertia && !is_body(b.moments + 3 * i)) || !is_unit(b.attitude + 4 * i)) return i;
+  for (std::size_t i = begin; i < end; ++i) {
+    if (!b.one_inertia && !is_body(b.moments + 3 * i)) return i;
+    if (!is_unit(b.attitude + 4 * i) || bound_turning(b, i) > most_turning<T>) return i;
+  }
   return b.bodies;
 }
 
@@ -65,6 +91,11 @@ template <class T>
                        "a rod or a point has a zero moment, so its rate about that axis is undefined");
   }
   const T* q = b.attitude + 4 * body;
+  if (is_unit(q)) {
+    throw InvalidInput(row_name("momentum", body), "such that the body rotates by at most " +
+                       to_text(most_turning<T>) + " rad in a step", to_text(bound_turning(b, body)) + " rad at most",
+                       "beyond this the phase has no digits; h may be too large, or the units do not fit");
+  }
   double norm2 = 0.0;
   for (int k = 0; k < 4; ++k) norm2 += static_cast<double>(q[k]) * static_cast<double>(q[k]);
   throw InvalidInput(row_name("attitude", body), "a unit quaternion (x, y, z, w)", "norm " + to_text(std::sqrt(norm2)),

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "core/choose_once.hpp"
 #include "polhode/core/error.hpp"
 
 namespace polhode {
@@ -40,8 +41,8 @@ const char* to_text(SimdLevel level) {
 }
 
 SimdLevel simd_level() {
-  static const SimdLevel level = decide();
-  return level;
+  static constinit std::atomic<const SimdLevel*> chosen{nullptr};
+  return choose_once(chosen, []() -> const SimdLevel& { return *std::find(levels, levels + 3, decide()); });
 }
 
 }  // namespace polhode

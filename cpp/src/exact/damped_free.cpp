@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "exact/time_parts.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/exact/detail/free_kernels.hpp"
 #include "polhode/math/detail/functions.hpp"
@@ -69,6 +70,12 @@ void DampedFree::at(const double* t, std::size_t n, double* omega, double* attit
     first = std::min(first, t[i]), last = std::max(last, t[i]);
   }
   check_time(first), check_time(last);   // s grows with t
+  exact::each_part(exact::TimeGrid(t, n), [&](const exact::TimeGrid& part, std::size_t begin) {
+    write_part(part.t, part.n, omega ? omega + 3 * begin : nullptr, attitude ? attitude + 4 * begin : nullptr);
+  });
+}
+
+void DampedFree::write_part(const double* t, std::size_t n, double* omega, double* attitude) const {
   const exact::FreeKernels& kernels = exact::free_kernels();
   using Form = FreeMotion::Form;
   if (free_.form_ == Form::trig)

@@ -1,5 +1,6 @@
 #include "polhode/exact/detail/free_kernels.hpp"
 
+#include "core/choose_once.hpp"
 #include "exact/lanes/levels.hpp"
 
 namespace polhode::exact {
@@ -12,8 +13,8 @@ const FreeKernels& free_kernels(SimdLevel level) {
 }
 
 const FreeKernels& free_kernels() {
-  static const FreeKernels& chosen = free_kernels(simd_level());
-  return chosen;
+  static constinit std::atomic<const FreeKernels*> chosen{nullptr};
+  return choose_once(chosen, []() -> const FreeKernels& { return free_kernels(simd_level()); });
 }
 
 }  // namespace polhode::exact

@@ -1,5 +1,6 @@
 #include "polhode/exact/detail/gyrostat_kernels.hpp"
 
+#include "core/choose_once.hpp"
 #include "exact/lanes/levels.hpp"
 
 namespace polhode::exact {
@@ -12,8 +13,8 @@ const GyrostatKernels& gyrostat_kernels(SimdLevel level) {
 }
 
 const GyrostatKernels& gyrostat_kernels() {
-  static const GyrostatKernels& chosen = gyrostat_kernels(simd_level());
-  return chosen;
+  static constinit std::atomic<const GyrostatKernels*> chosen{nullptr};
+  return choose_once(chosen, []() -> const GyrostatKernels& { return gyrostat_kernels(simd_level()); });
 }
 
 }  // namespace polhode::exact

@@ -1,5 +1,6 @@
 #include "polhode/exact/detail/heavy_top_kernels.hpp"
 
+#include "core/choose_once.hpp"
 #include "exact/lanes/levels.hpp"
 
 namespace polhode::exact {
@@ -12,8 +13,8 @@ const HeavyTopKernels& heavy_top_kernels(SimdLevel level) {
 }
 
 const HeavyTopKernels& heavy_top_kernels() {
-  static const HeavyTopKernels& chosen = heavy_top_kernels(simd_level());
-  return chosen;
+  static constinit std::atomic<const HeavyTopKernels*> chosen{nullptr};
+  return choose_once(chosen, []() -> const HeavyTopKernels& { return heavy_top_kernels(simd_level()); });
 }
 
 }  // namespace polhode::exact

@@ -6,6 +6,7 @@
 
 #include "exact/pendulum_start.hpp"
 #include "polhode/core/error.hpp"
+#include "polhode/core/interrupt.hpp"
 #include "polhode/exact/detail/free_setup_hyper.hpp"
 
 namespace polhode {
@@ -119,6 +120,7 @@ void Pendulum::at(const double* t, std::size_t n, double* omega, double* attitud
   const exact::TimeGrid grid(t, n);
   double now[3 * states_at_once];
   for (std::size_t first = 0; first < n; first += states_at_once) {
+    if (first > 0) check_interrupt();
     const std::size_t count = std::min(states_at_once, n - first);
     if (kind_ == PendulumKind::rest) {
       for (std::size_t i = 0; i < count; ++i)

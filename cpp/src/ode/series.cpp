@@ -1,5 +1,6 @@
 #include "polhode/ode/series.hpp"
 
+#include "core/choose_once.hpp"
 #include "ode/lanes/levels.hpp"
 
 namespace polhode::ode {
@@ -12,8 +13,8 @@ const SeriesKernels& series_kernels(SimdLevel level) {
 }
 
 const SeriesKernels& series_kernels() {
-  static const SeriesKernels& chosen = series_kernels(simd_level());
-  return chosen;
+  static constinit std::atomic<const SeriesKernels*> chosen{nullptr};
+  return choose_once(chosen, []() -> const SeriesKernels& { return series_kernels(simd_level()); });
 }
 
 }  // namespace polhode::ode

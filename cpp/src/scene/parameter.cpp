@@ -57,7 +57,7 @@ std::size_t find_torque(const Scene& scene, std::string_view group, const GroupN
   return *found;
 }
 
-void add_windows(const std::vector<Window>& windows, Of of, std::size_t index, const std::string& prefix,
+void add_windows(std::span<const Window> windows, Of of, std::size_t index, const std::string& prefix,
                  std::vector<SceneParameter>& found) {
   for (std::size_t i = 0; i < windows.size(); ++i) {
     for (const int end : {0, 1}) {

@@ -65,11 +65,12 @@ Rotor::Rotor(RotorParts parts) : parts_(std::move(parts)) {
   if (parts_.inertia && parts_.speed && !std::isfinite(*parts_.inertia * *parts_.speed)) {
     throw InvalidInput("Rotor.speed", "such that inertia times speed is finite", to_text(*parts_.speed));
   }
-  if (parts_.free && !parts_.windows.empty()) {
-    throw InvalidInput("Rotor.during", "left out with free=True", std::to_string(parts_.windows.size()) + " windows",
+  if (!parts_.windows) return;
+  if (parts_.free) {
+    throw InvalidInput("Rotor.during", "left out with free=True", std::to_string(parts_.windows->size()) + " windows",
                        "no motor changes the speed of a rotor that is free on its bearing");
   }
-  parts_.windows = torques::arrange(std::move(parts_.windows), "Rotor.during");
+  parts_.windows = torques::arrange(std::move(*parts_.windows), "Rotor.during");
 }
 
 double Rotor::compute_momentum(const Vector3d& w_B) const {
@@ -85,14 +86,14 @@ double Rotor::compute_speed(double momentum, const Vector3d& w_B) const {
 }
 
 bool Rotor::rotates_at(double t) const {
-  if (parts_.windows.empty()) return true;
-  return std::any_of(parts_.windows.begin(), parts_.windows.end(),
+  if (!has_windows()) return true;
+  return std::any_of(windows().begin(), windows().end(),
                      [t](const torques::Window& window) { return window.begin <= t && t < window.end; });
 }
 
 bool Rotor::rotates_throughout(double begin, double end) const {
-  if (parts_.windows.empty()) return true;
-  return std::any_of(parts_.windows.begin(), parts_.windows.end(), [=](const torques::Window& window) {
+  if (!has_windows()) return true;
+  return std::any_of(windows().begin(), windows().end(), [=](const torques::Window& window) {
     return window.begin <= begin && end <= window.end;
   });
 }

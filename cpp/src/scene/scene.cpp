@@ -81,8 +81,8 @@ Scene::Scene(SceneParts parts) {
     bool steady = true, any = false;
     for (const Rotor& rotor : parts.rotors) {
       const double momentum = rotor.compute_momentum(parts.omega);
-      steady = steady && (rotor.windows().empty() || momentum == 0.0);
-      any = any || (momentum != 0.0 && !rotor.windows().empty());
+      steady = steady && (!rotor.has_windows() || momentum == 0.0);
+      any = any || (momentum != 0.0 && rotor.has_windows());
     }
     parts_ = std::make_shared<const SceneParts>(std::move(parts));
     rotor_momentum_ = rotor_momentum(parts_->t0);

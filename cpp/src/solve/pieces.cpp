@@ -56,7 +56,7 @@ std::vector<Rotor> find_rotating(const std::vector<Rotor>& rotors, double begin,
   for (const Rotor& rotor : rotors) {
     if (!(begin < end ? rotor.rotates_throughout(begin, end) : rotor.rotates_at(begin))) continue;
     RotorParts parts = rotor.parts();
-    parts.windows.clear();
+    parts.windows.reset();
     rotating.emplace_back(std::move(parts));
   }
   return rotating;
@@ -93,7 +93,7 @@ Scene add_breaks(const Scene& scene, const std::vector<double>& times) {
 
 bool has_rotor_windows(const Scene& scene) {
   return std::any_of(scene.rotors().begin(), scene.rotors().end(),
-                     [](const Rotor& rotor) { return !rotor.windows().empty(); });
+                     [](const Rotor& rotor) { return rotor.has_windows(); });
 }
 
 Vector3d compute_rate_jump(const InertiaTensor& J_B, const Vector3d& dh_B) {

@@ -17,22 +17,52 @@ from .._core import attitude as _kernels
 FloatArray = NDArray[np.float64]
 
 
-def to_numbers(value: Any, name: str) -> FloatArray:
-    """Return a float64 array; NaN and inf pass."""
-    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
+def to_any(value: Any, name: str, kinds: str = "fiub") -> NDArray[Any]:
+    """Return an array of real numbers of these kinds of types."""
+    # Only who has imported numpy.ma has masked arrays. To import it here would cost 20 ms, and hang a process that is
+    # forked meanwhile.
+    masked = getattr(sys.modules.get("numpy.ma"), "MaskedArray", None)
+    if masked is not None and isinstance(value, masked) and np.ma.is_masked(value):
         count = np.ma.getmaskarray(value).sum()
         raise InvalidInput(f"{name}: must be without masked entries, got {count} of them (leave them out, or give them "
                            "a value by .filled())")
     try:
         array = np.asarray(value)
-    except ValueError:   # a ragged list
+    except MemoryError:
+        raise
+    except Exception:   # a ragged list, or an object that fails as an array
         array = np.empty(0, dtype=object)
-    if array.dtype.kind not in "fiub":
+    if array.dtype.kind not in kinds:
         raise InvalidInput(f"{name}: must be an array of real numbers, got dtype {array.dtype}")
-    numbers = array.astype(np.float64, copy=False)
+    return array
+
+
+def to_numbers(value: Any, name: str) -> FloatArray:
+    """Return a float64 array; NaN and inf pass."""
+    numbers = to_any(value, name).astype(np.float64, copy=False)
     if _core.flushes_to_zero():
         _core.require_kept(numbers, name)
     return numbers
+
+
+def to_number(value: Any, name: str, what: str = "one number") -> float:
+    """Return one number; NaN and inf pass."""
+    array = to_numbers(value, name)
+    if array.size != 1:
+        raise InvalidInput(f"{name}: must be {what}, got an array of shape {array.shape}")
+    return float(array.reshape(-1)[0])
+
+
+def is_rotation(value: Any) -> bool:
+    """Return True for an object that gives quaternions: polhode's Rotation, or SciPy's."""
+    return hasattr(value, "as_quat") and not isinstance(value, type)
+
+
+def require_bool(value: Any, name: str) -> bool:
+    """Return a bool; other objects are refused, as their truth may not be what was meant."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise InvalidInput(f"{name}: must be True or False, got {type(value).__name__}")
+    return bool(value)
 
 
 def to_vectors(value: Any, name: str) -> FloatArray:

@@ -105,7 +105,7 @@ class Rotation:
         InvalidInput
             NaN, inf, or another shape.
         """
-        return _wrap(_kernels.from_rotvec(rotvec, degrees))
+        return _wrap(_kernels.from_rotvec(rotvec, arrays.require_bool(degrees, "degrees")))
 
     @staticmethod
     def from_euler(seq: str, angles: ArrayLike, degrees: bool = False) -> Rotation:
@@ -124,7 +124,7 @@ class Rotation:
         InvalidInput
             Unknown sequence, NaN, inf, or another shape.
         """
-        return _wrap(_kernels.from_euler(seq, angles, degrees))
+        return _wrap(_kernels.from_euler(seq, angles, arrays.require_bool(degrees, "degrees")))
 
     @staticmethod
     def from_mrp(mrp: ArrayLike) -> Rotation:
@@ -218,7 +218,7 @@ class Rotation:
 
         At pi exactly (w = 0), where v and -v are the same rotation, the first non-zero component is positive.
         """
-        return _kernels.as_rotvec(self._quat, degrees)
+        return _kernels.as_rotvec(self._quat, arrays.require_bool(degrees, "degrees"))
 
     def as_mrp(self) -> FloatArray:
         """Modified Rodrigues parameters e tan(angle / 4), shape (..., 3), of length 1 at most.
@@ -252,7 +252,7 @@ class Rotation:
         Bernardes & Viollet 2022, PLoS ONE 17(11) e0276302, with the middle angle of sequences of three axes from its
         sine and cosine. SciPy sets the third angle to 0 within 1e-7 rad of the pole, here it is within 9e-16.
         """
-        return _kernels.as_euler(seq, self._quat, degrees)
+        return _kernels.as_euler(seq, self._quat, arrays.require_bool(degrees, "degrees"))
 
     def gimbal_lock(self, seq: str) -> NDArray[np.bool_] | bool:
         """Where only the sum or the difference of the outer Euler angles is determined; a bool for one rotation.
@@ -283,7 +283,7 @@ class Rotation:
         InvalidInput
             NaN, inf, or a shape that does not fit.
         """
-        return _kernels.apply(self._quat, vectors, inverse)
+        return _kernels.apply(self._quat, vectors, arrays.require_bool(inverse, "inverse"))
 
     def inv(self) -> Rotation:
         """The inverse rotation; as an attitude, from space to body."""
@@ -304,7 +304,8 @@ class Rotation:
 
     def __pow__(self, n: float) -> Rotation:
         """The rotation about the same axis by n times the angle in [0, pi]; n may be any real number."""
-        if np.ndim(n) > 0 or not np.isfinite(n):
+        n = arrays.to_number(n, "exponent", "one finite number")
+        if not np.isfinite(n):
             raise InvalidInput(f"exponent: must be one finite number, got {n}")
         if n == 1.0:
             return self
@@ -394,6 +395,6 @@ def _quat_of(value: Any, *, scalar_first: bool = False) -> FloatArray:
     """Unit quaternions (..., 4) of a rotation, polhode's or SciPy's, or of an array."""
     if isinstance(value, Rotation):
         return value._quat
-    if hasattr(value, "as_quat"):
+    if arrays.is_rotation(value):
         return _kernels.normalize(value.as_quat(), False)
-    return _kernels.normalize(value, scalar_first)
+    return _kernels.normalize(value, arrays.require_bool(scalar_first, "scalar_first"))

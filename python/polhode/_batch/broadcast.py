@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .._attitude.arrays import to_numbers
+from .._attitude.arrays import is_rotation, to_numbers
 from .._core import InvalidInput
 
 Array = npt.NDArray[np.float64]
@@ -21,7 +21,7 @@ WIDTHS = {"omega": 3, "attitude": 4, "direction": 3}
 
 def to_rows(value: Any, name: str, width: int | None) -> Array:
     """Return a float64 array whose last axis has this width; NaN and inf pass."""
-    array = to_numbers(value.as_quat() if hasattr(value, "as_quat") else value, name)
+    array = to_numbers(value.as_quat() if is_rotation(value) else value, name)
     if width is not None and (array.ndim == 0 or array.shape[-1] != width):
         raise InvalidInput(f"{name}: must be an array of shape (..., {width}), got shape {array.shape}")
     return array
@@ -30,7 +30,7 @@ def to_rows(value: Any, name: str, width: int | None) -> Array:
 def to_attitudes(value: Any, level: int) -> Array:
     """Return attitudes of shape (..., 4); warn if they look like (w, x, y, z)."""
     array = to_rows(value, "attitude", 4)
-    if not hasattr(value, "as_quat") and array.size and (array == (1.0, 0.0, 0.0, 0.0)).all():
+    if not is_rotation(value) and array.size and (array == (1.0, 0.0, 0.0, 0.0)).all():
         warnings.warn("attitude: (1, 0, 0, 0) is a half turn about x, as quaternions are (x, y, z, w) here. "
                       "Rotation.from_quat(..., scalar_first=True) reads (w, x, y, z); a Rotation gives no warning",
                       UserWarning, stacklevel=level)
@@ -78,6 +78,20 @@ def split_axes(shape: tuple[int, ...], loops: Sequence[tuple[int, ...]]) -> tupl
     return bodies, [k for k in range(len(shape)) if k not in bodies]
 
 
+def require_apart(arrays: Sequence[Any]) -> None:
+    """Refuse outputs that share memory: one would be written over the other. Views that interleave share none."""
+    for k, one in enumerate(arrays):
+        for other in arrays[:k]:
+            if not np.may_share_memory(one, other):
+                continue
+            try:
+                shared = np.shares_memory(one, other, max_work=100_000)
+            except Exception:   # TooHardError, whose place differs between versions of NumPy: nobody knows
+                shared = True
+            if shared:
+                raise InvalidInput("out: must be arrays apart, got two that share memory")
+
+
 def check_out(out: Any, names: tuple[str, ...], shape: tuple[int, ...],
               dtype: np.dtype[Any] = np.dtype(np.float64)) -> dict[str, Any]:
     """Return the caller's arrays by name; none if `out` is not given."""
@@ -94,6 +108,7 @@ def check_out(out: Any, names: tuple[str, ...], shape: tuple[int, ...],
             found = f"{array.dtype} of shape {array.shape}" if isinstance(array, np.ndarray) else type(array).__name__
             raise InvalidInput(f"out: must be a writeable {dtype} array of shape {wanted} for {name}, got {found}")
         targets[name] = array
+    require_apart(given)
     return targets
 
 

@@ -138,12 +138,12 @@ def free_motion(
     -----
     The formulas of :class:`FreeMotion`; see docs/exact.md.
     """
+    workers, refuse, report = check_threads(threads), check_errors(errors), reporter(progress)
     plain = want is BOTH and axis is None and dtype is DOUBLE and (out is None or getattr(t, "size", 0) <= FEW)
-    if plain and threads is None and errors == "raise" and not progress:
+    if plain and refuse and report is None:
         motion = _core._free_motion_of_one(inertia, omega, attitude, t)
         if motion is not None:
             return motion if out is None else copy_out(motion, out, BOTH)
-    workers, refuse, report = check_threads(threads), check_errors(errors), reporter(progress)
     speeds, attitudes = to_rows(omega, "omega", 3), to_attitudes(attitude, 3)
     times = to_rows(t, "t", None)
     return _evaluate(_core._free_motion, inertia, [(speeds, 1), (attitudes, 1)], times, out, want, axis,

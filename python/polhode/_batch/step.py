@@ -10,9 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _core
+from .._attitude.arrays import is_rotation, to_any, to_number
 from .._attitude.rotation import Rotation
 from .._core import InertiaTensor, InvalidInput
-from .broadcast import check_threads
+from .broadcast import check_threads, require_apart
 
 Floats = npt.NDArray[Any]
 Torque = npt.ArrayLike | Callable[[Floats, Floats], npt.ArrayLike]
@@ -33,14 +34,7 @@ def _find_dtype(given: dict[str, Any]) -> np.dtype[Any]:
 
 def _to_rows(value: Any, name: str, width: int, dtype: np.dtype[Any]) -> Floats:
     """Return an array of shape (..., width); NaN and inf pass."""
-    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
-        raise InvalidInput(f"{name}: must be without masked entries (leave them out, or give a value by .filled())")
-    try:
-        array = np.asarray(value.as_quat() if hasattr(value, "as_quat") else value)
-    except ValueError:   # a ragged list
-        array = np.empty(0, dtype=object)
-    if array.dtype.kind not in "fiu":
-        raise InvalidInput(f"{name}: must be an array of real numbers, got dtype {array.dtype}")
+    array = to_any(value.as_quat() if is_rotation(value) else value, name, "fiu")
     if array.ndim == 0 or array.shape[-1] != width:
         raise InvalidInput(f"{name}: must be an array of shape (..., {width}), got shape {array.shape}")
     return array.astype(dtype, copy=False)
@@ -48,7 +42,7 @@ def _to_rows(value: Any, name: str, width: int, dtype: np.dtype[Any]) -> Floats:
 
 def _to_attitudes(value: Any, dtype: np.dtype[Any]) -> Floats:
     array = _to_rows(value, "attitude", 4, dtype)
-    if not hasattr(value, "as_quat") and array.size and (array.reshape(-1, 4)[0] == (1, 0, 0, 0)).all() and (
+    if not is_rotation(value) and array.size and (array.reshape(-1, 4)[0] == (1, 0, 0, 0)).all() and (
             array == (1, 0, 0, 0)).all():
         warnings.warn("attitude: (1, 0, 0, 0) is a half turn about x, as quaternions are (x, y, z, w) here. A Rotation "
                       "gives no warning", UserWarning, stacklevel=3)
@@ -95,8 +89,7 @@ def _check_out(out: Any, shape: tuple[int, ...], dtype: np.dtype[Any]) -> tuple[
             found = f"{array.dtype} of shape {array.shape}" if isinstance(array, np.ndarray) else type(array).__name__
             raise InvalidInput(f"out: must be a writeable {dtype} array of shape {(*shape, width)} for {name}, got "
                                f"{found}")
-    if np.may_share_memory(*given):
-        raise InvalidInput("out: must be two arrays apart, got two that share memory")
+    require_apart(given)
     return given[0], given[1]
 
 
@@ -159,13 +152,6 @@ def _count(count: Any) -> int:
     return int(count)
 
 
-def _to_step(h: Any) -> float:
-    try:
-        return float(h)
-    except (TypeError, ValueError):
-        raise InvalidInput(f"h: must be a time step [s], got {h!r}") from None
-
-
 def step(
     inertia: InertiaTensor | Sequence[InertiaTensor] | npt.ArrayLike,
     momentum: npt.ArrayLike,
@@ -216,14 +202,15 @@ def step(
     ------
     InvalidInput
         Shapes that do not broadcast, a dtype other than float32 or float64, moments that no body has, attitudes that
-        are not unit, h that is not finite. Nothing is written then.
+        are not unit, h that is not finite, or a body that may rotate by more than 1e25 rad in a step (1e10 rad in
+        float32). Nothing is written then.
 
     Notes
     -----
     A body whose momentum or torque is not finite comes out as NaN, and no other does. The bits are the same for AVX2
     and AVX-512. See docs/step.md for the formulas and their errors.
     """
-    workers, steps, size = check_threads(threads), _count(count), _to_step(h)
+    workers, steps, size = check_threads(threads), _count(count), to_number(h, "h", "one time step [s]")
     if frame not in ("space", "body"):
         raise InvalidInput(f"frame: must be 'space' or 'body', got {frame!r}")
     given = {"momentum": momentum, "attitude": attitude}

@@ -1289,7 +1289,8 @@ class Rotor:
     free : bool
         True if no motor holds the speed. Without `inertia`, the scene's inertia must leave out the axial moment already.
     during : array_like, shape (n, 2) or (2,), optional
-        Windows of time [s] in which a held rotor rotates; outside them it is at rest in the body. J omega + h is continuous
+        Windows of time [s] in which a held rotor rotates; outside them it is at rest in the body. An
+        empty list means never, no list means always. J omega + h is continuous
         where it starts or stops, so omega jumps by ``-J^-1 dh``.
 
     Raises
@@ -1326,7 +1327,7 @@ class Rotor:
     @property
     def during(self) -> typing.Any:
         """
-        tuple of (begin, end) [s], in the order of time, or None.
+        tuple of (begin, end) [s], in the order of time; None if it always rotates.
         """
     @property
     def free(self) -> bool:
@@ -1494,6 +1495,10 @@ def _draw_key(key: str) -> int:
     ...
 def _draw_words(seed: typing.SupportsInt | typing.SupportsIndex, key: str, first: typing.SupportsInt | typing.SupportsIndex, count: typing.SupportsInt | typing.SupportsIndex, attempt: typing.SupportsInt | typing.SupportsIndex = 0) -> numpy.typing.NDArray[numpy.uint64]:
     ...
+def _first_home(home: str) -> str:
+    """
+    The place of the package that called this first in the process.
+    """
 def _free_motion(arg0: typing.Any, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg3: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg4: dict[str, typing.Any], arg5: typing.Any, arg6: bool, arg7: typing.SupportsInt | typing.SupportsIndex, arg8: bool, arg9: typing.Any) -> int:
     ...
 def _free_motion_of_one(arg0: typing.Any, arg1: typing.Any, arg2: typing.Any, arg3: typing.Any) -> typing.Any:

@@ -309,7 +309,8 @@ class During:
     torque : a torque of polhode.torques
         Without windows of its own.
     windows : array_like, shape (n, 2) or (2,)
-        A begin and a later end each [s], in any order; either may be infinite. Windows that touch are one.
+        A begin and a later end each [s], in any order; either may be infinite. Windows that touch are one. An empty list
+        means that the torque never acts.
 
     Raises
     ------

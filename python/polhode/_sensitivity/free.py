@@ -18,7 +18,7 @@ from .sensitivity import Array, Sensitivity, name_columns, of_groups
 def _targets(out: Any, shapes: list[tuple[int, ...]]) -> list[Any]:
     if out is None:
         return [None] * 4
-    given = tuple(out)
+    given = tuple(out) if isinstance(out, (tuple, list)) else (out,)
     if len(given) != 4:
         raise InvalidInput(f"out: must be (omega, attitude, d_omega, d_attitude), got {len(given)} arrays")
     for array, shape in zip(given, shapes, strict=True):
@@ -26,6 +26,7 @@ def _targets(out: Any, shapes: list[tuple[int, ...]]) -> list[Any]:
                 and array.flags.writeable):
             found = f"{array.dtype} of shape {array.shape}" if isinstance(array, np.ndarray) else type(array).__name__
             raise InvalidInput(f"out: must be a writeable float64 array of shape {shape}, got {found}")
+    broadcast.require_apart(given)
     return list(given)
 
 

@@ -8,6 +8,7 @@ import math
 import numpy as np
 
 from .. import _core
+from .._attitude.arrays import to_number
 from .._core import InvalidInput
 from .._scene.scene import Scene
 from .driven import differentiate
@@ -83,7 +84,7 @@ def lyapunov(scene: Scene, span: float | None = None, *, accuracy: float = 1e-9)
     """
     if not isinstance(scene, Scene):
         raise InvalidInput(f"scene: must be a polhode.Scene, got {type(scene).__name__}")
-    length = float(np.max(scene.times)) - scene.t0 if span is None else float(span)
+    length = float(np.max(scene.times)) - scene.t0 if span is None else to_number(span, "span")
     if not (length > 0 and math.isfinite(length)):
         raise InvalidInput(f"span: must be positive and finite, got {length}")
     rate = float(np.linalg.norm(scene.omega))

@@ -16,7 +16,10 @@ _NAMES = {"omega": "xyz", "attitude": "xyz", "axes": "xyz", "inertia": "123"}
 
 def to_names(wrt: str | Sequence[str]) -> tuple[str, ...]:
     """Return the names of groups as a tuple."""
-    return (wrt,) if isinstance(wrt, str) else tuple(wrt)
+    names = (wrt,) if isinstance(wrt, str) else tuple(wrt) if isinstance(wrt, Sequence) else ()
+    if not names or not all(isinstance(name, str) for name in names):
+        raise InvalidInput(f"wrt: must be names such as 'omega' or ('omega', 'inertia'), got {wrt!r}")
+    return names
 
 
 def name_columns(wrt: str | Sequence[str]) -> tuple[str, ...]:

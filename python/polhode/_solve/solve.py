@@ -162,8 +162,10 @@ def solve(
         raise _core.InvalidInput(f"scene: must be a polhode.Scene, got {type(scene).__name__}")
     if callable(events) or isinstance(events, Event):
         events = (events,)
-    if not isinstance(events, (tuple, list, Iterable)):
-        raise _core.InvalidInput(f"events: must be events or callables, got {events!r}")
+    try:
+        items = tuple(events)
+    except TypeError:
+        raise _core.InvalidInput(f"events: must be events or callables, got {events!r}") from None
     if plan is not None:
         accuracy, method, certify, formulation = _take(plan, accuracy, method, rtol, atol, step, certify, formulation)
     with shown(progress, f"solving {scene.name}".strip()) as callback:
@@ -171,7 +173,7 @@ def solve(
             "accuracy": accuracy, "method": method, "rtol": rtol, "atol": atol, "step": step,
             "certify": certify if isinstance(certify, str) else bool(certify),
             "max_steps": check_max_steps(max_steps), "dense": bool(dense), "formulation": str(formulation),
-            "events": [_event(item) for item in events], "progress": callback, "cost_factors": factors()})
+            "events": [_event(item) for item in items], "progress": callback, "cost_factors": factors()})
     asked = None if method is None and formulation == "euler" else {"method": method, "formulation": formulation}
     given = {"accuracy": accuracy, "method": method, "rtol": rtol, "atol": atol, "step": step}
     options = {name: value for name, value in given.items() if value is not None}
@@ -180,7 +182,7 @@ def solve(
     options |= {"formulation": formulation} if formulation != "euler" else {}
     motion = Motion(scene, answer, asked, options)
     if sensitivity is not None:
-        for name, value in (("events", events or None), ("rtol", rtol), ("atol", atol), ("step", step)):
+        for name, value in (("events", items or None), ("rtol", rtol), ("atol", atol), ("step", step)):
             if value is not None:
                 raise _core.InvalidInput(f"{name}: must be left out with sensitivity=, which has an accuracy and all "
                                          f"times, got {value!r}")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import json
 import pathlib
 import re
 import sys
@@ -22,7 +21,7 @@ from .._solve.solve import methods as method_records
 from .._solve.solve import solve
 from . import files, show
 from . import ensemble as ensembles   # after `show`, which imports rich itself
-from .streams import PipeClosed, say
+from .streams import PipeClosed, say, write_json
 
 app = typer.Typer(name="polhode", add_completion=False, no_args_is_help=True, rich_markup_mode=None,
                   pretty_exceptions_enable=False, context_settings={"help_option_names": ["-h", "--help"]},
@@ -53,10 +52,6 @@ def _command(function: Callable[..., int | None]) -> Callable[..., None]:
         raise typer.Exit(status)
 
     return wrapped
-
-
-def _print_json(content: Any) -> None:
-    print(json.dumps(content, indent=1, allow_nan=False))
 
 
 def _need_matplotlib(what: str) -> None:
@@ -125,7 +120,7 @@ def run(
 
         motion.animate(body=find_mesh(scene) or "box").save(animate)
     if as_json:
-        _print_json(files.to_json(motion))
+        write_json(files.to_json(motion))
     else:
         show.motion(motion)
     for written in filter(None, (output, picture, animate)):
@@ -149,7 +144,7 @@ def plan(
     made = [make_plan(Scene.load(scene), accuracy, method=method, certify="proof" if proof else certify)
             for scene in scenes]
     if as_json:
-        _print_json([chosen.as_dict() for chosen in made])
+        write_json([chosen.as_dict() for chosen in made])
     else:
         print("\n\n\n".join(map(str, made)))
     return 0
@@ -189,7 +184,7 @@ def fit(
         with _files.whole(picture) as draft:
             found.plot().savefig(draft, dpi=160)
     if as_json:
-        _print_json(part.to_json(found))
+        write_json(part.to_json(found))
     else:
         print(repr(found))
     return 0 if found.success else 1
@@ -204,7 +199,7 @@ def calibrate(as_json: Json = False) -> int:
     with show.Bar("measuring") as bar:
         found = calibration.calibrate(lambda done, total: bar.fraction(done, total))
     if as_json:
-        _print_json({"file": str(cache_file()), "factors": found})
+        write_json({"file": str(cache_file()), "factors": found})
     else:
         show.calibration(found, str(cache_file()))
     return 0
@@ -215,7 +210,7 @@ def methods(as_json: Json = False) -> int:
     """List all methods."""
     records = method_records()
     if as_json:
-        _print_json(records)
+        write_json(records)
     else:
         show.methods(records)
     return 0
@@ -268,7 +263,7 @@ def inertia(
 
         finding = examine(file)
     if options.form == "json":
-        _print_json(finding)
+        write_json(finding)
     else:
         show.body(finding)
     return 0 if finding["valid"] else 1
@@ -307,7 +302,7 @@ def chart(
         results, content = make_chart(scenes, output, budget=seconds, peers=peers, progress=bar.step,
                                       show=(lambda result: None) if quiet else (lambda result: bar.print_above(result)))
     if as_json:
-        _print_json(content)
+        write_json(content)
     elif brief:
         show.choice(results, content, output)
     else:
@@ -379,7 +374,7 @@ def atlas(
                                 progress=bar.of, show=table)
     page = write_page(content, output)
     if as_json:
-        _print_json(content)
+        write_json(content)
     else:
         tables.matrix(content)
         tables.end(content, output)

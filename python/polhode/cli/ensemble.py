@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import errno
-import json
 import pathlib
 import sys
 from typing import Annotated, Any
@@ -14,7 +13,7 @@ from rich.text import Text
 from .. import _files
 from .._core import InvalidInput
 from . import show
-from .streams import say
+from .streams import say, write_json
 
 WORDS = ("status", "report")   # they win over files of these names
 
@@ -91,7 +90,7 @@ def _dry_run(recipe: str, output: Any, workers: int | None, count: int | None, a
     if output is None:
         content |= {"free_bytes": None, "fits": None}
     if as_json:
-        print(json.dumps(content, indent=1, allow_nan=False))
+        write_json(content)
     else:
         out = show.console()
         rows = {"bodies": f"{found.bodies:,}", "times": f"{found.times:,}", "states": f"{found.states:,}",
@@ -122,7 +121,7 @@ def _print(content: dict[str, Any], as_json: bool) -> None:
     from .._ensemble.progress import to_text
 
     if as_json:
-        print(json.dumps(content, indent=1, allow_nan=False))
+        write_json(content)
         return
     out = show.console()
     share = 100 * content["bodies_done"] / content["bodies"]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import pathlib
 import re
 from collections.abc import Iterator, Sequence
@@ -17,11 +16,6 @@ from ..inertia.robots.report import LinkReport, Report
 _SARIF_LEVELS = {"error": "error", "warning": "warning", "remark": "note"}
 _GITHUB_LEVELS = {"error": "error", "warning": "warning", "remark": "notice"}
 UNREADABLE = "PI002"
-
-
-def write_json(content: Any) -> None:
-    """Print JSON."""
-    print(json.dumps(content, indent=1, allow_nan=False))
 
 
 def _message(link: LinkReport, finding: Finding) -> str:

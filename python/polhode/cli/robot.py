@@ -15,7 +15,7 @@ from ..inertia.robots.ignore import rules
 from ..inertia.robots.paths import Search
 from ..inertia.robots.report import Report, check, check_file, to_dict
 from . import formats, show_robots
-from .streams import say
+from .streams import say, write_json
 
 FORMATS = ("text", "json", "sarif", "junit", "github")
 
@@ -116,9 +116,9 @@ def _write_repaired(report: Report, given: list[str]) -> bool:
 def _print(reports: list[Report], options: Options, alone: bool) -> None:
     if options.form == "json":
         contents = [to_dict(report, options.fail_on) for report in reports]
-        formats.write_json(contents[0] if alone else contents)
+        write_json(contents[0] if alone else contents)
     elif options.form == "sarif":
-        formats.write_json(formats.sarif(reports))
+        write_json(formats.sarif(reports))
     elif options.form == "junit":
         print(formats.junit(reports, options.fail_on))
     elif options.form == "github":

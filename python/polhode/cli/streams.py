@@ -5,8 +5,11 @@ from __future__ import annotations
 import contextlib
 import errno
 import io
+import json
+import math
 import os
 import sys
+from typing import Any
 
 
 class PipeClosed(Exception):
@@ -21,6 +24,20 @@ class _Closed(io.TextIOBase):
 
     def flush(self) -> None:
         pass
+
+
+def _finite(content: Any) -> Any:
+    """Return the content with null in the place of NaN and inf, which JSON does not have."""
+    if isinstance(content, float):
+        return content if math.isfinite(content) else None
+    if isinstance(content, dict):
+        return {key: _finite(value) for key, value in content.items()}
+    return [_finite(value) for value in content] if isinstance(content, (list, tuple)) else content
+
+
+def write_json(content: Any) -> None:
+    """Print JSON, with null for a number that is not finite."""
+    print(json.dumps(_finite(content), indent=1, allow_nan=False))
 
 
 def open_missing() -> None:

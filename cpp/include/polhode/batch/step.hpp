@@ -25,7 +25,8 @@ struct StepBatch {
 /// A body whose momentum, attitude or torque is not finite comes out as NaN, and no other.
 /// @param threads  at most; 0: as many as the machine has
 /// @throws InvalidInput for a moment that is not positive and finite, a body that violates the triangle inequality, an
-/// attitude that is not unit, or a step that is not finite; nothing is changed then.
+/// attitude that is not unit, a step that is not finite, or one in which a body may rotate by more than 1e25 rad (1e10
+/// rad for floats); nothing is changed then.
 void step_bodies(const StepBatch<float>& batch, int threads = 0);
 void step_bodies(const StepBatch<double>& batch, int threads = 0);
 

@@ -41,6 +41,7 @@ class DampedFree {
 
  private:
   void check_time(double t) const;
+  void write_part(const double* t, std::size_t n, double* omega, double* attitude) const;
 
   FreeMotion free_;
   double damping_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "polhode/core/quat.hpp"
@@ -15,7 +16,8 @@ struct RotorParts {
   std::optional<double> inertia = {};         ///< Js, moment about the axis [kg m^2]
   std::optional<double> speed = {};           ///< relative to the body at the start [rad/s]
   bool free = false;                          ///< free on its bearing, without a motor
-  std::vector<torques::Window> windows = {};  ///< in which it rotates; none: always
+  /// In which it rotates: always without a value, never with none of them.
+  std::optional<std::vector<torques::Window>> windows = {};
 };
 
 /// A symmetric body that rotates about an axis fixed in the carrying body: a wheel, a propeller, a platform.
@@ -35,7 +37,11 @@ class Rotor {
   const std::optional<double>& inertia() const { return parts_.inertia; }
   const std::optional<double>& speed() const { return parts_.speed; }
   bool free() const { return parts_.free; }
-  const std::vector<torques::Window>& windows() const { return parts_.windows; }   ///< sorted by time, separate
+  bool has_windows() const { return parts_.windows.has_value(); }   ///< false: it always rotates
+  /// Sorted by time, separate. A rotor that has windows, but none of them, never rotates.
+  std::span<const torques::Window> windows() const {
+    return has_windows() ? std::span<const torques::Window>(*parts_.windows) : std::span<const torques::Window>();
+  }
   const RotorParts& parts() const { return parts_; }
   bool axis_was_scaled() const { return axis_was_scaled_; }   ///< the given axis was not a unit vector
 

@@ -1,5 +1,7 @@
 #include "exact/sensitivity/kernels.hpp"
 
+#include "core/choose_once.hpp"
+
 namespace polhode::exact {
 
 const FreeColumnsKernels& free_columns_kernels(SimdLevel level) {
@@ -10,8 +12,8 @@ const FreeColumnsKernels& free_columns_kernels(SimdLevel level) {
 }
 
 const FreeColumnsKernels& free_columns_kernels() {
-  static const FreeColumnsKernels& chosen = free_columns_kernels(simd_level());
-  return chosen;
+  static constinit std::atomic<const FreeColumnsKernels*> chosen{nullptr};
+  return choose_once(chosen, []() -> const FreeColumnsKernels& { return free_columns_kernels(simd_level()); });
 }
 
 }  // namespace polhode::exact
