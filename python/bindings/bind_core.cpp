@@ -28,8 +28,9 @@ void bind_core(py::module_& m) {
   py::register_local_exception_translator([](std::exception_ptr thrown) {
     try {
       std::rethrow_exception(thrown);
-    } catch (const py::cast_error& error) {
-      py::set_error(py::module_::import("polhode._core").attr("InvalidInput"), error.what());
+    } catch (const py::cast_error&) {
+      py::set_error(py::module_::import("polhode._core").attr("InvalidInput"),
+                    "arguments: must be of the types in the documentation, and texts such that UTF-8 can write them");
     }
   });
   py::register_exception<IntegrationFailure>(m, "IntegrationFailure", PyExc_RuntimeError);

@@ -173,7 +173,7 @@ Matrix3d to_tensor(py::handle value, const char* name) {
 }
 
 Quat to_attitude(py::handle value, const char* name, int frames) {
-  const bool numbers = !py::hasattr(value, "as_quat");
+  const bool numbers = PyType_Check(value.ptr()) || !py::hasattr(value, "as_quat");
   const py::object quat = numbers ? py::reinterpret_borrow<py::object>(value) : value.attr("as_quat")();
   const Array array = to_array(quat, name);
   if (!has_shape(array, {4})) {

@@ -2,6 +2,8 @@
 
 #include <string_view>
 
+#include "polhode/core/error.hpp"
+
 namespace polhode::python {
 namespace {
 
@@ -58,7 +60,13 @@ void guard(Function& slot, Function& plain, Function guarded, Function of_object
   slot = guarded;
 }
 
+/// In the place of the memory that pybind11 would hand to functions that get such an object.
+void* refuse_memory(std::size_t) {
+  throw InvalidInput("argument", "initialised", "an object whose constructor has not run or has failed");
+}
+
 void guard_class(PyTypeObject* type) {
+  py::detail::get_type_info(type)->operator_new = refuse_memory;
   guard(type->tp_repr, plain_repr, guard_repr, PyBaseObject_Type.tp_repr);
   guard(type->tp_str, plain_str, guard_str, PyBaseObject_Type.tp_str);
   guard(type->tp_hash, plain_hash, guard_hash, PyBaseObject_Type.tp_hash);

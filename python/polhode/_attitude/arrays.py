@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import sys
 import warnings
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
@@ -59,10 +60,35 @@ def is_rotation(value: Any) -> bool:
 
 
 def require_bool(value: Any, name: str) -> bool:
-    """Return a bool; other objects are refused, as their truth may not be what was meant."""
-    if not isinstance(value, (bool, np.bool_)):
+    """Return a bool, also of 0 and 1; the truth of other objects may not be what was meant."""
+    if not isinstance(value, (bool, np.bool_)) and not (is_whole(value) and value in (0, 1)):
         raise InvalidInput(f"{name}: must be True or False, got {type(value).__name__}")
     return bool(value)
+
+
+def is_whole(value: Any) -> bool:
+    """Return True for an integer; a bool is none, nor is a span of time, which NumPy derives from its integers."""
+    return isinstance(value, (int, np.integer)) and not isinstance(value, (bool, np.timedelta64))
+
+
+def is_one_of(value: Any, choices: Collection[str]) -> bool:
+    """Return True for one of these texts. An array that is compared with a text has no truth value."""
+    return isinstance(value, str) and value in choices
+
+
+def to_items(value: Any, name: str, what: str) -> tuple[Any, ...]:
+    """Return the items; a number, an array of no dimensions and a single rotation have none."""
+    try:
+        items = iter(value)
+    except TypeError:
+        raise InvalidInput(f"{name}: must be {what}, got {type(value).__name__}") from None
+    return tuple(items)
+
+
+def require_text(value: Any, name: str) -> None:
+    """Refuse a text that the core cannot take: parts of file names may have no UTF-8."""
+    if isinstance(value, str) and not value.isascii():
+        raise InvalidInput(f"{name}: must be of ASCII letters, got {value!r}")
 
 
 def to_vectors(value: Any, name: str) -> FloatArray:
@@ -96,7 +122,7 @@ def to_shape(num: int | None, shape: int | tuple[int, ...] | None) -> tuple[int,
         raise InvalidInput("num: must be left out where shape is given, got both")
     sizes = num if num is not None else shape if shape is not None else ()
     sizes = sizes if isinstance(sizes, tuple) else (sizes,)
-    if not all(isinstance(size, (int, np.integer)) and size >= 0 for size in sizes):
+    if not all(is_whole(size) and size >= 0 for size in sizes):
         raise InvalidInput(f"{'shape' if num is None else 'num'}: must be whole numbers >= 0, got {sizes}")
     if math.prod(sizes) > sys.maxsize // 32:   # four numbers each
         raise MemoryError(f"{math.prod(sizes)} rotations need {32 * math.prod(sizes)} bytes")

@@ -178,13 +178,18 @@ class Rotation:
         rng : numpy.random.Generator or a seed for one, optional
             The same generator gives the same rotations as SciPy's.
         """
-        quat = np.random.default_rng(rng).normal(size=(*arrays.to_shape(num, shape), 4))
+        known = rng is None or isinstance(rng, (np.random.Generator, np.random.BitGenerator, np.random.SeedSequence))
+        seed: Any = rng if known else arrays.to_any(rng, "rng", "iu")   # NumPy crashes on a list that holds itself
+        if not known and (seed < 0).any():
+            raise InvalidInput(f"rng: must be a generator or a seed >= 0, got {rng!r}")
+        quat = np.random.default_rng(seed if known else seed.tolist()).normal(size=(*arrays.to_shape(num, shape), 4))
         return Rotation(quat / np.linalg.norm(quat, axis=-1, keepdims=True))
 
     @staticmethod
     def concatenate(rotations: Rotation | Iterable[Rotation]) -> Rotation:
         """Several rotations, each one or an array of them, in one array along the first dimension."""
-        parts: list[Any] = [rotations] if hasattr(rotations, "as_quat") else list(rotations)
+        parts: list[Any] = [rotations] if arrays.is_rotation(rotations) else list(
+            arrays.to_items(rotations, "rotations", "several rotations"))
         if not parts:
             raise InvalidInput("rotations: must be at least one rotation, got an empty list")
         if len(parts) == 1:
@@ -206,8 +211,8 @@ class Rotation:
             Of q and -q take the one with w > 0; for w = 0 the one whose first non-zero component is positive.
         scalar_first : bool
         """
-        quat = _kernels.canonical(self._quat) if canonical else self._quat.copy()
-        return np.roll(quat, 1, axis=-1) if scalar_first else quat
+        quat = _kernels.canonical(self._quat) if arrays.require_bool(canonical, "canonical") else self._quat.copy()
+        return np.roll(quat, 1, axis=-1) if arrays.require_bool(scalar_first, "scalar_first") else quat
 
     def as_matrix(self) -> FloatArray:
         """Rotation matrices R_WB, shape (..., 3, 3), v_W = R_WB v_B."""
@@ -327,7 +332,8 @@ class Rotation:
 
     def approx_equal(self, other: Any, atol: float | None = None, degrees: bool = False) -> NDArray[np.bool_] | bool:
         """Whether the angle between the two rotations is below `atol`, 1e-8 rad unless given."""
-        limit = 1e-8 if atol is None else float(np.deg2rad(atol)) if degrees else atol
+        angle = 1e-8 if atol is None else arrays.to_number(atol, "atol")
+        limit = np.deg2rad(angle) if arrays.require_bool(degrees, "degrees") and atol is not None else angle
         return (Rotation(other) * self.inv()).magnitude() < limit
 
     # ---- as a container

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .._attitude.arrays import is_rotation, to_numbers
+from .._attitude.arrays import is_one_of, is_rotation, is_whole, to_items, to_numbers
 from .._core import InvalidInput
 
 Array = npt.NDArray[np.float64]
@@ -39,7 +39,7 @@ def to_attitudes(value: Any, level: int) -> Array:
 
 def check_want(want: str | Sequence[str]) -> tuple[str, ...]:
     """Return the requested names, in the caller's order."""
-    names = (want,) if isinstance(want, str) else tuple(want) if isinstance(want, Iterable) else ()
+    names = (want,) if isinstance(want, str) else to_items(want, "want", "one or more names")
     known = all(isinstance(name, str) and name in WIDTHS for name in names)
     if not names or not known or len(set(names)) != len(names):
         raise InvalidInput(f"want: must be one or more of 'omega', 'attitude' and 'direction', got {want!r}")
@@ -85,7 +85,7 @@ def require_apart(arrays: Sequence[Any]) -> None:
             if not np.may_share_memory(one, other):
                 continue
             try:
-                shared = np.shares_memory(one, other, max_work=100_000)
+                shared = np.shares_memory(one, other, 100_000)  # type: ignore[arg-type]
             except Exception:   # TooHardError, whose place differs between versions of NumPy: nobody knows
                 shared = True
             if shared:
@@ -97,7 +97,7 @@ def check_out(out: Any, names: tuple[str, ...], shape: tuple[int, ...],
     """Return the caller's arrays by name; none if `out` is not given."""
     if out is None:
         return {}
-    given = (out,) if isinstance(out, np.ndarray) or not isinstance(out, Iterable) else tuple(out)
+    given = tuple(out) if isinstance(out, (tuple, list)) else (out,)
     if len(given) != len(names):
         raise InvalidInput(f"out: must be one array for each of {names}, got {len(given)}")
     targets = {}
@@ -246,7 +246,7 @@ def evaluate(
 
 def check_errors(errors: str) -> bool:
     """Return True if an impossible body is to be refused."""
-    if not isinstance(errors, str) or errors not in ("raise", "nan"):
+    if not is_one_of(errors, ("raise", "nan")):
         raise InvalidInput(f"errors: must be 'raise' or 'nan', got {errors!r}")
     return errors == "raise"
 
@@ -255,6 +255,6 @@ def check_threads(threads: int | None) -> int:
     """Return the number of threads; 0 means all of the machine."""
     if threads is None:
         return 0
-    if isinstance(threads, bool) or not isinstance(threads, (int, np.integer)) or not 1 <= threads < 2**31:
+    if not is_whole(threads) or not 1 <= threads < 2**31:
         raise InvalidInput(f"threads: must be a positive whole number below 2^31, got {threads!r}")
     return int(threads)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy.typing as npt
 
 from .. import _core
+from .._attitude.arrays import is_one_of
 from .._core import InertiaTensor, InvalidInput
 from .broadcast import (
     Array,
@@ -49,7 +50,7 @@ def _evaluate(
 ) -> Any:
     """Evaluate a closed form, whose C++ function gets the inertia, the parameters, and what is wanted."""
     common, own = _split(inertia)
-    if frame not in ("body", "space"):
+    if not is_one_of(frame, ("body", "space")):
         raise InvalidInput(f"frame: must be 'body' or 'space', got {frame!r}")
     follows = "direction" in (want if isinstance(want, (str, tuple)) else check_want(want))
     if follows != (axis is not None):

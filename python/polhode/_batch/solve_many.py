@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _core, _export
+from .._attitude.arrays import require_text, to_items
 from .._keywords import checked
 from .._scene.plain import to_plain
 from .._scene.scene import Scene
@@ -184,9 +185,7 @@ def solve_many(
         moments = np.ascontiguousarray(np.broadcast_to(arrays["inertia"], (bodies, 3))) if "inertia" in arrays else None
         listed, starts = [scenes], (moments, full["omega"], full["attitude"])
     else:
-        if not isinstance(scenes, Iterable):
-            raise _core.InvalidInput(f"scenes: must be a Scene or several, got {type(scenes).__name__}")
-        listed = list(scenes)
+        listed = list(to_items(scenes, "scenes", "a Scene or several"))
         for name, value in (("inertia", inertia), ("omega", omega), ("attitude", attitude)):
             if value is not None:
                 raise _core.InvalidInput(f"{name}: must be left out with a scene for each body, which has its own")
@@ -196,6 +195,7 @@ def solve_many(
                 raise _core.InvalidInput(f"scenes[{i}]: must be a polhode.Scene, got {type(scene).__name__}")
             if scene.times.size != listed[0].times.size or scene.want != listed[0].want:
                 raise _core.InvalidInput(f"scenes[{i}]: must have as many times as scenes[0] and the same want")
+    require_text(method, "method")
     workers, refuse = check_threads(threads), check_errors(errors)
     times = listed[0].times.size if listed else 0
     want = listed[0].want if listed else ("omega", "attitude")

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _core
-from .._attitude.arrays import is_rotation, to_any, to_number
+from .._attitude.arrays import is_one_of, is_rotation, is_whole, to_any, to_number
 from .._attitude.rotation import Rotation
 from .._core import InertiaTensor, InvalidInput
 from .broadcast import check_threads, require_apart
@@ -147,7 +147,7 @@ class _Axes:
 
 
 def _count(count: Any) -> int:
-    if isinstance(count, bool) or not isinstance(count, (int, np.integer)) or not 0 <= count < 2**62:
+    if not is_whole(count) or not 0 <= count < 2**62:
         raise InvalidInput(f"count: must be a whole number of steps >= 0, got {count!r}")
     return int(count)
 
@@ -211,7 +211,7 @@ def step(
     and AVX-512. See docs/step.md for the formulas and their errors.
     """
     workers, steps, size = check_threads(threads), _count(count), to_number(h, "h", "one time step [s]")
-    if frame not in ("space", "body"):
+    if not is_one_of(frame, ("space", "body")):
         raise InvalidInput(f"frame: must be 'space' or 'body', got {frame!r}")
     given = {"momentum": momentum, "attitude": attitude}
     dtype = _find_dtype(given)

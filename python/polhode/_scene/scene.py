@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _core
+from .._attitude.arrays import to_items
 from .._keywords import checked, wrong
 
 if TYPE_CHECKING:
@@ -64,11 +65,10 @@ class Scene(_core.Scene):
         name: str = "",
         rotors: Iterable[_core.Rotor] = (),
     ) -> None:
-        if not isinstance(torques, Iterable):
-            torques = (torques,)
+        kept = to_items(torques, "scene.torques", "torques") if isinstance(torques, Iterable) else (torques,)
         if not isinstance(rotors, Iterable):
             rotors = (rotors,)
-        kept = tuple(torques)
+        rotors = to_items(rotors, "scene.rotors", "rotors")
         super().__init__(inertia, omega, attitude, kept, times, want, t0, name, rotors)
         self._torques = kept   # the compiled scene holds plain pointers to their functions
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from .. import _core
+from .._attitude.arrays import is_one_of
 from .._core import InvalidInput
 from .._scene.scene import Scene
 from .sensitivity import Sensitivity, to_names
@@ -18,6 +19,8 @@ def differentiate(scene: Scene, names: str | Sequence[str], accuracy: float, sid
 
     A free body has closed forms. Any other body has its variational equations integrated.
     """
+    if not is_one_of(side, ("space", "body")):
+        raise InvalidInput(f"side: must be 'space' or 'body', got {side!r}")
     groups = to_names(names) if isinstance(names, (str, Sequence)) else ()
     if not groups or not all(isinstance(name, str) for name in groups):
         raise InvalidInput("sensitivity: must be names such as 'omega', 'inertia' or 'torques.0.weight', "

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _core
+from .._attitude.arrays import is_one_of
 from .._batch import broadcast
 from .._core import InertiaTensor, InvalidInput
 from .sensitivity import Array, Sensitivity, name_columns, of_groups
@@ -81,6 +82,8 @@ def free_sensitivity(
     -----
     See docs/sensitivity.md for the formulas and the errors.
     """
+    if not is_one_of(side, ("space", "body")):
+        raise InvalidInput(f"side: must be 'space' or 'body', got {side!r}")
     workers = broadcast.check_threads(threads)
     speeds, attitudes = broadcast.to_rows(omega, "omega", 3), broadcast.to_attitudes(attitude, 3)
     times = broadcast.to_rows(t, "t", None)

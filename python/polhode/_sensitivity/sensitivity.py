@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from .._attitude.arrays import is_one_of, require_text
 from .._core import InvalidInput
 
 Array = npt.NDArray[np.float64]
@@ -19,6 +20,8 @@ def to_names(wrt: str | Sequence[str]) -> tuple[str, ...]:
     names = (wrt,) if isinstance(wrt, str) else tuple(wrt) if isinstance(wrt, Sequence) else ()
     if not names or not all(isinstance(name, str) for name in names):
         raise InvalidInput(f"wrt: must be names such as 'omega' or ('omega', 'inertia'), got {wrt!r}")
+    for name in names:
+        require_text(name, "wrt")
     return names
 
 
@@ -64,7 +67,7 @@ class Sensitivity:
 
     def column(self, name: str) -> tuple[Array, Array]:
         """Return (d omega, d attitude) of one column, each of shape (..., 3)."""
-        if name not in self.columns:
+        if not is_one_of(name, self.columns):
             raise InvalidInput(f"name: must be among the columns {', '.join(self.columns)}, got {name!r}")
         k = self.columns.index(name)
         return self.d_omega[..., k], self.d_attitude[..., k]

@@ -7,6 +7,7 @@ import math
 from typing import Any, Literal, NamedTuple
 
 from .. import _core
+from .._attitude.arrays import require_bool, require_text
 from .._keywords import checked
 from .._scene.scene import Scene
 from . import costs
@@ -318,9 +319,11 @@ def plan(scene: Scene, accuracy: float | None = None, *, method: str | None = No
     """
     if not isinstance(scene, Scene):
         raise _core.InvalidInput(f"scene: must be a polhode.Scene, got {type(scene).__name__}")
+    for name, value in (("method", method), ("certify", certify), ("formulation", formulation)):
+        require_text(value, name)
     asked = {"method": method, "formulation": str(formulation)}
     report = _core.plan(scene, {**asked, "accuracy": accuracy,
-                                "certify": certify if isinstance(certify, str) else bool(certify),
+                                "certify": certify if isinstance(certify, str) else require_bool(certify, "certify"),
                                 "cost_factors": costs.factors()})
     made = Plan(scene, report["plan"], asked)
     made.__dict__["_report"] = report

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _core
+from .._attitude.arrays import is_whole, require_bool, require_text, to_items
 from .._keywords import checked
 from .._scene.scene import Scene
 from .._sensitivity.driven import differentiate
@@ -37,9 +38,9 @@ class Event:
     def __init__(self, function: Callable[..., float], direction: int = 0, terminal: bool = False) -> None:
         if not callable(function):
             raise _core.InvalidInput(f"Event.function: must be callable, got {type(function).__name__}")
-        if direction not in (-1, 0, 1):
+        if not isinstance(direction, (int, float, np.integer)) or direction not in (-1, 0, 1):
             raise _core.InvalidInput(f"Event.direction: must be -1, 0 or 1, got {direction!r}")
-        self.function, self.direction, self.terminal = function, int(direction), bool(terminal)
+        self.function, self.direction, self.terminal = function, int(direction), require_bool(terminal, "Event.terminal")
 
 
 def _event(item: Any) -> Event:
@@ -76,7 +77,7 @@ def _take(plan: Plan, accuracy: float | None, method: str | None, rtol: float | 
 
 def check_max_steps(max_steps: int) -> int:
     """Return the number as an int that the core can take."""
-    if isinstance(max_steps, bool) or not isinstance(max_steps, (int, np.integer)) or not -(2**63) <= max_steps < 2**63:
+    if not is_whole(max_steps) or not -(2**63) <= max_steps < 2**63:
         raise _core.InvalidInput(f"max_steps: must be a whole number below 2^63, got {max_steps!r}")
     return int(max_steps)
 
@@ -162,17 +163,18 @@ def solve(
         raise _core.InvalidInput(f"scene: must be a polhode.Scene, got {type(scene).__name__}")
     if callable(events) or isinstance(events, Event):
         events = (events,)
-    try:
-        items = tuple(events)
-    except TypeError:
-        raise _core.InvalidInput(f"events: must be events or callables, got {events!r}") from None
+    items = to_items(events, "events", "events or callables")
+    for name, value in (("method", method), ("certify", certify), ("formulation", formulation)):
+        require_text(value, name)
+    if not isinstance(certify, str):
+        certify = require_bool(certify, "certify")
     if plan is not None:
         accuracy, method, certify, formulation = _take(plan, accuracy, method, rtol, atol, step, certify, formulation)
     with shown(progress, f"solving {scene.name}".strip()) as callback:
         answer = _core.solve(scene, {
             "accuracy": accuracy, "method": method, "rtol": rtol, "atol": atol, "step": step,
-            "certify": certify if isinstance(certify, str) else bool(certify),
-            "max_steps": check_max_steps(max_steps), "dense": bool(dense), "formulation": str(formulation),
+            "certify": certify,
+            "max_steps": check_max_steps(max_steps), "dense": require_bool(dense, "dense"), "formulation": str(formulation),
             "events": [_event(item) for item in items], "progress": callback, "cost_factors": factors()})
     asked = None if method is None and formulation == "euler" else {"method": method, "formulation": formulation}
     given = {"accuracy": accuracy, "method": method, "rtol": rtol, "atol": atol, "step": step}
