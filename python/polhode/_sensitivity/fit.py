@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from .._attitude.arrays import is_one_of, is_whole, to_items, to_number
 from .._core import IntegrationFailure, InvalidInput
 from .._scene.scene import Scene
 from ..measured import Attitudes, Axis, Direction, Measurement, Rates
@@ -24,14 +25,16 @@ SPANS = (0.1, 0.2, 0.4, 0.7, 1.0)   # growing windows, of the whole span
 
 
 def _to_data(data: Any) -> list[Measurement]:
-    found = [data] if isinstance(data, Measurement) else list(data)
+    found = [data] if isinstance(data, Measurement) else list(to_items(data, "data", "measurements"))
     if not found or not all(isinstance(m, Measurement) for m in found):
         raise InvalidInput("data: must be one or several of ph.measured.Rates, Attitudes, Axis, Direction and Scalar")
     return found
 
 
 def _to_groups(fit: str | Sequence[str], driven: bool) -> tuple[str, ...]:
-    groups = (fit,) if isinstance(fit, str) else tuple(fit)
+    groups = (fit,) if isinstance(fit, str) else to_items(fit, "fit", "names of parameters")
+    if not all(isinstance(group, str) for group in groups):
+        raise InvalidInput(f"fit: must be names of parameters, got {fit!r}")
     numbers = {group for group in groups if driven and isinstance(group, str) and "." in group}
     known = set(GROUPS) - {"axes"} if driven else set(GROUPS)
     if not groups or len(set(groups)) != len(groups) or not set(groups) <= known | numbers:
@@ -233,13 +236,18 @@ def fit(
     -----
     A gyroscope's scale and an offset of times are not fitted. See docs/fit.md.
     """
+    if scene is not None and not isinstance(scene, Scene):
+        raise InvalidInput(f"scene: must be a polhode.Scene, got {type(scene).__name__}")
     driven = scene is not None and bool(len(scene.torques) or len(scene.rotors))
     measurements, groups = _to_data(data), _to_groups(fit, driven)
-    if loss not in LOSSES:
+    if not is_one_of(loss, LOSSES):
         raise InvalidInput(f"loss: must be one of {', '.join(LOSSES)}, got {loss!r}")
+    f_scale = to_number(f_scale, "f_scale")
+    if not is_whole(seed) or seed < 0:   # NumPy crashes on a list that holds itself
+        raise InvalidInput(f"seed: must be a whole number >= 0, got {seed!r}")
     if not f_scale > 0:
         raise InvalidInput(f"f_scale: must be positive, got {f_scale}")
-    if start not in ("search", "scene") or (start == "scene" and scene is None):
+    if not is_one_of(start, ("search", "scene")) or (start == "scene" and scene is None):
         raise InvalidInput(f"start: must be 'search', or 'scene' with a scene, got {start!r}")
     state, largest, problem = _set_up(measurements, groups, scene, driven)
     independent = sum(m.independent for m in measurements)

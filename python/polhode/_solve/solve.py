@@ -38,7 +38,7 @@ class Event:
     def __init__(self, function: Callable[..., float], direction: int = 0, terminal: bool = False) -> None:
         if not callable(function):
             raise _core.InvalidInput(f"Event.function: must be callable, got {type(function).__name__}")
-        if not isinstance(direction, (int, float, np.integer)) or direction not in (-1, 0, 1):
+        if not (is_whole(direction) or isinstance(direction, float)) or direction not in (-1, 0, 1):
             raise _core.InvalidInput(f"Event.direction: must be -1, 0 or 1, got {direction!r}")
         self.function, self.direction, self.terminal = function, int(direction), require_bool(terminal, "Event.terminal")
 
