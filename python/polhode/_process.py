@@ -1,4 +1,4 @@
-"""What polhode asks of its process: one copy of the package, the main interpreter, and imports that end before a fork."""
+"""What polhode asks of its process: one copy of the package, the main interpreter, imports that end before a fork."""
 
 from __future__ import annotations
 

@@ -59,10 +59,10 @@ CORNERS, SIDES = [[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0,
 MOTION, T30 = ph.solve(SCENE, 1e-6, dense=True, sensitivity="omega"), np.linspace(0, 10, 30)
 RATES = ph.measured.Rates(T30, FREE.at(T30)[0], 0.01)
 
-# A callable, and arguments that it takes; one of them at a time becomes odd. The name is that of the public callable, up
-# to a comma.
+# A callable, and arguments that it takes; one of them at a time becomes odd. Up to a comma the name is the public one.
 DOORS = {
-    "free_motion": (ph.free_motion, BATCH), "free_motion, grid": (ph.free_motion, {**BATCH, "omega": np.ones((4, 1, 3))}),
+    "free_motion": (ph.free_motion, BATCH),
+    "free_motion, grid": (ph.free_motion, {**BATCH, "omega": np.ones((4, 1, 3))}),
     "gyrostat": (ph.gyrostat, {**BATCH, "momentum": (1, 0, 0)}),
     "heavy_top": (ph.heavy_top, {**BATCH, "inertia": (1, 1, 0.5), "weight_arm": 2.0}),
     "free_sensitivity": (ph.free_sensitivity, dict(inertia=I, omega=W, attitude=Q, t=TIMES, wrt="omega", side="space",
@@ -124,7 +124,8 @@ DOORS = {
     "InertiaTensor": (ph.InertiaTensor, dict(matrix=np.eye(3))),
     "InertiaTensor.from_moments": (ph.InertiaTensor.from_moments, dict(moments=I)),
     "MassProperties.from_mesh": (ph.MassProperties.from_mesh, dict(vertices=CORNERS, faces=SIDES, mass=1.0)),
-    "mesh.report": (ph.mesh.report, dict(vertices=CORNERS, faces=SIDES)), "mesh.read": (ph.mesh.read, dict(path="x.stl")),
+    "mesh.report": (ph.mesh.report, dict(vertices=CORNERS, faces=SIDES)),
+    "mesh.read": (ph.mesh.read, dict(path="x.stl")),
     "inertia.principal_axes": (ph.inertia.principal_axes, dict(matrices=np.eye(3))),
     "inertia.diagnose": (lambda body: ph.inertia.diagnose(body), dict(body=np.eye(3))),
     "elliptic.K": (ph.elliptic.K, dict(m=0.5)), "elliptic.nome": (ph.elliptic.nome, dict(m=0.5)),
@@ -136,7 +137,8 @@ DOORS = {
     "torques.Damping": (T.Damping, dict(matrix=np.eye(3))), "load": (ph.load, dict(path="x.npz")),
 }
 # What takes nothing but self, a file, or the user's own data is left out; the rest must stand above.
-OUT = ("Ensemble", "FitResult", "Lyapunov", "Motion", "Motions", "Plan", "Sensitivity", "PrincipalAxes", "MassProperties",
+OUT = ("Ensemble", "FitResult", "Lyapunov", "Motion", "Motions", "Plan", "Sensitivity", "PrincipalAxes",
+       "MassProperties",
        "InertiaTensor", "IntegrationFailure", "InvalidInput", "animate", "plot", "inv", "magnitude", "as_matrix",
        "as_mrp", "atlas", "charts", "recipe", "report", "schema", "shapes", "ensemble", "methods", "build_info",
        "cmake_prefix", "measured", "inertia", "records", "AngularDamping", "GravityGradient")

@@ -24,7 +24,8 @@ def test_an_empty_list_of_windows_means_never(empty):
     free = ph.FreeMotion(I, W).at(np.array([1.0, 5.0]))
     push = ph.torques.During(ph.torques.Constant((1, 0, 0)), empty)
     for scene in (ph.Scene(**start, rotors=[never]), ph.Scene(**start, torques=[push])):
-        for options in ({"accuracy": 1e-10}, {"accuracy": 1e-10, "certify": "proof"}, {"rtol": 1e-11, "method": "rk45"}):
+        for options in ({"accuracy": 1e-10}, {"accuracy": 1e-10, "certify": "proof"},
+                        {"rtol": 1e-11, "method": "rk45"}):
             motion = ph.solve(scene, **options)
             np.testing.assert_allclose(motion.omega, free[0], rtol=0, atol=4e-9)
             np.testing.assert_allclose(motion.attitude, free[1], rtol=0, atol=4e-9)
@@ -123,7 +124,8 @@ samples = 3
 kind = "damping"
 diagonal = [1e18, 1e18, 1e18]
 """)
-    found = subprocess.run([sys.executable, "-m", "polhode", "plan", str(file), "--json"], capture_output=True, text=True)
+    found = subprocess.run([sys.executable, "-m", "polhode", "plan", str(file), "--json"], capture_output=True,
+                           text=True)
     assert "Traceback" not in found.stderr, found.stderr
     if found.returncode == 0:
         json.loads(found.stdout, parse_constant=lambda name: pytest.fail(name))

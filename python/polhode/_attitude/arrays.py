@@ -116,6 +116,16 @@ def to_weights(value: Any, shape: tuple[int, ...]) -> FloatArray:
     return weights
 
 
+def to_seed(rng: Any) -> Any:
+    """Return what NumPy makes a generator of. It crashes on a list that holds itself."""
+    if rng is None or isinstance(rng, (np.random.Generator, np.random.BitGenerator, np.random.SeedSequence)):
+        return rng
+    seed = to_any(rng, "rng", "iu")
+    if (seed < 0).any():
+        raise InvalidInput(f"rng: must be a generator or a seed >= 0, got {rng!r}")
+    return seed.tolist()
+
+
 def to_shape(num: int | None, shape: int | tuple[int, ...] | None) -> tuple[int, ...]:
     """Return the shape of an array of rotations, given as a number or as itself."""
     if num is not None and shape is not None:

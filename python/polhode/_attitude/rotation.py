@@ -178,18 +178,14 @@ class Rotation:
         rng : numpy.random.Generator or a seed for one, optional
             The same generator gives the same rotations as SciPy's.
         """
-        known = rng is None or isinstance(rng, (np.random.Generator, np.random.BitGenerator, np.random.SeedSequence))
-        seed: Any = rng if known else arrays.to_any(rng, "rng", "iu")   # NumPy crashes on a list that holds itself
-        if not known and (seed < 0).any():
-            raise InvalidInput(f"rng: must be a generator or a seed >= 0, got {rng!r}")
-        quat = np.random.default_rng(seed if known else seed.tolist()).normal(size=(*arrays.to_shape(num, shape), 4))
+        quat = np.random.default_rng(arrays.to_seed(rng)).normal(size=(*arrays.to_shape(num, shape), 4))
         return Rotation(quat / np.linalg.norm(quat, axis=-1, keepdims=True))
 
     @staticmethod
     def concatenate(rotations: Rotation | Iterable[Rotation]) -> Rotation:
         """Several rotations, each one or an array of them, in one array along the first dimension."""
-        parts: list[Any] = [rotations] if arrays.is_rotation(rotations) else list(
-            arrays.to_items(rotations, "rotations", "several rotations"))
+        several = not arrays.is_rotation(rotations)
+        parts = arrays.to_items(rotations, "rotations", "several rotations") if several else (rotations,)
         if not parts:
             raise InvalidInput("rotations: must be at least one rotation, got an empty list")
         if len(parts) == 1:
@@ -309,12 +305,11 @@ class Rotation:
 
     def __pow__(self, n: float) -> Rotation:
         """The rotation about the same axis by n times the angle in [0, pi]; n may be any real number."""
-        n = arrays.to_number(n, "exponent", "one finite number")
-        if not np.isfinite(n):
+        if not np.isfinite(n := arrays.to_number(n, "exponent", "one finite number")):
             raise InvalidInput(f"exponent: must be one finite number, got {n}")
-        if n == 1.0:
-            return self
-        return self.inv() if n == -1.0 else Rotation.from_rotvec(n * self.as_rotvec())
+        if abs(n) == 1.0:
+            return self if n > 0 else self.inv()
+        return Rotation.from_rotvec(n * self.as_rotvec())
 
     def mean(self, weights: ArrayLike | None = None) -> Rotation:
         """The rotation whose matrix is nearest to the mean of all matrices (chordal distance).
@@ -402,5 +397,5 @@ def _quat_of(value: Any, *, scalar_first: bool = False) -> FloatArray:
     if isinstance(value, Rotation):
         return value._quat
     if arrays.is_rotation(value):
-        return _kernels.normalize(value.as_quat(), False)
+        value, scalar_first = value.as_quat(), False
     return _kernels.normalize(value, arrays.require_bool(scalar_first, "scalar_first"))

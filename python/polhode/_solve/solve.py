@@ -40,7 +40,8 @@ class Event:
             raise _core.InvalidInput(f"Event.function: must be callable, got {type(function).__name__}")
         if not (is_whole(direction) or isinstance(direction, float)) or direction not in (-1, 0, 1):
             raise _core.InvalidInput(f"Event.direction: must be -1, 0 or 1, got {direction!r}")
-        self.function, self.direction, self.terminal = function, int(direction), require_bool(terminal, "Event.terminal")
+        self.function, self.direction = function, int(direction)
+        self.terminal = require_bool(terminal, "Event.terminal")
 
 
 def _event(item: Any) -> Event:
@@ -164,8 +165,9 @@ def solve(
     if callable(events) or isinstance(events, Event):
         events = (events,)
     items = to_items(events, "events", "events or callables")
-    for name, value in (("method", method), ("certify", certify), ("formulation", formulation)):
-        require_text(value, name)
+    require_text(method, "method")
+    require_text(certify, "certify")
+    require_text(formulation, "formulation")
     if not isinstance(certify, str):
         certify = require_bool(certify, "certify")
     if plan is not None:
@@ -174,7 +176,8 @@ def solve(
         answer = _core.solve(scene, {
             "accuracy": accuracy, "method": method, "rtol": rtol, "atol": atol, "step": step,
             "certify": certify,
-            "max_steps": check_max_steps(max_steps), "dense": require_bool(dense, "dense"), "formulation": str(formulation),
+            "max_steps": check_max_steps(max_steps), "dense": require_bool(dense, "dense"),
+            "formulation": str(formulation),
             "events": [_event(item) for item in items], "progress": callback, "cost_factors": factors()})
     asked = None if method is None and formulation == "euler" else {"method": method, "formulation": formulation}
     given = {"accuracy": accuracy, "method": method, "rtol": rtol, "atol": atol, "step": step}
