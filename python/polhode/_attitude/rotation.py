@@ -184,8 +184,7 @@ class Rotation:
     @staticmethod
     def concatenate(rotations: Rotation | Iterable[Rotation]) -> Rotation:
         """Several rotations, each one or an array of them, in one array along the first dimension."""
-        several = not arrays.is_rotation(rotations)
-        parts = arrays.to_items(rotations, "rotations", "several rotations") if several else (rotations,)
+        parts = (rotations,) if arrays.is_rotation(rotations) else arrays.to_items(rotations, "rotations", "several")
         if not parts:
             raise InvalidInput("rotations: must be at least one rotation, got an empty list")
         if len(parts) == 1:
@@ -327,8 +326,8 @@ class Rotation:
 
     def approx_equal(self, other: Any, atol: float | None = None, degrees: bool = False) -> NDArray[np.bool_] | bool:
         """Whether the angle between the two rotations is below `atol`, 1e-8 rad unless given."""
-        angle = 1e-8 if atol is None else arrays.to_number(atol, "atol")
-        limit = np.deg2rad(angle) if arrays.require_bool(degrees, "degrees") and atol is not None else angle
+        unit = np.deg2rad(1.0) if arrays.require_bool(degrees, "degrees") else 1.0
+        limit = 1e-8 if atol is None else unit * arrays.to_number(atol, "atol")
         return (Rotation(other) * self.inv()).magnitude() < limit
 
     # ---- as a container
