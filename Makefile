@@ -17,7 +17,7 @@ inputs := build/.names $(shell find CMakeLists.txt pyproject.toml cpp python/CMa
             tests/cpp/CMakeLists.txt scenes -type f 2>/dev/null)
 
 .PHONY: help demo test same-bits check-long install module clang sanitize valgrind fuzz mutants \
-        aarch64 debian13 free-threaded wheels stubs docs docs-pictures browser web web-pictures clean
+        aarch64 debian13 free-threaded wheels stubs docs docs-pictures browser web web-check web-pictures clean
 .NOTPARALLEL:
 # An environment whose Python has gone is made anew.
 ifneq ($(shell $(VENV)/bin/python -c 'import pip; print("there")' 2>/dev/null),there)
@@ -128,11 +128,12 @@ docs: install
 docs-pictures: docs
 	@$(PYTHON) tests/support/site_pictures.py build/site build/site-pictures
 
-# The core as WebAssembly by Zig's Clang, its numbers against the native baseline, and the playground as one file.
-web: install
+# The core as WebAssembly by Zig's Clang, its sizes, its numbers against the native baseline, the playground as one file.
+# The check skips nothing: POLHODE_WEB makes a test that lacks what it needs a failure.
+web web-check: install
 	@$(PYTHON) -m pip install -qq --disable-pip-version-check "ziglang==0.17.1" wasmtime
-	@$(PYTHON) web/build.py
-	@POLHODE_SIMD=baseline $(PYTHON) -m pytest -q tests/python/test_web.py
+	@JOBS=$(JOBS) $(PYTHON) web/build.py
+	@POLHODE_WEB=required POLHODE_SIMD=baseline $(PYTHON) -m pytest -q tests/python/test_web.py
 
 # The playground in a headless Chromium: two widths, light and dark. Pictures in build/web/pictures.
 web-pictures: install

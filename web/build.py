@@ -6,8 +6,10 @@
 
 import base64
 import gzip
+import os
 import pathlib
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -29,13 +31,32 @@ def write_wrappers(folder):
     return folder
 
 
+def first_errors(output, most=5):
+    """What a compiler, a linker or CMake said first, each complaint with the lines that belong to it."""
+    lines = output.splitlines()
+    starts = [i for i, line in enumerate(lines) if re.search(r"(^|\s)(fatal )?error:|CMake Error", line)]
+    parts = ["\n".join(lines[i:i + 4]) for i in starts[:most]] or ["\n".join(lines[-20:])]
+    if len(starts) > most:
+        parts.append(f"and {len(starts) - most} more errors")
+    return "\n\n".join(parts)
+
+
+def run(command, what):
+    """Ninja, and with it the compiler, complains on standard output."""
+    done = subprocess.run([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    if done.returncode != 0:
+        raise SystemExit(f"{what} failed (exit code {done.returncode}):\n\n{first_errors(done.stdout)}\n\n"
+                         f"all of it: {shlex.join(map(str, command))}")
+
+
 def build_modules():
     wrappers = write_wrappers(OUT / "zig")
     eigen = subprocess.run([sys.executable, ROOT / ".ci/eigen_dir.py", "--cmake"], check=True, capture_output=True,
                            text=True).stdout.split() or ["-DEigen3_DIR=/usr/share/eigen3/cmake"]
-    subprocess.run(["cmake", "-S", HERE, "-B", OUT / "cmake", "-G", "Ninja", f"-DPOLHODE_ZIG={wrappers}",
-                    f"-DCMAKE_TOOLCHAIN_FILE={HERE / 'wasm.cmake'}", *eigen], check=True, stdout=subprocess.DEVNULL)
-    subprocess.run(["cmake", "--build", OUT / "cmake"], check=True, stdout=subprocess.DEVNULL)
+    run(["cmake", "-S", HERE, "-B", OUT / "cmake", "-G", "Ninja", f"-DPOLHODE_ZIG={wrappers}",
+         f"-DCMAKE_TOOLCHAIN_FILE={HERE / 'wasm.cmake'}", *eigen], "the set-up of the web core")
+    run(["cmake", "--build", OUT / "cmake", "--parallel", os.environ.get("JOBS", os.cpu_count() or 1)],
+        "the build of the web core")
 
 
 def inline(page):

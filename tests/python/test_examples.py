@@ -8,6 +8,7 @@ import sys
 import sysconfig
 from fractions import Fraction
 
+import numpy as np
 import pytest
 
 import polhode as ph
@@ -75,4 +76,28 @@ def test_cpp_example_links_and_prints_what_its_twin_prints(source, request, tmp_
     run("cmake", "--build", tmp_path, *(["--target", "racket"] if source == "pip install" else []))   # one is enough
     assert run(tmp_path / "racket") == run_example(ROOT / "examples/python/racket.py")
     if source == "cmake --install":
+        heavy, own, many = run(tmp_path / "scenes").splitlines()
+        w = [float(x) for x in re.search(r"omega (\S+) (\S+) (\S+) at 10 s", heavy).groups()]
+        same = ph.solve(ph.Scene(inertia=(1, 2, 2.5), omega=(0.3, 0.2, 3), times=10.0 ** np.arange(2),
+                                 torques=[ph.torques.Gravity(2.0, (0.3, 0.2, 0.5))]), accuracy=1e-9)
+        assert np.abs(np.array(w) - same.omega[-1]).max() < 1e-7 and float(heavy.split()[-1]) <= 1e-9
+        found, by_hand = re.search(r"omega_z (\S+) rad/s, by hand (\S+)", own).groups()
+        assert float(found) == pytest.approx(float(by_hand), rel=1e-8) and float(by_hand) == pytest.approx(3 / np.e)
+        assert many == "many bodies: less than 1e-4 rad from the closed form"
         assert [float(line) for line in run(tmp_path / "readme").split()] == [3.68344, 10.1341]
+
+
+def test_a_project_that_fetches_polhode_keeps_its_build_type(tmp_path):
+    """The project of the page, and one without a build type: a subproject does not write into its parent's cache."""
+    page = (ROOT / "docs/tutorials/cpp.md").read_text()
+    (text,) = re.findall(r"```cmake\n(.*?)```", page, flags=re.S)
+    shutil.copy(ROOT / "examples/cpp/racket.cpp", tmp_path)
+    cmeel = pathlib.Path(sysconfig.get_paths()["purelib"]) / "cmeel.prefix"
+    bare = re.sub(r"if\(NOT CMAKE_BUILD_TYPE\).*?endif\(\)\n", "", text, flags=re.S)
+    for name, lines in (("page", text), ("bare", bare)):
+        (tmp_path / "CMakeLists.txt").write_text(lines)
+        configured = run("cmake", "-S", tmp_path, "-B", tmp_path / name, f"-DFETCHCONTENT_SOURCE_DIR_POLHODE={ROOT}",
+                         f"-DCMAKE_PREFIX_PATH={cmeel}", "-DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF")
+        assert "Generating done" in configured
+        cache = (tmp_path / name / "CMakeCache.txt").read_text()
+        assert re.search(r"^CMAKE_BUILD_TYPE:\w+=$", cache, flags=re.M), name

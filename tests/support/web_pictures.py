@@ -10,7 +10,12 @@ from pathlib import Path
 
 from browser import Browser
 
-WIDTHS = (1280, 390)
+WIDTHS = (1400, 1280, 390)
+OUTSIDE = """[...document.querySelectorAll('fieldset')].flatMap(box => [...box.querySelectorAll('input, select, output')]
+  .filter(field => field.getBoundingClientRect().right > box.getBoundingClientRect().right - 1)
+  .map(field => field.id || 'output')).join(' ')"""
+LETTERS = """(() => { const c = document.getElementById('errors');   // of the chart, in pixels of the page
+  return parseFloat(c.getContext('2d').font) * c.getContext('2d').getTransform().a * c.clientWidth / c.width; })()"""
 PIXELS = """(() => { const c = document.getElementById('body');
   return c.getContext('2d').getImageData(0, 0, c.width, c.height).data.reduce((h, x) => (31 * h + x) | 0, 7); })()"""
 AT = """(t => { const slider = document.getElementById('time'); slider.value = t;
@@ -52,6 +57,8 @@ def try_page(page: Path, width: int, theme: str, folder: Path) -> list[str]:
         for preset in ("top", "wheel", "disk"):
             browser.run(f"{SET}('preset', '{preset}')"), browser.run(NEXT)
             check(browser.run("document.getElementById('refusal').hidden"), f"{preset} is refused")
+        check(not browser.run(OUTSIDE), f"fields stick out of their box: {browser.run(OUTSIDE)}")
+        check(browser.run(LETTERS) >= 12, f"the chart's letters are {browser.run(LETTERS):.1f} pixels high")
         check(browser.run("document.documentElement.scrollWidth") <= width, f"wider than {width} pixels")
         outside = [asked for asked in browser.requests if not asked.startswith(("file:", "data:", "about:", "blob:"))]
         return wrong + [f"asks for {asked}" for asked in outside] + browser.errors

@@ -19,7 +19,7 @@ const COLORS = ["#b3392f", "#e0584c", "#2f6fb3", "#4c8fe0", "#3f8f4f", "#58b36b"
 
 const state = { ...REST, ...PRESETS.racket, method: "semi_euler" };
 const cores = {};
-let exact = null, polhode = null, other = null, clock = 0, playing = true, asked = 0;
+let compared = [], exact = null, polhode = null, other = null, clock = 0, playing = true, asked = 0;
 const bodyView = new View(get("body")), ellipsoidView = new View(get("ellipsoid"));
 
 const times = Float64Array.from({ length: SPAN * FRAMES + 1 }, (_, i) => i / FRAMES);
@@ -84,14 +84,14 @@ function compare() {
     }
   });
   get("other").textContent = get("method").selectedOptions[0].text;
-  drawErrors(get("errors"), SPAN, curves);
+  compared = curves, drawErrors(get("errors"), SPAN, compared);
 }
 
 const number = x => Math.abs(x) >= 1e5 || (x && Math.abs(x) < 1e-3) ? x.toExponential(6) : x.toPrecision(7);
 
 function tellFacts() {
   if (!exact) return;
-  const parts = [`moments ${massAndMoments().map(number).join(", ")} kg m²`];
+  const parts = [`moments ${massAndMoments().map(m => m.toPrecision(4)).join(", ")} kg m²`];
   if (exact.period > 0) parts.push(`period ${Number.isFinite(exact.period) ? number(exact.period) + " s" : "infinite"}`);
   if (isFree()) parts.push(`${exact.flips} flips in ${SPAN} s`);
   else parts.push(`solved by ${exact.method}, error below ${exact.error.toExponential(1)}`);
@@ -215,6 +215,7 @@ function listen() {
     const link = document.createElement("a");
     link.href = URL.createObjectURL(new Blob([sceneText()])), link.download = "scene.toml", link.click();
   });
+  addEventListener("resize", () => drawErrors(get("errors"), SPAN, compared));
   const drag = (view, move) => {
     let from = null;
     view.canvas.addEventListener("pointerdown", e => { from = e, view.canvas.setPointerCapture(e.pointerId); });

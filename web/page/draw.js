@@ -64,21 +64,24 @@ export class View {
   }
 }
 
-/// Curves of errors against time, both axes labelled; the error's axis is logarithmic.
+/// Curves of errors against time, both axes labelled; the error's axis is logarithmic. The canvas gets the pixels that
+/// it has on the screen, so letters have their size on a phone too.
 export function drawErrors(canvas, end, curves) {
-  const pen = canvas.getContext("2d"), left = 70, right = 150, top = 14, bottom = 40;
-  const width = canvas.width - left - right, height = canvas.height - top - bottom, low = -14, high = 1;
+  const ratio = globalThis.devicePixelRatio || 1, wide = canvas.clientWidth || 960, tall = Math.max(280, wide / 3);
+  canvas.width = Math.round(wide * ratio), canvas.height = Math.round(tall * ratio);
+  const pen = canvas.getContext("2d"), letter = 13, left = 46, right = 96, top = 24, bottom = 26;
+  const width = wide - left - right, height = tall - top - bottom, low = -14, high = 1;
   const x = t => left + width * t / end;
   const y = e => top + height * (high - Math.max(low, Math.log10(e))) / (high - low);
-  pen.clearRect(0, 0, canvas.width, canvas.height);
-  pen.font = "18px system-ui, sans-serif", pen.fillStyle = css("--faint"), pen.strokeStyle = css("--line"), pen.lineWidth = 1;
+  pen.setTransform(ratio, 0, 0, ratio, 0, 0), pen.clearRect(0, 0, wide, tall);
+  pen.font = `${letter}px system-ui, sans-serif`, pen.fillStyle = css("--faint"), pen.strokeStyle = css("--line"), pen.lineWidth = 1;
   for (let p = low + 2; p <= 0; p += 4) {
     pen.beginPath(), pen.moveTo(left, y(10 ** p)), pen.lineTo(left + width, y(10 ** p)), pen.stroke();
-    pen.textAlign = "right", pen.fillText(`1e${p}`, left - 8, y(10 ** p) + 6);
+    pen.textAlign = "right", pen.fillText(`1e${p}`, left - 6, y(10 ** p) + 4);
   }
   pen.textAlign = "center";
-  for (let k = 0; k <= 4; ++k) pen.fillText(`${+(end * k / 4).toPrecision(3)} s`, x(end * k / 4), canvas.height - 12);
-  pen.textAlign = "left", pen.fillText("rad", 8, top + 12);
+  for (let k = 0; k <= 4; ++k) pen.fillText(`${+(end * k / 4).toPrecision(3)} s`, x(end * k / 4), tall - 8);
+  pen.textAlign = "left", pen.fillText("rad", 8, 15);
   const ends = [];
   for (const { name, t, error, chosen } of curves) {
     pen.beginPath();
@@ -89,12 +92,14 @@ export function drawErrors(canvas, end, curves) {
   }
   // A name stands where its curve ends, or as near as the names beside it let it.
   ends.sort((a, b) => a.at - b.at);
-  const places = ends.map(({ at }) => at + 6);
+  const places = ends.map(({ at }) => at), apart = letter + 1;
   for (let round = 0; round < 60; ++round) for (let i = 1; i < places.length; ++i) {
-    const lacking = 17 - (places[i] - places[i - 1]);
-    if (lacking > 0) places[i] += lacking / 2, places[i - 1] = Math.max(top + 10, places[i - 1] - lacking / 2);
+    const lacking = apart - (places[i] - places[i - 1]);
+    if (lacking > 0) places[i] += lacking / 2, places[i - 1] = Math.max(top, places[i - 1] - lacking / 2);
   }
-  ends.forEach(({ name, chosen }, i) => {
-    pen.fillStyle = chosen ? css("--other") : css("--faint"), pen.fillText(name, left + width + 8, places[i]);
+  ends.forEach(({ name, at, chosen }, i) => {
+    pen.beginPath(), pen.moveTo(left + width, at), pen.lineTo(left + width + 12, places[i]);
+    pen.strokeStyle = css("--line"), pen.lineWidth = 1, pen.stroke();
+    pen.fillStyle = chosen ? css("--other") : css("--faint"), pen.fillText(name, left + width + 15, places[i] + 4);
   });
 }

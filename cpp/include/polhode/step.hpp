@@ -86,10 +86,20 @@ struct Ops {
 };
 #endif
 
+/// A parameter of this type is converted to T, which the other arguments give: a step of 1.0 / 60 serves floats too.
+template <class T> struct Given { using Type = T; };
+template <class T> using As = typename Given<T>::Type;
+
 template <class T> struct Vec { T x, y, z; };
 template <class T> struct Quat { T x, y, z, w; };
 /// A body in its principal axes: a = largest moment over each moment, scale = 1 / largest moment.
-template <class T> struct Inertia { T a[3], scale; };
+template <class T> struct Inertia {
+  T a[3], scale;
+  /// The same body in another type, as from make_inertia(0.2, 0.4, 0.5) to floats, or from one body to all lanes.
+  template <class U> POLHODE_STEP operator Inertia<U>() const {
+    return {{Ops<U>::set(a[0]), Ops<U>::set(a[1]), Ops<U>::set(a[2])}, Ops<U>::set(scale)};
+  }
+};
 /// A body with a full tensor in body axes B, and its principal axes P.
 template <class T> struct Principal { Inertia<T> inertia; Quat<T> q_BP; };
 template <class T> POLHODE_STEP T larger(T a, T b) { return Ops<T>::pick(a, b, b, a); }
@@ -111,7 +121,7 @@ POLHODE_STEP Vec<T> rates(const Inertia<T>& body, const Vec<T>& L) {
 
 /// L += h torque, both in the same axes. An impulse J at r from the centre of mass has h torque = r x J.
 template <class T>
-POLHODE_STEP void kick(Vec<T>& L, const Vec<T>& torque, T h) {
+POLHODE_STEP void kick(Vec<T>& L, const Vec<T>& torque, As<T> h) {
   L = {Ops<T>::madd(h, torque.x, L.x), Ops<T>::madd(h, torque.y, L.y), Ops<T>::madd(h, torque.z, L.z)};
 }
 
@@ -255,7 +265,7 @@ POLHODE_STEP Quat<T> free_turn(const Inertia<T>& body, const Vec<T>& y) {
 
 /// Moves the body by h: L in principal axes, q principal axes to space.
 template <int N = 0, class T>
-POLHODE_STEP void drift_body(const Inertia<T>& body, T h, Vec<T>& L, Quat<T>& q) {
+POLHODE_STEP void drift_body(const Inertia<T>& body, As<T> h, Vec<T>& L, Quat<T>& q) {
   const T k = Ops<T>::set(0.25) * h * body.scale;
   const Quat<T> p = free_turn<N>(body, Vec<T>{k * L.x, k * L.y, k * L.z});
   L = turn_back(p, L), q = turn_by(q, p);
@@ -263,7 +273,7 @@ POLHODE_STEP void drift_body(const Inertia<T>& body, T h, Vec<T>& L, Quat<T>& q)
 
 /// Moves the body by h: L in space, where it does not change.
 template <int N = 0, class T>
-POLHODE_STEP void drift_space(const Inertia<T>& body, T h, const Vec<T>& L, Quat<T>& q) {
+POLHODE_STEP void drift_space(const Inertia<T>& body, As<T> h, const Vec<T>& L, Quat<T>& q) {
   const T k = Ops<T>::set(0.25) * h * body.scale;
   const Vec<T> y = turn_back(q, L);
   q = turn_by(q, free_turn<N>(body, Vec<T>{k * y.x, k * y.y, k * y.z}));
@@ -289,7 +299,7 @@ Principal<T> make_principal(T xx, T yy, T zz, T xy, T xz, T yz) {
 
 /// Moves a body with a full tensor: q body to space, L in space.
 template <int N = 0, class T>
-POLHODE_STEP void drift_space(const Principal<T>& body, T h, const Vec<T>& L, Quat<T>& q) {
+POLHODE_STEP void drift_space(const Principal<T>& body, As<T> h, const Vec<T>& L, Quat<T>& q) {
   const Quat<T>& b = body.q_BP;
   Quat<T> q_WP = turn_by(q, b);
   drift_space<N>(body.inertia, h, L, q_WP);

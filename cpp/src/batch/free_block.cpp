@@ -88,7 +88,7 @@ bool FreeBlock::passes(std::size_t i) const {
 
 void FreeBlock::set_up() {
   trig_.resize(kept_block), frames_.resize(kept_block);
-  const std::size_t count = exact::free_kernels().set_up(starts_, n_, trig_.data(), frames_.data(), left_);
+  const std::size_t count = exact::free_batch_kernels().set_up(starts_, n_, trig_.data(), frames_.data(), left_);
   add_singles(count);
   for (std::size_t i = 0, next = 0; rotated() && i < n_; ++i) {
     const bool singly = next < count && left_[next] == i;
@@ -100,7 +100,7 @@ void FreeBlock::set_up() {
 
 void FreeBlock::evaluate_once(const double* t, double* omega, double* attitude) {
   once_ = true;
-  add_singles(exact::free_kernels().once(starts_, t, n_, omega, attitude, left_));
+  add_singles(exact::free_batch_kernels().once(starts_, t, n_, omega, attitude, left_));
 }
 
 void FreeBlock::add_singles(std::size_t count) {
@@ -129,7 +129,7 @@ void FreeBlock::evaluate(std::size_t i, const exact::TimeGrid& t, double* omega,
 }
 
 void FreeBlock::evaluate(std::size_t i, const exact::TimeGrid& t, float* omega, float* attitude) {
-  exact::free_kernels().trig_single(trig_[i], frames_[i], t.t, t.n, omega, attitude);
+  exact::free_batch_kernels().trig_single(trig_[i], frames_[i], t.t, t.n, omega, attitude);
 }
 
 bool FreeBlock::is_single(std::size_t i) const {

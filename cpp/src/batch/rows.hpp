@@ -145,7 +145,7 @@ struct Rows {
 
   /// Writes n states of a body to the outputs from a row on.
   void write(std::size_t body, std::size_t row, std::size_t n, const double* omega, const double* attitude) const {
-    const exact::FreeKernels& kernels = exact::free_kernels();
+    const exact::FreeBatchKernels& kernels = exact::free_batch_kernels();
     const MotionOutput at = out.from(row);
     if (at.rows.omega) std::copy_n(omega, 3 * n, at.rows.omega);
     if (at.rows.attitude) std::copy_n(attitude, 4 * n, at.rows.attitude);

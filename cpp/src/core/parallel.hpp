@@ -1,10 +1,21 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
+
+/// 0 where a process has one thread only, as in WebAssembly without its extension for threads.
+#ifndef POLHODE_THREADS
+#if defined(__wasm__) && !defined(_REENTRANT)
+#define POLHODE_THREADS 0
+#else
+#define POLHODE_THREADS 1
+#endif
+#endif
+
+#if POLHODE_THREADS
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
-#include <cstddef>
 #include <exception>
 #include <mutex>
 #include <system_error>
@@ -13,8 +24,11 @@
 
 #include "core/interrupt.hpp"
 #include "polhode/core/interrupt.hpp"
+#endif
 
 namespace polhode {
+
+#if POLHODE_THREADS
 
 /// The number of threads for so many pieces of work: as asked, else what the machine has, and fewer for little work.
 inline std::size_t thread_count(int asked, std::size_t pieces, std::size_t pieces_worth_a_thread) {
@@ -102,5 +116,21 @@ void parallel_for(std::size_t n, std::size_t threads, std::size_t grain, const W
   for (const std::exception_ptr& failure : failures)
     if (failure) std::rethrow_exception(failure);
 }
+
+#else
+
+/// The same two functions for one thread. A namespace of their own lets a test use them beside those above.
+inline namespace sequential {
+
+inline std::size_t thread_count(int, std::size_t, std::size_t) { return 1; }
+
+template <class Work>
+void parallel_for(std::size_t n, std::size_t, std::size_t, const Work& work) {
+  work(std::size_t{0}, n);
+}
+
+}  // namespace sequential
+
+#endif
 
 }  // namespace polhode

@@ -29,7 +29,7 @@ DampedFree::DampedFree(const Vector3d& moments, double damping, const Vector3d& 
 double DampedFree::slowed_time(double t) const {
   if (damping_ == 0.0) return t;
   double hi = 0.0, lo = 0.0, decay = 0.0;
-  exact::free_kernels().slow(damping_, &t, 1, &hi, &lo, &decay);
+  exact::damped_kernels().slow(damping_, &t, 1, &hi, &lo, &decay);
   return hi;
 }
 
@@ -76,12 +76,12 @@ void DampedFree::at(const double* t, std::size_t n, double* omega, double* attit
 }
 
 void DampedFree::write_part(const double* t, std::size_t n, double* omega, double* attitude) const {
-  const exact::FreeKernels& kernels = exact::free_kernels();
+  const exact::DampedKernels& kernels = exact::damped_kernels();
   using Form = FreeMotion::Form;
   if (free_.form_ == Form::trig)
-    return kernels.damped_trig(free_.trig_, free_.frame_, damping_, t, n, omega, attitude);
+    return kernels.trig(free_.trig_, free_.frame_, damping_, t, n, omega, attitude);
   if (free_.form_ == Form::hyper)
-    return kernels.damped_hyper(free_.hyper_, free_.frame_, damping_, t, n, omega, attitude);
+    return kernels.hyper(free_.hyper_, free_.frame_, damping_, t, n, omega, attitude);
   // At rest, or exactly on the unstable axis.
   const double scale = free_.frame_.time_scale, rate = free_.trig_.kappa_hi;
   for (std::size_t i = 0; i < n; ++i) {

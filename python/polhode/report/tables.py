@@ -19,8 +19,25 @@ def fastest(scene: dict[str, Any], level: float, families: tuple[str, ...]) -> d
     return min(reaching, key=lambda p: float(p["seconds"]), default=None)
 
 
-def _cell(point: dict[str, Any] | None) -> str:
-    return "never" if point is None else f"{point['candidate']} {to_time(point['seconds'])}"
+def _cut(point: dict[str, Any]) -> bool:
+    """Whether the budget, and not the candidate, left this setting without an answer."""
+    return point["status"] == "left out" or (point["status"] == "failed" and point["why"].startswith("not done"))
+
+
+def stopped(points: list[dict[str, Any]]) -> str | None:
+    """Return the last setting that was answered, where the budget left out one after it; the tightest is last."""
+    answered = [i for i, p in enumerate(points) if p["status"] == "answered"]
+    if not answered or not any(_cut(p) for p in points[answered[-1] + 1:]):
+        return None
+    setting: str = points[answered[-1]]["setting"]
+    return setting if setting.endswith(" s") else f"rtol {to_error(float(setting))}"
+
+
+def _cell(scene: dict[str, Any], level: float, families: tuple[str, ...]) -> str:
+    point = fastest(scene, level, families)
+    if point is not None:
+        return f"{point['candidate']} {to_time(point['seconds'])}"
+    return "not in the budget" if any(_cut(p) for p in scene["points"] if p["family"] in families) else "never"
 
 
 def winners(content: dict[str, Any]) -> tuple[Row, list[Row]]:
@@ -29,14 +46,14 @@ def winners(content: dict[str, Any]) -> tuple[Row, list[Row]]:
     with_peers = any(p["family"] == "peer" for s in content["scenes"] for p in s["points"])
     for scene in content["scenes"]:
         rows.append([f"{scene['name']} {scene['title']}", "polhode",
-                     *(_cell(fastest(scene, level, OWN)) for level in LEVELS)])
+                     *(_cell(scene, level, OWN) for level in LEVELS)])
         if with_peers:
-            rows.append(["", "others", *(_cell(fastest(scene, level, ("peer",))) for level in LEVELS)])
+            rows.append(["", "others", *(_cell(scene, level, ("peer",)) for level in LEVELS)])
     return ["scene", "", *(f"error ≤ {to_error(level)}" for level in LEVELS)], rows
 
 
 def best(content: dict[str, Any]) -> tuple[Row, list[Row]]:
-    """Return each candidate's smallest error on each scene."""
+    """Return each candidate's smallest error on each scene, and where the budget stopped its settings."""
     names = list(dict.fromkeys(p["candidate"] for s in content["scenes"] for p in s["points"]))
     rows = []
     for name in names:
@@ -44,9 +61,10 @@ def best(content: dict[str, Any]) -> tuple[Row, list[Row]]:
         for scene in content["scenes"]:
             points = [p for p in scene["points"] if p["candidate"] == name]
             errors = [p["error"] for p in points if p["status"] == "answered"]
-            # One that was not done in its time has not failed.
-            failed = any(p["status"] == "failed" and not p["why"].startswith("not done") for p in points)
-            row.append(to_error(min(errors)) if errors else "failed" if failed else "too slow" if points else "–")
+            failed = any(p["status"] == "failed" and not _cut(p) for p in points)
+            cell = to_error(min(errors)) if errors else "failed" if failed else "too slow" if points else "–"
+            last = stopped(points)
+            row.append(cell if last is None else f"{cell}, stopped at {last}")
         rows.append(row)
     return ["smallest error", *(scene["name"] for scene in content["scenes"])], rows
 

@@ -10,13 +10,17 @@
 #include "exact/lanes/heavy_top_loops.hpp"
 
 namespace polhode::exact {
-const FreeKernels* avx512_free_kernels() { return &POLHODE_ISA::kernels; }
+const FreeKernels* avx512_free_kernels() { return &POLHODE_ISA::free_kernels; }
+const FreeBatchKernels* avx512_free_batch_kernels() { return &POLHODE_ISA::free_batch_kernels; }
+const DampedKernels* avx512_damped_kernels() { return &POLHODE_ISA::damped_kernels; }
 const HeavyTopKernels* avx512_heavy_top_kernels() { return &POLHODE_ISA::heavy_top_kernels; }
 const GyrostatKernels* avx512_gyrostat_kernels() { return &POLHODE_ISA::gyrostat_kernels; }
 }  // namespace polhode::exact
 #else
 namespace polhode::exact {
 const FreeKernels* avx512_free_kernels() { return nullptr; }
+const FreeBatchKernels* avx512_free_batch_kernels() { return nullptr; }
+const DampedKernels* avx512_damped_kernels() { return nullptr; }
 const HeavyTopKernels* avx512_heavy_top_kernels() { return nullptr; }
 const GyrostatKernels* avx512_gyrostat_kernels() { return nullptr; }
 }  // namespace polhode::exact

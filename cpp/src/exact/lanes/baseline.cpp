@@ -13,7 +13,9 @@ using Wide = One;
 
 namespace polhode::exact {
 
-const FreeKernels* baseline_free_kernels() { return &POLHODE_ISA::kernels; }
+const FreeKernels* baseline_free_kernels() { return &POLHODE_ISA::free_kernels; }
+const FreeBatchKernels* baseline_free_batch_kernels() { return &POLHODE_ISA::free_batch_kernels; }
+const DampedKernels* baseline_damped_kernels() { return &POLHODE_ISA::damped_kernels; }
 const HeavyTopKernels* baseline_heavy_top_kernels() { return &POLHODE_ISA::heavy_top_kernels; }
 const GyrostatKernels* baseline_gyrostat_kernels() { return &POLHODE_ISA::gyrostat_kernels; }
 

@@ -246,17 +246,11 @@ inline void prepare(const exact::FreeStart<double>& start, exact::FreeConstants<
   }
 }
 
-inline constexpr exact::FreeKernels kernels = {.times = time_kernels,
-                                               .trig = &on_times,
-                                               .hyper = &on_times,
-                                               .trig_single = &on_times_single,
-                                               .turn = &turn,
-                                               .narrow = &narrow,
-                                               .once = &once,
-                                               .set_up = &set_up,
-                                               .prepare = &prepare,
-                                               .damped_trig = &at_slowed_times,
-                                               .damped_hyper = &at_slowed_times,
-                                               .slow = &slow};
+inline constexpr exact::FreeKernels free_kernels = {
+    .times = time_kernels, .trig = &on_times, .hyper = &on_times, .prepare = &prepare};
+inline constexpr exact::FreeBatchKernels free_batch_kernels = {
+    .trig_single = &on_times_single, .turn = &turn, .narrow = &narrow, .once = &once, .set_up = &set_up};
+inline constexpr exact::DampedKernels damped_kernels = {
+    .trig = &at_slowed_times, .hyper = &at_slowed_times, .slow = &slow};
 
 }  // namespace polhode::POLHODE_ISA

@@ -10,6 +10,12 @@ namespace polhode::exact {
 const FreeKernels* baseline_free_kernels();
 const FreeKernels* avx2_free_kernels();
 const FreeKernels* avx512_free_kernels();
+const FreeBatchKernels* baseline_free_batch_kernels();
+const FreeBatchKernels* avx2_free_batch_kernels();
+const FreeBatchKernels* avx512_free_batch_kernels();
+const DampedKernels* baseline_damped_kernels();
+const DampedKernels* avx2_damped_kernels();
+const DampedKernels* avx512_damped_kernels();
 const HeavyTopKernels* baseline_heavy_top_kernels();
 const HeavyTopKernels* avx2_heavy_top_kernels();
 const HeavyTopKernels* avx512_heavy_top_kernels();

@@ -28,7 +28,7 @@ struct FreeStarts {
 };
 
 /// The loops, compiled for one instruction set. omega (n, 3) and attitude (n, 4) row by row; either may be null.
-/// avx2 and avx512 give the same bits.
+/// avx2 and avx512 give the same bits. There are three tables, so that a program links only those that it calls.
 struct FreeKernels {
   TimeKernels times;
 
@@ -36,7 +36,14 @@ struct FreeKernels {
   void (*trig)(const FreeTrig<double>&, const FreeFrame&, const TimeGrid&, double* omega, double* attitude);
   void (*hyper)(const FreeHyper<double>&, const FreeFrame&, const TimeGrid&, double* omega, double* attitude);
 
-  /// `trig` in floats, with the phases reduced in double: within 1e-6 of the largest |omega| and of the attitude. The
+  /// One body: its constants, and `trig` for k^2 <= 0.97 or `hyper` beyond. `start` is scaled as `analyse` requires.
+  void (*prepare)(const FreeStart<double>& start, FreeConstants<double>& constants, FreeTrig<double>& trig,
+                  FreeHyper<double>& hyper);
+};
+
+/// What only the many bodies of `batch` need.
+struct FreeBatchKernels {
+  /// FreeKernels::trig in floats, with the phases reduced in double: within 1e-6 of the largest |omega| and of the attitude. The
   /// frame must suit. A row's bits depend neither on n nor on its place.
   void (*trig_single)(const FreeTrig<double>&, const FreeFrame&, const double* t, std::size_t n, float* omega,
                       float* attitude);
@@ -53,24 +60,21 @@ struct FreeKernels {
 
   /// The constants of n bodies; `left` as for `once`, and also bodies near the separatrix.
   std::size_t (*set_up)(FreeStarts starts, std::size_t n, FreeTrig<double>* trig, FreeFrame* frames, std::size_t* left);
+};
 
-  /// One body: its constants, and `trig` for k^2 <= 0.97 or `hyper` beyond. `start` is scaled as `analyse` requires.
-  void (*prepare)(const FreeStart<double>& start, FreeConstants<double>& constants, FreeTrig<double>& trig,
-                  FreeHyper<double>& hyper);
-
-  /// One body under the torque -c I omega, c != 0, at n times.
-  void (*damped_trig)(const FreeTrig<double>&, const FreeFrame&, double c, const double* t, std::size_t n,
-                      double* omega, double* attitude);
-  void (*damped_hyper)(const FreeHyper<double>&, const FreeFrame&, double c, const double* t, std::size_t n,
-                       double* omega, double* attitude);
+/// One body under the torque -c I omega, c != 0, at n times.
+struct DampedKernels {
+  void (*trig)(const FreeTrig<double>&, const FreeFrame&, double c, const double* t, std::size_t n, double* omega,
+               double* attitude);
+  void (*hyper)(const FreeHyper<double>&, const FreeFrame&, double c, const double* t, std::size_t n, double* omega,
+                double* attitude);
   /// The slowed times s = (1 - e^-ct) / c = hi + lo, and e^-ct (n each).
   void (*slow)(double c, const double* t, std::size_t n, double* hi, double* lo, double* decay);
 };
 
-/// The kernels of a level, or of the next lower level that was compiled.
-const FreeKernels& free_kernels(SimdLevel level);
-
-/// The kernels of simd_level(), chosen once.
+/// The kernels of simd_level(), or of the next lower level that was compiled; chosen once.
 const FreeKernels& free_kernels();
+const FreeBatchKernels& free_batch_kernels();
+const DampedKernels& damped_kernels();
 
 }  // namespace polhode::exact
