@@ -34,8 +34,8 @@ def page(content):
         "What is measured:",
         "\n".join(f"- {part}" for part in content["measure"].split("; ")),
         "## The fastest at each error",
-        "`never`: every setting ran, and none reached the error. `not in the budget`: none of those that ran reached it, "
-        "and the budget of time left some out.",
+        "`never`: every setting ran, and none reached the error. `not in the budget`: none of those that ran reached "
+        "it, and the budget of time left some out.",
         tables.markdown(tables.winners(content)),
         "## The smallest error of each",
         "`stopped at` names the tightest setting that ran, where the budget of time left out tighter ones. The program "

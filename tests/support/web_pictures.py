@@ -11,7 +11,8 @@ from pathlib import Path
 from browser import Browser
 
 WIDTHS = (1400, 1280, 390)
-OUTSIDE = """[...document.querySelectorAll('fieldset')].flatMap(box => [...box.querySelectorAll('input, select, output')]
+OUTSIDE = """[...document.querySelectorAll('fieldset')]
+  .flatMap(box => [...box.querySelectorAll('input, select, output')]
   .filter(field => field.getBoundingClientRect().right > box.getBoundingClientRect().right - 1)
   .map(field => field.id || 'output')).join(' ')"""
 LETTERS = """(() => { const c = document.getElementById('errors');   // of the chart, in pixels of the page
