@@ -89,7 +89,6 @@ struct Ops {
 /// A parameter of this type is converted to T, which the other arguments give: a step of 1.0 / 60 serves floats too.
 template <class T> struct Given { using Type = T; };
 template <class T> using As = typename Given<T>::Type;
-
 template <class T> struct Vec { T x, y, z; };
 template <class T> struct Quat { T x, y, z, w; };
 /// A body in its principal axes: a = largest moment over each moment, scale = 1 / largest moment.
@@ -106,28 +105,24 @@ template <class T> POLHODE_STEP T larger(T a, T b) { return Ops<T>::pick(a, b, b
 template <class T> POLHODE_STEP T smaller(T a, T b) { return Ops<T>::pick(a, b, a, b); }
 
 /// From principal moments, all positive, in any order.
-template <class T>
-POLHODE_STEP Inertia<T> make_inertia(T I1, T I2, T I3) {
+template <class T> POLHODE_STEP Inertia<T> make_inertia(T I1, T I2, T I3) {
   const T most = larger(larger(I1, I2), I3);
   return {{most / I1, most / I2, most / I3}, Ops<T>::set(1) / most};
 }
 
 /// The angular velocity in principal axes, omega = I^-1 L.
-template <class T>
-POLHODE_STEP Vec<T> rates(const Inertia<T>& body, const Vec<T>& L) {
+template <class T> POLHODE_STEP Vec<T> rates(const Inertia<T>& body, const Vec<T>& L) {
   const T s = body.scale;
   return {body.a[0] * (s * L.x), body.a[1] * (s * L.y), body.a[2] * (s * L.z)};
 }
 
 /// L += h torque, both in the same axes. An impulse J at r from the centre of mass has h torque = r x J.
-template <class T>
-POLHODE_STEP void kick(Vec<T>& L, const Vec<T>& torque, As<T> h) {
+template <class T> POLHODE_STEP void kick(Vec<T>& L, const Vec<T>& torque, As<T> h) {
   L = {Ops<T>::madd(h, torque.x, L.x), Ops<T>::madd(h, torque.y, L.y), Ops<T>::madd(h, torque.z, L.z)};
 }
 
 /// R(p)^T v. What the length of p lacks to 1 is taken out, and small terms are summed first: |v| hardly drifts.
-template <class T>
-POLHODE_STEP Vec<T> turn_back(const Quat<T>& p, const Vec<T>& v) {
+template <class T> POLHODE_STEP Vec<T> turn_back(const Quat<T>& p, const Vec<T>& v) {
   using O = Ops<T>;
   const T ww = O::madd(-p.w, p.w, O::set(1)), two = O::set(2);
   const T k = O::madd(-p.x, p.x, O::madd(-p.y, p.y, O::madd(-p.z, p.z, ww)));
@@ -138,8 +133,7 @@ POLHODE_STEP Vec<T> turn_back(const Quat<T>& p, const Vec<T>& v) {
 }
 
 /// q p, of length 1. p is scaled first and the large terms are added last, so each component is rounded once.
-template <class T>
-POLHODE_STEP Quat<T> turn_by(const Quat<T>& q, const Quat<T>& p) {
+template <class T> POLHODE_STEP Quat<T> turn_by(const Quat<T>& q, const Quat<T>& p) {
   using O = Ops<T>;
   const T s = O::madd(q.x, q.x, O::madd(q.y, q.y, O::madd(q.z, q.z, q.w * q.w))), k = O::set(0.5) - O::set(0.5) * s;
   const T x = O::madd(k, p.x, p.x), y = O::madd(k, p.y, p.y), z = O::madd(k, p.z, p.z), w = O::madd(k, p.w, p.w);
@@ -153,8 +147,7 @@ template <int i = 1, class T, int n> POLHODE_STEP T horner(T z, const double (&c
 }
 
 /// cos and sin of the angle modulo pi: their common sign is free. Beyond 1e6 the angle is cut off.
-template <class T>
-POLHODE_STEP void circle(T angle, T& c, T& s) {
+template <class T> POLHODE_STEP void circle(T angle, T& c, T& s) {
   using O = Ops<T>;
   const T most = O::set(1e6), x = larger(smaller(angle, most), -most);
   const T n = O::nearest(x * O::set(0.31830988618379067));
@@ -183,8 +176,7 @@ POLHODE_STEP void circle(T angle, T& c, T& s) {
 /// Whittaker & Watson, sec. 23.7. Both are series at a quarter of the step, doubled by their addition theorems. T and
 /// |L| are kept for any value of the series, because f_i^2 - f_j^2 = K_i - K_j is all that the polhode uses. The turn
 /// has the form of Moser and Veselov's discrete body (Hairer & Vilmart 2006, J. Phys. A 39, 13225).
-template <int N = 0, class T>
-POLHODE_STEP Quat<T> free_turn(const Inertia<T>& body, const Vec<T>& y) {
+template <int N = 0, class T> POLHODE_STEP Quat<T> free_turn(const Inertia<T>& body, const Vec<T>& y) {
   using O = Ops<T>;
   constexpr int terms = N != 0 ? N : O::single ? 3 : 5;
   static_assert(terms >= 2 && terms <= 5, "series of 2 to 5 terms");
@@ -264,8 +256,7 @@ POLHODE_STEP Quat<T> free_turn(const Inertia<T>& body, const Vec<T>& y) {
 }
 
 /// Moves the body by h: L in principal axes, q principal axes to space.
-template <int N = 0, class T>
-POLHODE_STEP void drift_body(const Inertia<T>& body, As<T> h, Vec<T>& L, Quat<T>& q) {
+template <int N = 0, class T> POLHODE_STEP void drift_body(const Inertia<T>& body, As<T> h, Vec<T>& L, Quat<T>& q) {
   const T k = Ops<T>::set(0.25) * h * body.scale;
   const Quat<T> p = free_turn<N>(body, Vec<T>{k * L.x, k * L.y, k * L.z});
   L = turn_back(p, L), q = turn_by(q, p);
@@ -280,8 +271,7 @@ POLHODE_STEP void drift_space(const Inertia<T>& body, As<T> h, const Vec<T>& L, 
 }
 
 /// From a full tensor, by Jacobi's method with its turns as quaternions. For float and double; once for each body.
-template <class T>
-Principal<T> make_principal(T xx, T yy, T zz, T xy, T xz, T yz) {
+template <class T> Principal<T> make_principal(T xx, T yy, T zz, T xy, T xz, T yz) {
   Quat<T> q{0, 0, 0, 1};
   T m[6] = {xx, yy, zz, yz, xz, xy};   // m[3 + k]: off the diagonal, opposite to k
   for (int turn = 0; turn < 24; ++turn) {
