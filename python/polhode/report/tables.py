@@ -21,7 +21,8 @@ def fastest(scene: dict[str, Any], level: float, families: tuple[str, ...]) -> d
 
 def _cut(point: dict[str, Any]) -> bool:
     """Whether the budget, and not the candidate, left this setting without an answer."""
-    return point["status"] == "left out" or (point["status"] == "failed" and point["why"].startswith("not done"))
+    status, why = str(point["status"]), str(point.get("why", ""))
+    return status == "left out" or (status == "failed" and why.startswith("not done"))
 
 
 def stopped(points: list[dict[str, Any]]) -> str | None:
