@@ -57,6 +57,9 @@ struct Triangles {
   }
 };
 
+/// The most holes that a report describes one by one.
+constexpr std::size_t most_holes = 100;
+
 struct Unit {
   const char* name;
   double metres;
@@ -93,11 +96,12 @@ struct Options {
   std::optional<double> density, mass;
   double unit;
   bool check, flip;
+  double weld;
 };
 
 Options to_options(const py::object& density, const py::object& mass, py::handle unit, bool check,
-                   const py::object& repair) {
-  Options options{{}, {}, to_unit(unit), check, false};
+                   const py::object& repair, py::handle weld) {
+  Options options{{}, {}, to_unit(unit), check, false, to_real(weld, "weld")};
   if (density.is_none() == mass.is_none()) {
     throw InvalidInput("density", "given, or else the mass", density.is_none() ? "neither" : "both");
   }
@@ -112,14 +116,19 @@ Options to_options(const py::object& density, const py::object& mass, py::handle
   return options;
 }
 
+/// The mesh as it was checked.
+Mesh welded(const Mesh& mesh, const MeshReport& report) {
+  return {mesh.vertices, mesh.vertex_count, report.welded_faces.data(), mesh.face_count};
+}
+
 MassProperties properties_of(const Triangles& triangles, const Options& options) {
   const Mesh mesh = triangles.view();
   std::optional<MeshReport> report;
   MeshIntegrals integrals;
   {
     const WithoutGil nogil;
-    if (options.check) report = check_mesh(mesh);
-    integrals = integrate_mesh(mesh);
+    if (options.check) report = check_mesh(mesh, options.weld);
+    integrals = integrate_mesh(report && report->welded > 0 ? welded(mesh, *report) : mesh);
     if (options.flip && integrals.volume.hi < 0) integrals.flip();
   }
   const MassProperties body = options.mass ? integrals.with_mass(*options.mass, options.unit)
@@ -146,16 +155,18 @@ void bind_inertia_mesh(py::module_& m, py::class_<MassProperties>& cls) {
   cls.def_static(
       "from_mesh",
       [](py::handle vertices, py::handle faces, const py::object& density, const py::object& mass, py::handle unit,
-         bool check, const py::object& repair) {
-        const Options options = to_options(density, mass, unit, check, repair);
+         bool check, const py::object& repair, py::handle weld) {
+        const Options options = to_options(density, mass, unit, check, repair, weld);
         return properties_of(Triangles(vertices, faces), options);
       },
       py::arg("vertices"), py::arg("faces"), py::kw_only(), py::arg("density") = py::none(),
       py::arg("mass") = py::none(), py::arg("unit") = "m", py::arg("check") = true, py::arg("repair") = py::none(),
+      py::arg("weld") = default_weld,
       R"(The solid of uniform density inside a surface of triangles, exact for its vertices wherever they are.
 
-The surface must be closed, every edge between two faces that pass it in opposite directions; vertices at exactly one
-place count as one. It may have several parts and cavities (shells wound inward); where parts overlap, the overlap
+The surface must be closed, every edge between two faces that pass it in opposite directions. Vertices at one place
+count as one; so do those of open edges that lie nearer than `weld` times the mesh's size, as CAD programs write them.
+:func:`polhode.mesh.report` counts them. The surface may have several parts and cavities (shells wound inward); where parts overlap, the overlap
 counts twice: a part inside another is warned of, surfaces that cross are not looked for.
 
 Parameters
@@ -174,6 +185,9 @@ check : bool
     False leaves out all that is asked of the surface: fast, and wrong without a word when it is open.
 repair : {"flip"}, optional
     Turns a surface that is wound inward as a whole, and warns that it did.
+weld : float
+    Part of the longest side of the box round the mesh, 0 or from 1e-15 to 0.01. Where open edges are left, their
+    vertices nearer than that take the place of the first of them. 0 takes equal vertices alone.
 
 Returns
 -------
@@ -197,8 +211,8 @@ B. Mirtich, J. Graphics Tools 1(2) (1996) 31; D. Eberly, Polyhedral mass propert
   cls.def_static(
       "from_file",
       [](const py::object& path, const py::object& density, const py::object& mass, py::handle unit, bool check,
-         const py::object& repair) {
-        const Options options = to_options(density, mass, unit, check, repair);
+         const py::object& repair, py::handle weld) {
+        const Options options = to_options(density, mass, unit, check, repair, weld);
         const py::tuple arrays = py::module_::import("polhode.mesh").attr("read")(path);
         try {
           return properties_of(Triangles(arrays[0], arrays[1]), options);
@@ -208,6 +222,7 @@ B. Mirtich, J. Graphics Tools 1(2) (1996) 31; D. Eberly, Polyhedral mass propert
       },
       py::arg("path"), py::kw_only(), py::arg("density") = py::none(), py::arg("mass") = py::none(),
       py::arg("unit") = "m", py::arg("check") = true, py::arg("repair") = py::none(),
+      py::arg("weld") = default_weld,
       R"(The solid inside the surface that a file holds: STL, or with the `mesh` extra OBJ, PLY, glTF.
 
 Files do not tell their unit: say it. The rest is as for :meth:`from_mesh`.
@@ -224,6 +239,8 @@ check : bool
     As for `from_mesh`.
 repair : {"flip"}, optional
     As for `from_mesh`.
+weld : float
+    As for `from_mesh`.
 
 Returns
 -------
@@ -235,28 +252,54 @@ InvalidInput
     A file that cannot be read, is cut short or does not hold what it says, and what `from_mesh` refuses.)");
   m.def(
       "mesh_report",
-      [](py::handle vertices, py::handle faces) {
+      [](py::handle vertices, py::handle faces, py::handle weld) {
         const Triangles triangles(vertices, faces);
         const Mesh mesh = triangles.view();
+        const double within = to_real(weld, "weld");
         MeshReport report;
         {
           const WithoutGil nogil;
-          report = check_mesh(mesh);
+          report = examine_mesh(mesh, within);
         }
+        py::list holes;
+        for (std::size_t i = 0; i < std::min(report.holes.size(), most_holes); ++i) {
+          py::dict hole;
+          hole["edges"] = report.holes[i].edges;
+          hole["centre"] = from_vector3(report.holes[i].centre);
+          hole["radius"] = report.holes[i].radius;
+          holes.append(hole);
+        }
+        py::dict errors;
+        errors["mass"] = report.errors.mass;
+        errors["centre"] = report.errors.centre;
+        errors["inertia"] = report.errors.inertia;
         py::dict found;
         found["faces"] = mesh.face_count;
+        found["closed"] = report.closed();
+        found["open_edges"] = report.open_edges;
+        found["turned_edges"] = report.turned_edges;
+        found["crowded_edges"] = report.crowded_edges;
+        found["hole_count"] = report.holes.size();
+        found["holes"] = holes;
+        found["closes_at"] = report.closes_at > 0 ? py::object(py::float_(report.closes_at)) : py::none();
+        found["errors"] = errors;
         found["components"] = report.components;
         found["cavities"] = report.cavities;
+        found["strays"] = report.strays;
         found["embedded"] = report.embedded;
         found["unjudged"] = report.unjudged;
         found["degenerate"] = report.degenerate;
         found["merged"] = report.merged;
+        found["welded"] = report.welded;
+        found["moved"] = report.moved;
         found["inside_out"] = report.inside_out;
+        found["size"] = report.size;
         found["low"] = from_vector3(report.low);
         found["high"] = from_vector3(report.high);
         return found;
       },
-      py::arg("vertices"), py::arg("faces"), "What the check of a surface found; see polhode.mesh.report.");
+      py::arg("vertices"), py::arg("faces"), py::arg("weld") = default_weld,
+      "What was found in a surface; see polhode.mesh.report.");
   m.def("unit_in_metres", &to_unit, py::arg("unit"), "Length of a unit, given by its name or in metres.");
   m.def(
       "mesh_is_refined",

@@ -66,29 +66,44 @@ def read(path: str | os.PathLike[str]) -> tuple[Vertices, Faces]:
     return vertices, faces
 
 
-def report(vertices: npt.ArrayLike, faces: npt.ArrayLike) -> dict[str, Any]:
-    """Check that triangles are the surface of a body, and count its surfaces.
+def report(vertices: npt.ArrayLike, faces: npt.ArrayLike, *, weld: float = 1e-9) -> dict[str, Any]:
+    """Judge whether triangles are the surface of a body; an open surface is described, not refused.
 
     Parameters
     ----------
     vertices : array_like, shape (n, 3)
     faces : array_like of integers, shape (m, 3)
+    weld : float
+        Vertices of open edges nearer than this part of "size" count as one, as in
+        :meth:`polhode.MassProperties.from_mesh`.
 
     Returns
     -------
     dict
-        "faces"; "components": surfaces that share no edge, including cavities; "cavities": surfaces wound inward inside
-        another; "embedded": surfaces wound outward inside a solid, which count twice; "unjudged": surfaces whose
-        nesting was not checked, because there are too many; "degenerate": faces with two equal corners, which are
-        ignored; "merged": True if the surface is closed only with equal vertices merged; "inside_out"; "low" and
-        "high": corners of the bounding box, shape (3,).
+        "faces"; "closed"; "open_edges": edges of one face; "turned_edges": of two faces that pass them in one
+        direction; "crowded_edges": of more than two faces; "hole_count"; "holes": "edges", "centre" and "radius" of the
+        100 largest loops of open edges; "closes_at": the `weld` that closes an open surface, or None; "errors": bounds
+        of what the holes can change, see Notes; "components": surfaces that share no edge, including cavities;
+        "cavities": surfaces wound inward inside another; "strays": surfaces wound inward inside no other; "embedded":
+        surfaces wound outward inside a solid, which count twice; "unjudged": surfaces whose nesting was not checked,
+        because there are too many; "degenerate": faces with two equal corners, which are ignored; "merged": True if
+        equal vertices were merged; "welded": vertices that took another's place; "moved": the farthest that one moved;
+        "inside_out"; "size": the longest side of the bounding box; "low" and "high": its corners, shape (3,). Nesting
+        is not checked on an open surface.
 
     Raises
     ------
     InvalidInput
-        An open or non-manifold surface, faces wound against each other, with counts and the first faces; wrong indices.
+        Wrong indices; vertices that are not finite; only faces without area.
+
+    Notes
+    -----
+    "errors" bounds what :meth:`polhode.MassProperties.from_mesh` returns with `check=False` and a density: "mass"
+    relative to its mass; "centre" in units of the vertices; "inertia" relative to its largest moment, in the spectral
+    norm. What is missing is assumed to lie in the ball about a hole's centre through the farthest vertex of its loop,
+    and not to cross itself. A bound is inf where a hole is too large for it.
     """
-    return _core.mesh_report(vertices, faces)
+    return _core.mesh_report(vertices, faces, weld)
 
 
 class _Wrong(Exception):

@@ -1,107 +1,26 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "inertia/mesh_edges.hpp"
 #include "inertia/mesh_faces.hpp"
+#include "inertia/mesh_holes.hpp"
 #include "inertia/mesh_surfaces.hpp"
+#include "inertia/mesh_weld.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/core/interrupt.hpp"
 
-// Every edge of a closed, oriented surface lies between two faces, which pass it in opposite directions. The sides of
-// the faces are sorted by their lower vertex (counting sort), then by the other vertex.
 namespace polhode {
 namespace {
 
 using inertia::Corners;
+using inertia::Faults;
 using inertia::is_degenerate;
 using inertia::Surface;
 using inertia::Surfaces;
-
-/// The number of edges with a fault, and the first faces that have it.
-class Fault {
- public:
-  void add(std::uint32_t face, std::uint32_t another) {
-    ++count_;
-    note(face);
-    note(another);
-  }
-  std::size_t count() const { return count_; }
-  std::string text(const char* what) const {
-    std::string out = std::to_string(count_);
-    out += what;
-    out += " (first faces ";
-    for (std::size_t i = 0; i < kept_; ++i) {
-      if (i > 0) out += ", ";
-      out += std::to_string(faces_[i]);
-    }
-    return out + ")";
-  }
-
- private:
-  void note(std::uint32_t face) {
-    for (std::size_t i = 0; i < kept_; ++i)
-      if (faces_[i] == face) return;
-    if (kept_ < faces_.size()) {
-      faces_[kept_++] = face;
-    } else if (face < faces_[kept_ - 1]) {
-      faces_[kept_ - 1] = face;
-    }
-    std::sort(faces_.begin(), faces_.begin() + static_cast<std::ptrdiff_t>(kept_));
-  }
-
-  std::size_t count_ = 0, kept_ = 0;
-  std::array<std::uint32_t, 3> faces_{};
-};
-
-struct Faults {
-  Fault open, turned, crowded;
-  std::size_t degenerate = 0;
-  bool any() const { return open.count() + turned.count() + crowded.count() > 0; }
-};
-
-/// The sides of one edge, from `begin` to `end`. The lower 32 bits hold the face, and the direction in the last bit.
-void classify_edge(const std::uint64_t* begin, const std::uint64_t* end, Faults& faults, Surfaces& surfaces) {
-  const auto face = [](std::uint64_t side) { return static_cast<std::uint32_t>(side & 0xffffffffu) >> 1; };
-  const std::uint32_t first = face(begin[0]), second = face(end[-1]);
-  if (end - begin == 2 && ((begin[0] ^ begin[1]) & 1) == 1) return surfaces.join(first, second);
-  (end - begin == 1 ? faults.open : end - begin == 2 ? faults.turned : faults.crowded).add(first, second);
-}
-
-Faults classify_edges(const Corners& corners, const Mesh& mesh, Surfaces& surfaces) {
-  Faults faults;
-  std::vector<std::size_t> start(mesh.vertex_count + 2, 0);
-  const auto each_side = [&](const auto& visit) {
-    for (std::size_t face = 0; face < mesh.face_count; ++face) {
-      if (face % inertia::faces_between_checks == 0) check_interrupt();
-      const std::uint32_t* v = corners[face];
-      if (is_degenerate(v)) continue;
-      visit(v[0], v[1], face), visit(v[1], v[2], face), visit(v[2], v[0], face);
-    }
-  };
-  for (std::size_t face = 0; face < mesh.face_count; ++face) faults.degenerate += is_degenerate(corners[face]);
-  each_side([&](std::uint32_t from, std::uint32_t to, std::size_t) { ++start[std::min(from, to) + std::size_t{2}]; });
-  check_interrupt();
-  for (std::size_t i = 2; i < start.size(); ++i) start[i] += start[i - 1];
-  check_interrupt();
-  std::vector<std::uint64_t> sides(start.back());
-  each_side([&](std::uint32_t from, std::uint32_t to, std::size_t face) {
-    const std::uint64_t low = std::min(from, to), other = std::max(from, to);
-    sides[start[low + 1]++] = other << 32 | static_cast<std::uint64_t>(face) << 1 | (from < to);
-  });
-  for (std::size_t vertex = 0; vertex < mesh.vertex_count; ++vertex) {
-    if (vertex % inertia::faces_between_checks == 0) check_interrupt();
-    std::uint64_t* const begin = sides.data() + start[vertex];
-    std::uint64_t* const end = sides.data() + start[vertex + 1];
-    std::sort(begin, end);
-    for (const std::uint64_t *edge = begin, *next = begin; edge != end; edge = next) {
-      while (next != end && *next >> 32 == *edge >> 32) ++next;
-      classify_edge(edge, next, faults, surfaces);
-    }
-  }
-  return faults;
-}
 
 std::size_t count_repeated(const Corners& corners, std::size_t faces) {
   std::vector<std::array<std::uint32_t, 3>> keys(faces);
@@ -119,9 +38,9 @@ std::size_t count_repeated(const Corners& corners, std::size_t faces) {
   return repeated;
 }
 
-[[noreturn]] void refuse(const Faults& faults, const Corners& corners, const Mesh& mesh) {
+std::string text_of(const Faults& faults, const Corners& corners, const Mesh& mesh) {
   std::string found;
-  const auto add = [&](const Fault& fault, const char* what) {
+  const auto add = [&](const inertia::Fault& fault, const char* what) {
     if (fault.count() == 0) return;
     if (!found.empty()) found += ", ";
     found += fault.text(what);
@@ -129,37 +48,108 @@ std::size_t count_repeated(const Corners& corners, std::size_t faces) {
   add(faults.open, " open edges");
   add(faults.turned, " edges between faces wound against each other");
   add(faults.crowded, " edges shared by more than two faces");
-  const std::size_t repeated = count_repeated(corners, mesh.face_count);
+  const std::size_t repeated = found.empty() ? 0 : count_repeated(corners, mesh.face_count);
   if (repeated > 0) found += ", " + std::to_string(repeated) + " faces given again";
-  throw InvalidInput("faces", "a closed surface, every edge between two faces that pass it in opposite directions",
-                     found,
-                     repeated > 0                ? "a part given twice?"
-                     : faults.open.count() > 0   ? "a hole, or an edge of one face split in another?"
-                     : faults.turned.count() > 0 ? "some faces are turned over"
-                                                 : "parts that touch along an edge?");
+  return found;
+}
+
+std::string cause_of(const MeshReport& report) {
+  if (report.closes_at > 0) {
+    const std::string part = to_text(report.closes_at);
+    return "closed when vertices nearer than " + to_text(report.closes_at * report.size) + " are one: weld=" + part;
+  }
+  if (report.faults.find("given again") != std::string::npos) return "a part given twice?";
+  if (report.open_edges > 0) return "a hole, or an edge of one face split in another?";
+  return report.turned_edges > 0 ? "some faces are turned over" : "parts that touch along an edge?";
+}
+
+/// The corners of a surface, and what is wrong with its edges.
+struct Judged {
+  Corners corners;
+  Surfaces roots;
+  Faults faults;
+};
+
+Judged judge(Corners corners, const Mesh& mesh) {
+  Surfaces roots(mesh.face_count);
+  Faults faults = inertia::classify_edges(corners, mesh, roots);
+  return {std::move(corners), std::move(roots), std::move(faults)};
+}
+
+/// With three vertices a face, as in STL files, no vertex is shared.
+Judged judge_merged(const Mesh& mesh, bool& merged) {
+  std::optional<Judged> first;
+  if (mesh.vertex_count < 3 * mesh.face_count) {
+    first = judge(Corners(mesh), mesh);
+    if (first->faults.count() == 0) return std::move(*first);
+  }
+  merged = true;
+  Corners corners(mesh);
+  corners.merge(mesh);
+  return judge(std::move(corners), mesh);
+}
+
+double box_size(const Corners& corners, const Mesh& mesh, MeshReport& report) {
+  const auto place = [&](std::uint32_t v) { return Eigen::Map<const Vector3d>(mesh.vertices + 3 * std::size_t{v}); };
+  report.low = report.high = place(corners[0][0]);
+  for (std::size_t face = 0; face < mesh.face_count; ++face) {
+    for (int k = 0; k < 3; ++k) {
+      report.low = report.low.cwiseMin(place(corners[face][k]));
+      report.high = report.high.cwiseMax(place(corners[face][k]));
+    }
+  }
+  return (report.high - report.low).maxCoeff();
+}
+
+/// Takes vertices near each other as one, if that leaves fewer faults. Returns a volume: twice what the move can sweep.
+double weld_faults(Judged& judged, const Mesh& mesh, double weld, MeshReport& report) {
+  const std::vector<std::uint32_t> at = judged.faults.vertices();
+  const inertia::Weld found = inertia::weld_vertices(mesh.vertices, at, weld * report.size);
+  if (found.given_up == 0) return 0;
+  std::vector<std::uint32_t> to(mesh.vertex_count);
+  for (std::size_t i = 0; i < to.size(); ++i) to[i] = static_cast<std::uint32_t>(i);
+  for (std::size_t i = 0; i < at.size(); ++i) to[at[i]] = found.first[i];
+  Judged welded = judge(judged.corners.replaced(to, mesh.face_count), mesh);
+  if (welded.faults.count() >= judged.faults.count()) return 0;
+  const auto place = [&](std::uint32_t v) { return Eigen::Map<const Vector3d>(mesh.vertices + 3 * std::size_t{v}); };
+  double area = 0, length = 0;
+  for (std::size_t face = 0; face < mesh.face_count; ++face) {
+    const std::uint32_t* v = judged.corners[face];
+    area += (place(v[1]) - place(v[0])).cross(place(v[2]) - place(v[0])).norm() / 2;
+  }
+  for (const inertia::FaultyEdge& edge : judged.faults.edges) length += (place(edge.low) - place(edge.high)).norm();
+  report.welded = found.given_up;
+  report.moved = found.moved;
+  report.welded_faces = welded.corners.numbers(mesh.face_count);
+  judged = std::move(welded);
+  return 2 * found.moved * (area + 2 * report.size * length);
+}
+
+void require_weld(double weld) {
+  if (weld == 0 || (weld >= 1e-15 && weld <= 0.01)) return;
+  throw InvalidInput("weld", "0, or a part of the mesh's size from 1e-15 to 0.01", to_text(weld),
+                     weld > 0.01 ? "a length? divide it by the size" : "");
 }
 
 }  // namespace
 
-MeshReport check_mesh(const Mesh& mesh) {
+MeshReport examine_mesh(const Mesh& mesh, double weld) {
+  require_weld(weld);
   inertia::require_indices(mesh);
   inertia::require_finite_vertices(mesh);
   MeshReport report;
-  Corners corners(mesh);
-  Surfaces roots(mesh.face_count);
-  // With three vertices a face, as in STL files, no vertex is shared.
-  Faults faults;
-  const bool soup = mesh.vertex_count >= 3 * mesh.face_count;
-  if (!soup) faults = classify_edges(corners, mesh, roots);
-  if (soup || faults.any()) {
-    corners.merge(mesh);
-    roots = Surfaces(mesh.face_count);
-    faults = classify_edges(corners, mesh, roots);
-    report.merged = true;
+  Judged judged = judge_merged(mesh, report.merged);
+  double slack = 0;
+  if (judged.faults.count() > 0) {
+    report.size = box_size(judged.corners, mesh, report);
+    if (report.size > 0 && weld > 0) slack = weld_faults(judged, mesh, weld, report);
   }
-  if (faults.any()) refuse(faults, corners, mesh);
+  const Faults& faults = judged.faults;
+  report.open_edges = faults.open.count();
+  report.turned_edges = faults.turned.count();
+  report.crowded_edges = faults.crowded.count();
   report.degenerate = faults.degenerate;
-  const std::vector<Surface> surfaces = inertia::measure(corners, mesh, roots);
+  const std::vector<Surface> surfaces = inertia::measure(judged.corners, mesh, judged.roots);
   if (surfaces.empty()) throw InvalidInput("faces", "round a positive volume", "only faces without area");
   report.components = surfaces.size();
   double volume = 0;
@@ -168,8 +158,33 @@ MeshReport check_mesh(const Mesh& mesh) {
     volume += s.volume;
     report.low = report.low.cwiseMin(s.low), report.high = report.high.cwiseMax(s.high);
   }
+  report.size = (report.high - report.low).maxCoeff();
   report.inside_out = volume < 0;
-  inertia::check_nesting(surfaces, corners, mesh, roots, report);
+  if (report.closed()) {
+    inertia::check_nesting(surfaces, judged.corners, mesh, judged.roots, report);
+    return report;
+  }
+  report.faults = text_of(faults, judged.corners, mesh);
+  if (report.open_edges > 0 && report.size > 0) {
+    report.closes_at =
+        inertia::find_closing_weld(judged.corners, mesh, faults.vertices(), report.size, std::max(weld, 1e-15));
+  }
+  report.holes = inertia::measure_holes(faults.edges, mesh, slack, report.errors);
+  return report;
+}
+
+MeshReport check_mesh(const Mesh& mesh, double weld) {
+  MeshReport report = examine_mesh(mesh, weld);
+  if (!report.closed()) {
+    throw InvalidInput("faces", "a closed surface, every edge between two faces that pass it in opposite directions",
+                       report.faults, cause_of(report));
+  }
+  if (report.strays > 0) {
+    std::string found = "a surface of " + std::to_string(report.stray_faces) + " faces (first face ";
+    found += std::to_string(report.stray_face) + ") that is wound inward and lies inside no other";
+    throw InvalidInput("faces", "wound alike on every part, against it on cavities alone", found,
+                       "a part turned inside out?");
+  }
   return report;
 }
 

@@ -11,12 +11,6 @@
 namespace polhode::inertia {
 namespace {
 
-std::uint64_t mixed(std::uint64_t h) {  // the finaliser of MurmurHash3
-  h = (h ^ (h >> 33)) * 0xff51afd7ed558ccdULL;
-  h = (h ^ (h >> 33)) * 0xc4ceb9fe1a85ec53ULL;
-  return h ^ (h >> 33);
-}
-
 /// Hash of three coordinates; -0 counts as 0.
 std::uint64_t hash_of(const double* p) {
   std::uint64_t h = 0;
@@ -107,6 +101,14 @@ void Corners::merge(const Mesh& mesh) {
   own_.resize(3 * mesh.face_count);
   visit_indices(mesh, [&](std::size_t i, std::int64_t index) { own_[i] = first[static_cast<std::size_t>(index)]; });
   first_ = own_.data();
+}
+
+Corners Corners::replaced(const std::vector<std::uint32_t>& by, std::size_t faces) const {
+  Corners out;
+  out.own_.resize(3 * faces);
+  for (std::size_t i = 0; i < out.own_.size(); ++i) out.own_[i] = by[first_[i]];
+  out.first_ = out.own_.data();
+  return out;
 }
 
 }  // namespace polhode::inertia

@@ -3,9 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
-#include <string>
 
-#include "polhode/core/error.hpp"
 #include "polhode/core/interrupt.hpp"
 #include "polhode/math/detail/functions.hpp"
 
@@ -55,13 +53,6 @@ double winding(const Vector3d& point, const std::uint32_t* face, const std::uint
     sum += math::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
   }
   return sum / (2 * std::numbers::pi);
-}
-
-[[noreturn]] void refuse_cavity(const Surface& surface) {
-  std::string found = "a surface of " + std::to_string(surface.faces) + " faces (first face ";
-  found += std::to_string(surface.first_face) + ") that is wound inward and lies inside no other";
-  throw InvalidInput("faces", "wound alike on every part, against it on cavities alone", found,
-                     "a part turned inside out?");
 }
 
 }  // namespace
@@ -115,7 +106,9 @@ void check_nesting(const std::vector<Surface>& surfaces, const Corners& corners,
       angles += surfaces.size() / 16;  // the cost of the box tests
       if (!cavity) report.embedded += round > 0.75;
       if (!cavity || round > 0.25) continue;  // between 0.25 and 0.75 the point lies on the other surface
-      refuse_cavity(surfaces[i]);
+      if (report.strays++ > 0) continue;
+      report.stray_face = surfaces[i].first_face;
+      report.stray_faces = surfaces[i].faces;
     }
   }
 }

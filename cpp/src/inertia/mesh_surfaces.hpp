@@ -44,8 +44,8 @@ struct Surface {
 
 std::vector<Surface> measure(const Corners& corners, const Mesh& mesh, Surfaces& roots);
 
-/// Finds which surfaces lie inside others, by the winding number of the others about a point of each. Throws
-/// InvalidInput for a cavity that lies in no solid. Counts outward surfaces inside a solid, whose volume counts twice.
+/// Finds which surfaces lie inside others, by the winding number of the others about a point of each. Counts cavities
+/// that lie in no solid, and outward surfaces inside a solid, whose volume counts twice.
 /// `report.inside_out` tells which winding is outward.
 void check_nesting(const std::vector<Surface>& surfaces, const Corners& corners, const Mesh& mesh, Surfaces& roots,
                    MeshReport& report);
