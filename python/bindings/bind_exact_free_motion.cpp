@@ -10,11 +10,11 @@
 namespace polhode::python {
 namespace {
 
-FreeMotion make_free_motion(py::handle inertia, py::handle omega, py::handle attitude) {
+FreeMotion make_free_motion(py::handle inertia, py::handle omega, py::handle attitude, bool physical) {
   const Vector3d w = to_vector3(omega, "omega");
   const Quat q = to_attitude(attitude, "attitude");
   if (py::isinstance<InertiaTensor>(inertia)) return {inertia.cast<const InertiaTensor&>(), w, q};
-  return {to_moments(inertia, "inertia"), w, q};
+  return {InertiaTensor::from_moments(to_moments(inertia, "inertia"), physical), w, q};
 }
 
 /// As at(), in parts of whole blocks of the grid, which leave the bits as they are.
@@ -58,6 +58,8 @@ omega : array_like, shape (3,)
     Angular velocity at t = 0, in body axes [rad/s].
 attitude : array_like of shape (4,), or a Rotation
     Body to space at t = 0, (x, y, z, w).
+physical : bool
+    False gives up the triangle inequality for three moments, as in :class:`InertiaTensor`.
 
 Raises
 ------
@@ -69,7 +71,7 @@ Notes
 Jacobi (1850), "Sur la rotation d'un corps", J. reine angew. Math. 39, in the Cayley-Klein form; see docs/exact.md.)");
   cls.attr("__module__") = "polhode";
   cls.def(py::init(&make_free_motion), py::arg("inertia"), py::arg("omega"),
-          py::arg("attitude") = py::make_tuple(0, 0, 0, 1))
+          py::arg("attitude") = py::make_tuple(0, 0, 0, 1), py::kw_only(), py::arg("physical") = true)
       .def("at", &states_at, py::arg("t"), py::kw_only(), py::arg("progress") = py::none(),
            R"(Angular velocity and attitude at the given times.
 

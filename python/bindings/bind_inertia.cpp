@@ -216,6 +216,35 @@ masses : array_like, shape (n,)
     All positive [kg].
 positions : array_like, shape (n, 3)
     In the body's axes [m].)")
+      .def_static(
+          "from_tensor",
+          [](py::handle mass, py::handle com, py::handle inertia, py::handle about) {
+            const InertiaTensor tensor = py::isinstance<InertiaTensor>(inertia)
+                                             ? inertia.cast<const InertiaTensor&>()
+                                             : InertiaTensor(to_tensor(inertia, "inertia"));
+            return MassProperties::from_tensor(to_real(mass, "mass"), to_vector3(com, "com"), tensor,
+                                               to_vector3(about, "about"));
+          },
+          py::arg("mass"), py::arg("com"), py::arg("inertia"), py::kw_only(),
+          py::arg("about") = py::make_tuple(0, 0, 0),
+          R"(From a tensor about another point, as CAD reports give it: the parallel axes theorem, backwards.
+
+Parameters
+----------
+mass : float
+    Positive [kg].
+com : array_like, shape (3,)
+    Centre of mass, from the origin of the body's axes [m].
+inertia : InertiaTensor or array_like, shape (3, 3)
+    About the point `about`, in the body's axes [kg m^2].
+about : array_like, shape (3,)
+    From the origin [m]; the origin itself unless given.
+
+Raises
+------
+InvalidInput
+    When no body has them: the tensor about the centre of mass has a negative moment, or one above the sum of the two
+    others.)")
       .def_property_readonly("mass", &MassProperties::mass, "Mass [kg].")
       .def_property_readonly(
           "com", [](const MassProperties& p) { return from_vector3(p.com()); },

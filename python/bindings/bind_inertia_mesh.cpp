@@ -166,8 +166,8 @@ void bind_inertia_mesh(py::module_& m, py::class_<MassProperties>& cls) {
 
 The surface must be closed, every edge between two faces that pass it in opposite directions. Vertices at one place
 count as one; so do those of open edges that lie nearer than `weld` times the mesh's size, as CAD programs write them.
-:func:`polhode.mesh.report` counts them. The surface may have several parts and cavities (shells wound inward); where parts overlap, the overlap
-counts twice: a part inside another is warned of, surfaces that cross are not looked for.
+:func:`polhode.mesh.report` counts them, and describes holes. The surface may have several parts and cavities (shells
+wound inward); where parts overlap, the overlap counts twice: a part inside another is warned of, surfaces that cross are not looked for.
 
 Parameters
 ----------

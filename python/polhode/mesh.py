@@ -14,6 +14,7 @@ import pathlib
 import re
 import struct
 import urllib.parse
+import warnings
 from collections.abc import Iterator
 from typing import Any
 
@@ -158,13 +159,15 @@ def _ascii_stl(data: bytes) -> Vertices:
 def _by_trimesh(file: pathlib.Path, data: bytes) -> tuple[Vertices, Faces]:
     kind = file.suffix.lower()
     unit = 1.0
-    if kind == ".ply":
+    if kind == ".obj":
+        data = _absolute(data)
+    elif kind == ".ply":
         _require_ply_claims(data)
     elif kind == ".off":
         _require_off_claims(data)
     elif kind == ".dae":
         unit = _collada_unit(data, file)
-    elif kind != ".obj":
+    else:
         _require_gltf_claims(kind, data, file)
     try:
         import trimesh
@@ -180,6 +183,11 @@ def _by_trimesh(file: pathlib.Path, data: bytes) -> tuple[Vertices, Faces]:
                 scene = trimesh.load(io.BytesIO(data), file_type="dae", force="scene", process=False)
             vertices, faces = _join(scene)
             return vertices * unit, faces
+        if kind == ".obj":   # its materials are not looked for
+            with warnings.catch_warnings():   # of normals at vertices that no face uses
+                warnings.simplefilter("ignore", RuntimeWarning)
+                return _join(trimesh.load(io.BytesIO(data), file_type="obj", force="scene", process=False,
+                                          maintain_order=True, skip_materials=True))
         return _join(trimesh.load(file, force="scene", process=False, maintain_order=True, skip_materials=True))
     except ImportError:
         raise _Wrong(f"{kind} files need pycollada: pip install 'polhode[mesh]'") from None
@@ -187,6 +195,35 @@ def _by_trimesh(file: pathlib.Path, data: bytes) -> tuple[Vertices, Faces]:
         raise
     except Exception as error:   # a reader of foreign bytes may raise anything
         raise _Wrong(f"cannot be read as {kind[1:].upper()}: {type(error).__name__}: {error}") from None
+
+
+def _absolute(data: bytes) -> bytes:
+    """Count the corners of an OBJ file's faces from 1, where they are counted back from the last line before them."""
+    if not re.search(rb"^[ \t]*f[ \t][^\n]*-", data, flags=re.M):
+        return data
+    counts = {b"v": 0, b"vt": 0, b"vn": 0}
+    lines = data.replace(b"\\\n", b" ").replace(b"\\\r\n", b" ").split(b"\n")
+    for i, line in enumerate(lines):
+        words = line.split()
+        if not words:
+            continue
+        if words[0] in counts:
+            counts[words[0]] += 1
+        elif words[0] == b"f":
+            lines[i] = b" ".join([b"f", *(_corner(word, (*counts.values(),)) for word in words[1:])])
+    return b"\n".join(lines)
+
+
+def _corner(word: bytes, counts: tuple[int, ...]) -> bytes:
+    """A corner v/vt/vn with numbers from 1."""
+    parts = word.split(b"/")
+    for k, (part, count) in enumerate(zip(parts, counts)):
+        if re.fullmatch(rb"-\d{1,18}", part):
+            number = count + 1 + int(part)
+            if number < 1:
+                raise _Wrong(f"cannot be read as OBJ: a face names vertex {part.decode()}, but {count} stand before it")
+            parts[k] = str(number).encode()
+    return b"/".join(parts)
 
 
 @contextlib.contextmanager
@@ -238,7 +275,7 @@ def _short(word: bytes) -> str:
 
 
 def _require_off_claims(data: bytes) -> None:
-    counts = re.match(rb"\s*[A-Z4n]*OFF(?:\s*#[^\n]*\n)*\s+(\d{1,18})\s+(\d{1,18})", data)
+    counts = re.match(rb"\s*[A-Z4n]*OFF(?:\s*#[^\n]*\n)*\s*(\d{1,18})\s+(\d{1,18})", data)
     if counts is None:
         raise _Wrong("must begin with OFF and the counts of vertices and faces (cut short?)")
     if max(int(counts[1]), int(counts[2])) > len(data):

@@ -203,3 +203,17 @@ def test_what_is_refused(call, match):
 
 def test_empty_arrays_of_parameters_are_no_error():
     assert R.from_mrp(np.zeros((0, 3))).shape == (0,) and R.identity(0).as_mrp().shape == (0, 3)
+
+
+@pytest.mark.parametrize("b", [[[0, 1, 0], [0, 1, 0]], [[1, 2, 3], [-2, -4, -6]], [[0.3, 0, 0.1], [0, 0, 0]]])
+def test_an_exact_pair_alone_is_aligned_by_the_shortest_rotation(rng, b):
+    """The other vector lies along it, and says nothing about the turn round it."""
+    b = np.array(b, float)
+    for scale in (1e-12, 1.0, 1e12):
+        for _ in range(5):
+            a = scale * rng.normal(size=(2, 3))
+            with pytest.warns(UserWarning, match="leave the rotation open"):
+                found, _ = R.align_vectors(a, b, [np.inf, 1.0])
+            angle = np.arccos(a[0] @ b[0] / np.linalg.norm(a[0]) / np.linalg.norm(b[0]))
+            assert found.magnitude() == pytest.approx(angle, rel=1e-7)
+            assert_allclose(found.apply(b[0]) / np.linalg.norm(b[0]), a[0] / np.linalg.norm(a[0]), atol=4 * EPS)

@@ -116,8 +116,8 @@ def test_counts_and_powers():
         refused(lambda bad=bad: R.random(bad), "num: must be whole numbers")
     refused(lambda: R.identity(shape=(2, -1)), "shape: must be whole numbers")
     refused(lambda: R.random(2, shape=(2,)), "num: must be left out where shape is given")
-    for bad in (nan, inf, [1, 2], np.ones(3)):
-        refused(lambda bad=bad: one**bad, "exponent: must be one finite number")
+    for bad in (nan, inf, [1, nan], "x"):
+        refused(lambda bad=bad: one**bad, "exponent: must be")
 
 
 def test_an_empty_array_is_no_error():

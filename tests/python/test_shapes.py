@@ -4,6 +4,7 @@ Each body is given as pieces: a map from the unit cube with its Jacobian. Polyno
 Boole's rule (exact to degree 5), angles by the trapezoidal rule (exact for these trigonometric polynomials).
 """
 
+import functools
 import inspect
 import pathlib
 import pickle
@@ -101,6 +102,40 @@ def globe(r):
     return lambda u, v, w: solid[0](1, v, w), lambda u, v, w: 1, (BOOLE[:1], BOOLE, ANGLE)
 
 
+def half_globe(r, z0, sign):
+    """Half a spherical shell about (0, 0, z0), up or down; its area as a part of that of a tube of unit height."""
+    shell = ball(r, r, r, min(0, sign), max(0, sign), z0)
+    return lambda u, v, w: shell[0](1, v, w), lambda u, v, w: r, (BOOLE[:1], BOOLE, ANGLE)
+
+
+@functools.cache
+def gauss(n):
+    """Gauss and Legendre's rule on (0, 1), 40 digits."""
+    found = []
+    for i in range(n):
+        x = mp.cos(mp.pi * (i + mp.mpf(3) / 4) / (n + half))
+        for _ in range(8):
+            p, q = mp.mpf(1), mp.mpf(0)
+            for k in range(1, n + 1):
+                p, q = ((2 * k - 1) * x * p - (k - 1) * q) / k, p
+            slope = n * (x * p - q) / (x * x - 1)
+            x -= p / slope
+        found.append(((1 + x) / 2, 1 / ((1 - x * x) * slope**2)))
+    return found
+
+
+def egg_shell(a, b, c):
+    """The surface of an ellipsoid: rules that converge by a factor of 4 a node for axes within 1 to 1.5."""
+    solid = ball(a, b, c)
+
+    def area(u, v, w):
+        cosine, (x, y) = 2 * v - 1, turn(w)
+        return mp.sqrt((1 - cosine**2) * ((x / a) ** 2 + (y / b) ** 2) + (cosine / c) ** 2)
+
+    return (lambda u, v, w: solid[0](1, v, w), area,
+            (BOOLE[:1], gauss(32), [(mp.mpf(i) / 48, mp.mpf(1) / 48) for i in range(48)]))
+
+
 POINT = st.tuples(*[st.floats(-5, 5)] * 3)
 tetrahedra = st.tuples(POINT, st.tuples(*[lengths] * 3)).map(
     lambda t: [t[0], (t[0][0] + t[1][0], t[0][1], t[0][2] + 1), (t[0][0], t[0][1] + t[1][1], t[0][2] - 1),
@@ -111,15 +146,22 @@ triangles = tetrahedra.map(lambda t: [p[:2] for p in t[:3]])
 SHAPES = {
     "box": ([st.tuples(lengths, lengths, lengths)], lambda s: [block(*s)]),
     "sphere": ([lengths], lambda r: [ball(r, r, r)]),
+    "half_ball": ([lengths], lambda r: [ball(r, r, r, 0, 1)]),
     "spherical_shell": ([lengths], lambda r: [globe(r)]),
     "ellipsoid": ([st.tuples(lengths, lengths, lengths)], lambda s: [ball(*s)]),
+    "ellipsoid_shell": ([st.tuples(*[st.floats(1, 1.5)] * 3)], lambda s: [egg_shell(*s)]),
     "cylinder": ([lengths, lengths], lambda r, h: [round_solid(lambda v: r, lambda v: (v - half) * h)]),
     "cylindrical_shell": ([lengths, lengths], lambda r, h: [tube(r, h)]),
     "cone": ([lengths, lengths], lambda r, h: [round_solid(lambda v: r * (1 - v), lambda v: v * h)]),
+    "frustum": ([lengths, st.one_of(st.just(0.0), lengths), lengths], lambda R, r, h: [
+        round_solid(lambda v: R + (r - R) * v, lambda v: v * h)]),
     "capsule": ([lengths, st.one_of(st.just(0.0), lengths)], lambda r, h: [
         ball(r, r, r, 0, 1, h * half), ball(r, r, r, -1, 0, -h * half),
         (lambda u, v, w: round_solid(lambda _: r, lambda v: (v - half) * h)[0](u, v, w),
          lambda u, v, w: 2 * mp.pi * r**2 * h * u, (BOOLE, BOOLE, ANGLE))]),
+    "capsule_shell": ([lengths, st.one_of(st.just(0.0), lengths)], lambda r, h: [
+        half_globe(r, h * half, 1), half_globe(r, -h * half, -1),
+        (tube(r, h)[0], lambda u, v, w: h, (BOOLE, BOOLE[:1], ANGLE))]),
     "torus": ([st.floats(5, 10), st.one_of(st.just(0.0), st.floats(0.1, 5))], lambda R, r: [ring(R, r)]),
     "rod": ([lengths], lambda h: [(lambda u, v, w: (0, 0, (u - half) * h), lambda u, v, w: 1,
                                    (BOOLE, BOOLE[:1], BOOLE[:1]))]),
@@ -184,6 +226,12 @@ def test_limits_of_one_shape_are_another():
     same(s.capsule(2, 0.7, 0), s.sphere(2, 0.7))
     same(s.ellipsoid(2, (0.7, 0.7, 0.7)), s.sphere(2, 0.7))
     same(s.hollow_box(2, (1, 2, 3), 1), s.box(2, (1, 2, 3)))
+    same(s.capsule_shell(2, 0.7, 0), s.spherical_shell(2, 0.7))
+    same(s.ellipsoid_shell(2, (0.7, 0.7, 0.7)), s.spherical_shell(2, 0.7))
+    same(s.frustum(2, 0.7, 0, 3), s.cone(2, 0.7, 3))
+    same(s.frustum(2, 0.7, 0.7, 3), s.cylinder(2, 0.7, 3))
+    ball_ = s.half_ball(1, 0.7) + s.half_ball(1, 0.7).moved((1, 0, 0, 0))
+    same(ball_, s.sphere(2, 0.7))
     same(s.torus(2, 0.7, 0), s.cylindrical_shell(2, 0.7, 1e-12))
     same(s.cylinder(2, 0.7, 1e-12), s.disk(2, 0.7))
     thin = s.hollow_box(2, (1, 2, 3), 0)
@@ -200,6 +248,39 @@ def test_limits_of_one_shape_are_another():
             face = s.box(2 * area / 88, sides).moved(translation=sign * where)
             total = face if total is None else total + face
     same(total, thin, 1e-14)
+
+
+@pytest.mark.parametrize("axes", [(1, 1e-3, 1e-6), (1e-6, 1, 1e6), (1, 1, 1e-9), (1, 1e-9, 1e-9), (1e-150, 1, 1e150),
+                                  (3, 3, 1), (1, 3, 3), (5, 4.999999999, 5), (2, 1, 1e-12)])
+def test_shells_of_needles_and_coins(axes):
+    """Against the derivative of Carlson's R_G, which is the mean of g, to 30 digits."""
+    with mp.workdps(60):
+        x = [1 / mp.mpf(a) ** 2 for a in axes]
+        top = max(x)
+
+        def mean(*y):
+            return mp.elliprg(*y)
+
+        second = []
+        for i in range(3):
+            h = x[i] * mp.mpf(10) ** -18
+            high, low = ([*x[:i], x[i] + s * h, *x[i + 1:]] for s in (1, -1))
+            slope = (mean(*high) - mean(*low)) / (2 * h)   # error 1e-36 of it
+            second.append(mp.mpf(axes[i]) ** 2 * (mp.mpf(1) / 4 + x[i] * slope / (2 * mean(*x))))
+        truth = [second[1] + second[2], second[2] + second[0], second[0] + second[1]]
+        found = ph.shapes.ellipsoid_shell(1, axes).inertia.matrix
+        assert top > 0 and np.count_nonzero(found - np.diag(found.diagonal())) == 0
+        for value, exact in zip(found.diagonal(), truth):
+            assert abs(value / exact - 1) <= 0.51 * 2**-52
+
+
+@pytest.mark.parametrize("call, name", [
+    (lambda: ph.shapes.cylinder(1, 0, 2), "rod"), (lambda: ph.shapes.cylinder(1, 2, 0), "disk"),
+    (lambda: ph.shapes.capsule(1, 0, 2), "rod"), (lambda: ph.shapes.capsule_shell(1, 0, 2), "rod"),
+])
+def test_thin_bodies_are_named(call, name):
+    with pytest.raises(ph.InvalidInput, match=rf"positive and finite, got 0 \(a thin body\? that is shapes.{name}\)"):
+        call()
 
 
 def test_a_box_taken_apart_into_tetrahedra_and_put_together():
@@ -234,6 +315,7 @@ def test_tonons_tetrahedron():
 GOOD = {
     "half_sides": (1, 2, 3), "semi_axes": (1, 2, 3), "radius": 1, "height": 2, "cylinder_height": 2, "major_radius": 2,
     "minor_radius": 1, "length": 2, "wall": 0.5,
+    "base_radius": 2, "top_radius": 1,
 }
 
 
@@ -257,7 +339,7 @@ def test_bad_parameters_are_refused_by_name(name):
         bad = [np.full(size, x) for x in (np.nan, np.inf, -np.inf)] + ["text", None, np.zeros((2, 7)), 1j]
         if parameter != "vertices":
             bad.append(np.full(size, -1.0))
-        if parameter not in ("cylinder_height", "minor_radius", "wall"):
+        if parameter not in ("cylinder_height", "minor_radius", "wall", "top_radius"):
             bad.append(np.full(size, 0.0))  # also the corners: all in one point
         for value in bad:
             with pytest.raises(ph.InvalidInput, match=f"^{parameter}:"):

@@ -86,3 +86,24 @@ def exact(vertices, faces):
          for m in range(3)]
     trace = C[0][0] + C[1][1] + C[2][2]
     return volume, centre, [[(trace if m == n else 0) - C[m][n] for n in range(3)] for m in range(3)]
+
+
+def seamed(around=24, along=12, gap=0.0):
+    """A ball as CAD programs mesh it: its seam and its poles are computed anew for each face.
+
+    With `gap` = 0 the ends of the seam differ by sin(2 pi) = -2e-16, else by that length.
+    """
+    def point(i, j):
+        phi, theta = 2 * np.pi * i / around, np.pi * j / along
+        shift = gap if i == around and 0 < j < along else 0.0
+        return np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi) + shift, np.cos(theta)
+
+    vertices = np.array([point(i, j) for j in range(along + 1) for i in range(around + 1)])
+    faces = []
+    for j in range(along):
+        for i in range(around):
+            a, b = j * (around + 1) + i, (j + 1) * (around + 1) + i
+            faces += [(a, b, b + 1)] * (j < along - 1) + [(a, b + 1, a + 1)] * (j > 0)
+            if j == along - 1:
+                faces[-1] = (a, b + 1, a + 1)
+    return vertices, np.array(faces, dtype=np.int64)

@@ -44,6 +44,19 @@ MassProperties MassProperties::from_points(const double* masses, const double* p
   return MassProperties(mass, position(0) + com_from_first, InertiaTensor(I));
 }
 
+MassProperties MassProperties::from_tensor(double mass, const Vector3d& com_B, const InertiaTensor& inertia_B,
+                                           const Vector3d& about_B) {
+  if (!com_B.allFinite()) throw InvalidInput("com", "finite", inertia::vector_text(com_B));
+  if (!about_B.allFinite()) throw InvalidInput("about", "finite", inertia::vector_text(about_B));
+  const Matrix3d shift = point_inertia(inertia::positive(mass, "mass"), about_B - com_B);
+  const Matrix3d I = inertia_B.matrix() - shift;
+  const double rounding =
+      16 * std::numeric_limits<double>::epsilon() * (largest(inertia_B.matrix()) + largest(shift));
+  inertia::check_moments(I, compute_principal_axes(I), inertia_B.physical(), "inertia about the centre of mass",
+                         rounding, "a tensor about the centre of mass already, or about another point?");
+  return MassProperties(mass, com_B, InertiaTensor::from_trusted(I, inertia_B.physical()));
+}
+
 InertiaTensor MassProperties::about(const Vector3d& point_B) const {
   if (!point_B.allFinite()) throw InvalidInput("point", "finite", inertia::vector_text(point_B));
   return InertiaTensor::from_trusted(inertia_.matrix() + point_inertia(mass_, point_B - com_B_), inertia_.physical());

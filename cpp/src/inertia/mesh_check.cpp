@@ -56,7 +56,8 @@ std::string text_of(const Faults& faults, const Corners& corners, const Mesh& me
 std::string cause_of(const MeshReport& report) {
   if (report.closes_at > 0) {
     const std::string part = to_text(report.closes_at);
-    return "closed when vertices nearer than " + to_text(report.closes_at * report.size) + " are one: weld=" + part;
+    return "open, but closed when vertices nearer than " + to_text(report.closes_at * report.size) +
+           " are one: weld=" + part;
   }
   if (report.faults.find("given again") != std::string::npos) return "a part given twice?";
   if (report.open_edges > 0) return "a hole, or an edge of one face split in another?";

@@ -39,8 +39,8 @@ struct Faults {
   std::vector<std::uint32_t> vertices() const;  ///< the ends of the edges, ascending
 };
 
-/// Sorts the sides of the faces by their lower vertex (counting sort), then by the other vertex. Joins the faces of each
-/// faultless edge.
+/// Sorts the sides of the faces by their lower vertex (counting sort), then by the other vertex. Joins the faces of
+/// each faultless edge.
 Faults classify_edges(const Corners& corners, const Mesh& mesh, Surfaces& surfaces);
 
 }  // namespace polhode::inertia

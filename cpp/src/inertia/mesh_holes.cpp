@@ -22,8 +22,8 @@ Vector3d place(const Mesh& mesh, std::uint32_t v) {
   return Eigen::Map<const Vector3d>(mesh.vertices + 3 * std::size_t{v});
 }
 
-/// A boundary has no boundary: as many edges leave each vertex as arrive. So a walk ends where it began, and each vertex
-/// met twice closes a loop.
+/// A boundary has no boundary: as many edges leave each vertex as arrive. So a walk ends where it began, and each
+/// vertex met twice closes a loop.
 std::vector<Loop> loops_of(const std::vector<FaultyEdge>& edges) {
   std::vector<std::array<std::uint32_t, 2>> steps;
   for (const FaultyEdge& edge : edges) {

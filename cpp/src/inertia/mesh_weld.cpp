@@ -30,10 +30,12 @@ std::vector<Cell> near_cells() {
 /// The occupied cells of a grid, with their vertices as linked lists.
 class Grid {
  public:
-  Grid(const std::vector<Vector3d>& points, double side) : next_(points.size(), none), table_(std::bit_ceil(2 * points.size() + 2), none) {
+  Grid(const std::vector<Vector3d>& points, double side)
+      : next_(points.size(), none), table_(std::bit_ceil(2 * points.size() + 2), none) {
     for (std::uint32_t i = 0; i < points.size(); ++i) {
-      Cell cell;
-      for (int k = 0; k < 3; ++k) cell[static_cast<std::size_t>(k)] = static_cast<std::int64_t>(std::floor(points[i][k] / side));
+      const Vector3d place = (points[i] / side).array().floor();
+      const Cell cell{static_cast<std::int64_t>(place[0]), static_cast<std::int64_t>(place[1]),
+                      static_cast<std::int64_t>(place[2])};
       const std::size_t slot = slot_of(cell);
       if (table_[slot] == none) {
         table_[slot] = static_cast<std::uint32_t>(cells_.size());
@@ -72,7 +74,9 @@ class Grid {
 std::vector<Vector3d> scaled(const double* coordinates, const std::vector<std::uint32_t>& vertices, double distance) {
   std::vector<Vector3d> points;
   points.reserve(vertices.size());
-  for (const std::uint32_t v : vertices) points.emplace_back(Eigen::Map<const Vector3d>(coordinates + 3 * std::size_t{v}));
+  for (const std::uint32_t v : vertices) {
+    points.emplace_back(Eigen::Map<const Vector3d>(coordinates + 3 * std::size_t{v}));
+  }
   Vector3d low = points[0];
   for (const Vector3d& p : points) low = low.cwiseMin(p);
   for (Vector3d& p : points) p = (p - low) / distance;
@@ -95,7 +99,7 @@ bool is_closed(const std::vector<std::array<std::uint32_t, 3>>& faces, const std
   std::sort(sides.begin(), sides.end());
   if (sides.size() % 2 != 0) return false;
   for (std::size_t i = 0; i < sides.size(); i += 2) {
-    if ((sides[i] ^ sides[i + 1]) != 1) return false;                              // the edge once, or twice alike
+    if ((sides[i] ^ sides[i + 1]) != 1) return false;               // the edge once, or twice alike
     if (i > 0 && sides[i - 1] >> 1 == sides[i] >> 1) return false;  // four times
   }
   return true;

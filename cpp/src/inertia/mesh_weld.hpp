@@ -8,8 +8,8 @@
 // Vertices that are meant to be one, and are not to the last bit.
 namespace polhode::inertia {
 
-/// For each vertex of an ascending list the first of its group. Two vertices nearer than `distance` are in one group, and
-/// so are chains of them: the groups do not depend on the order.
+/// For each vertex of an ascending list the first of its group. Two vertices nearer than `distance` are in one group,
+/// and so are chains of them: the groups do not depend on the order.
 struct Weld {
   std::vector<std::uint32_t> first;
   std::size_t given_up = 0;  ///< vertices that are not the first of their group

@@ -126,6 +126,21 @@ def to_seed(rng: Any) -> Any:
     return seed.tolist()
 
 
+def to_exponents(n: ArrayLike, shape: tuple[int, ...]) -> FloatArray:
+    """Return finite exponents that broadcast with a shape; one in an array of shape (1,) is a number."""
+    power = to_numbers(n, "exponent")
+    if not np.isfinite(power).all():
+        raise InvalidInput(f"exponent: must be finite, got {power[~np.isfinite(power)].flat[0] if power.ndim else n}")
+    if power.shape == (1,):
+        return power.reshape(())
+    try:
+        np.broadcast_shapes(power.shape, shape)
+    except ValueError:
+        raise InvalidInput(f"exponent: must be one number or broadcast to the shape {shape} of the rotations, got "
+                           f"shape {power.shape}") from None
+    return power
+
+
 def to_shape(num: int | None, shape: int | tuple[int, ...] | None) -> tuple[int, ...]:
     """Return the shape of an array of rotations, given as a number or as itself."""
     if num is not None and shape is not None:
@@ -201,13 +216,15 @@ def _scaled(rows: FloatArray) -> FloatArray:
     return rows / (np.abs(rows).max() or 1.0)
 
 
+OPEN = "a, b: these vectors leave the rotation open; one of the best is returned"
+
+
 def _align_all(a: FloatArray, b: FloatArray, weights: FloatArray) -> FloatArray:
     """Kabsch 1978, Acta Crystallographica A34, 827: the rotation next to the weighted sum of a b^T."""
     u, s, vh = np.linalg.svd((weights[:, None] / weights.max() * _scaled(a)).T @ _scaled(b))
     sign = 1.0 if np.linalg.det(u) * np.linalg.det(vh) > 0 else -1.0
     if s[1] + sign * s[2] <= 8 * np.finfo(float).eps * s[0]:
-        text = "a, b: these vectors leave the rotation open; one of the best is returned"
-        warnings.warn(text, UserWarning, stacklevel=4)
+        warnings.warn(OPEN, UserWarning, stacklevel=4)
     return _kernels.from_matrix(u * [1.0, 1.0, sign] @ vh)
 
 
@@ -221,8 +238,14 @@ def _align_exactly(a: FloatArray, b: FloatArray, weights: FloatArray, exact: Any
     if not weights.any() or len(a) == 1:
         return quat
     weights, p, q = weights / weights.max(), _scaled(a), _kernels.apply(quat, _scaled(b), False)
-    sine = weights @ (np.cross(q, p) @ v)
-    cosine = weights @ ((p * q).sum(axis=1) - (p @ v) * (q @ v))
+    across = np.cross(q, p) @ v
+    along = (p * q).sum(axis=1) - (p @ v) * (q @ v)
+    sine, cosine = weights @ across, weights @ along
+    # Rounding alone, as where the other vectors lie along the exact one: any turn is as good, and none is the shortest.
+    if np.hypot(sine, cosine) <= 8 * np.finfo(float).eps * float(weights @ (np.linalg.norm(p, axis=1) *
+                                                                          np.linalg.norm(q, axis=1))):
+        warnings.warn(OPEN, UserWarning, stacklevel=4)
+        return quat
     return _kernels.multiply(_kernels.from_rotvec(np.arctan2(sine, cosine) * v, False), quat)
 
 

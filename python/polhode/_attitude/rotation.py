@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable, Iterator
 from typing import Any
 
@@ -154,7 +155,7 @@ class Rotation:
         Warns
         -----
         UserWarning
-            When the vectors leave the rotation open, as parallel ones do.
+            When the vectors leave the rotation open, as parallel ones do. About an exact pair it is the shortest then.
         """
         quat, rssd = arrays.align(a, b, weights)
         return _wrap(quat), rssd
@@ -291,8 +292,6 @@ class Rotation:
 
     def __mul__(self, other: Any) -> Rotation:
         """R_AB * R_BC = R_AC: first `other`, then this one. Shapes broadcast."""
-        if isinstance(other, Rotation):
-            return _wrap(_kernels.multiply(self._quat, other._quat))
         if hasattr(other, "as_quat"):
             return _wrap(_kernels.multiply(self._quat, _quat_of(other)))
         return NotImplemented
@@ -302,13 +301,12 @@ class Rotation:
             return _wrap(_kernels.multiply(_quat_of(other), self._quat))
         return NotImplemented
 
-    def __pow__(self, n: float) -> Rotation:
-        """The rotation about the same axis by n times the angle in [0, pi]; n may be any real number."""
-        if not np.isfinite(n := arrays.to_number(n, "exponent", "one finite number")):
-            raise InvalidInput(f"exponent: must be one finite number, got {n}")
-        if abs(n) == 1.0:
-            return self if n > 0 else self.inv()
-        return Rotation.from_rotvec(n * self.as_rotvec())
+    def __pow__(self, n: ArrayLike) -> Rotation:
+        """The rotation about the same axis by n times the angle in [0, pi]; real n broadcast with the rotations."""
+        power = arrays.to_exponents(n, self.shape)
+        if power.ndim == 0 and abs(power) == 1.0:
+            return self if power > 0 else self.inv()
+        return Rotation.from_rotvec(power[..., np.newaxis] * self.as_rotvec())
 
     def mean(self, weights: ArrayLike | None = None) -> Rotation:
         """The rotation whose matrix is nearest to the mean of all matrices (chordal distance).
@@ -325,8 +323,10 @@ class Rotation:
         return arrays.spread(self._quat, weights)
 
     def approx_equal(self, other: Any, atol: float | None = None, degrees: bool = False) -> NDArray[np.bool_] | bool:
-        """Whether the angle between the two rotations is below `atol`, 1e-8 rad unless given."""
-        unit = np.deg2rad(1.0) if arrays.require_bool(degrees, "degrees") else 1.0
+        """Whether the angle between the two is below `atol`, 1e-8 rad unless given; `degrees` alone gives a warning."""
+        if arrays.require_bool(degrees, "degrees") and atol is None:
+            warnings.warn("degrees: must be used with atol, which is 1e-8 rad now", UserWarning, stacklevel=2)
+        unit = np.deg2rad(1.0) if degrees else 1.0
         limit = 1e-8 if atol is None else unit * arrays.to_number(atol, "atol")
         return (Rotation(other) * self.inv()).magnitude() < limit
 

@@ -225,6 +225,8 @@ def inertia(
     mass: Annotated[float | None, typer.Option(help="Mass of a mesh [kg].")] = None,
     unit: Annotated[str, typer.Option(help="Unit of a mesh: m, cm, mm, um, in, ft, or a length [m].")] = "m",
     flip: Annotated[bool, typer.Option("--flip", help="Reverse the faces of a mesh that is wound inward.")] = False,
+    weld: Annotated[float, typer.Option(
+        help="Vertices of a mesh's open edges nearer than this part of its size count as one; 0: equal ones.")] = 1e-9,
     form: Annotated[str, typer.Option(
         "--format", help="Of robots: text, json, sarif, junit or github.")] = "text",
     fail_on: Annotated[str, typer.Option(
@@ -251,14 +253,14 @@ def inertia(
                             tuple(package or ()), fix, xacro)
     file = files[0]
     if len(files) > 1 or robot.is_robot(file):
-        _only_for_meshes(density=density, mass=mass, unit=unit != "m", flip=flip)
+        _only_for_meshes(density=density, mass=mass, unit=unit != "m", flip=flip, weld=weld != 1e-9)
         return robot.run(files, options)
     if name := options.given() or ("--format" if form not in ("text", "json") else ""):
         raise InvalidInput(f"{name}: must be used with robots, got another file")
     if part.is_mesh(file):
-        finding = part.examine(file, density, mass, unit, flip)
+        finding = part.examine(file, density, mass, unit, flip, weld)
     else:
-        _only_for_meshes(density=density, mass=mass, unit=unit != "m", flip=flip)
+        _only_for_meshes(density=density, mass=mass, unit=unit != "m", flip=flip, weld=weld != 1e-9)
         from .body import examine
 
         finding = examine(file)

@@ -17,10 +17,11 @@ from .. import _core
 from .._core import InertiaTensor, MassProperties, PrincipalAxes
 from .checks import Flaw, check
 from .diagnosis import diagnose
+from .equivalent import equivalent_box, equivalent_ellipsoid
 from .findings import Diagnosis, Finding
 
 __all__ = ["Diagnosis", "Finding", "Flaw", "InertiaTensor", "MassProperties", "PrincipalAxes", "check", "diagnose",
-           "principal_axes", "robots"]
+           "equivalent_box", "equivalent_ellipsoid", "principal_axes", "robots"]
 
 
 def __getattr__(name: str) -> ModuleType:

@@ -39,15 +39,19 @@ inline Quat normalized(const Quat& q) {
   return {q.x / n, q.y / n, q.z / n, q.w / n};
 }
 
-/// R_WB of a unit quaternion q_WB.
+/// R_WB of a unit quaternion q_WB. The diagonal is a sum of differences of squares, in which equal components cancel: a
+/// quarter turn has exact zeros. Near 1 it is 1 minus squares instead, which keeps the digits of small turns.
 inline Matrix3d to_matrix(const Quat& q) {
-  const double xx = q.x * q.x, yy = q.y * q.y, zz = q.z * q.z;
+  const double xx = q.x * q.x, yy = q.y * q.y, zz = q.z * q.z, ww = q.w * q.w;
   const double xy = q.x * q.y, xz = q.x * q.z, yz = q.y * q.z;
   const double wx = q.w * q.x, wy = q.w * q.y, wz = q.w * q.z;
+  const auto diagonal = [](double differences, double a, double b) {
+    return differences > 0.5 ? 1 - 2 * (a + b) : differences;
+  };
   Matrix3d R_WB;
-  R_WB << 1 - 2 * (yy + zz), 2 * (xy - wz), 2 * (xz + wy),  //
-      2 * (xy + wz), 1 - 2 * (xx + zz), 2 * (yz - wx),      //
-      2 * (xz - wy), 2 * (yz + wx), 1 - 2 * (xx + yy);
+  R_WB << diagonal((ww - zz) + (xx - yy), yy, zz), 2 * (xy - wz), 2 * (xz + wy),  //
+      2 * (xy + wz), diagonal((ww - xx) + (yy - zz), xx, zz), 2 * (yz - wx),      //
+      2 * (xz - wy), 2 * (yz + wx), diagonal((ww - yy) + (zz - xx), xx, yy);
   return R_WB;
 }
 

@@ -15,6 +15,11 @@ class MassProperties {
   /// Point masses [kg], all positive, at positions (3 numbers each) [m].
   static MassProperties from_points(const double* masses, const double* positions_B, std::size_t count);
 
+  /// The body with this mass [kg], centre of mass and tensor about the point `about_B`, all in axes B. Throws
+  /// InvalidInput when no body has them.
+  static MassProperties from_tensor(double mass, const Vector3d& com_B, const InertiaTensor& inertia_B,
+                                    const Vector3d& about_B = Vector3d::Zero());
+
   double mass() const { return mass_; }                      ///< [kg]
   const Vector3d& com() const { return com_B_; }             ///< from the origin, in axes B [m]
   const InertiaTensor& inertia() const { return inertia_; }  ///< about the centre of mass, in axes B

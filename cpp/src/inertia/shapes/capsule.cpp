@@ -3,7 +3,7 @@
 namespace polhode::shapes {
 
 MassProperties capsule(double mass, double radius, double cylinder_height) {
-  const Real m = positive(mass, "mass"), r = positive(radius, "radius");
+  const Real m = positive(mass, "mass"), r = positive(radius, "radius", "rod");
   const Real h = not_negative(cylinder_height, "cylinder_height");
   const Real cylinder = m * (3 * h / (3 * h + 4 * r)), caps = m * (4 * r / (3 * h + 4 * r));  // their masses
   const Real across = cylinder * (3 * r * r + h * h) / 12 + caps * (2 * r * r / 5 + h * h / 4 + 3 * h * r / 8);

@@ -3,7 +3,7 @@
 namespace polhode::shapes {
 
 MassProperties cylinder(double mass, double radius, double height) {
-  const Real m = positive(mass, "mass"), r = positive(radius, "radius"), h = positive(height, "height");
+  const Real m = positive(mass, "mass"), r = positive(radius, "radius", "rod"), h = positive(height, "height", "disk");
   const Real across = m * (3 * r * r + h * h) / 12;
   return along_axes(mass, across, across, m * r * r / 2);
 }

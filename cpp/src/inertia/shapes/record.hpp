@@ -30,6 +30,12 @@ inline MassProperties along_axes(double mass, Real Ix, Real Iy, Real Iz, Real z 
   return MassProperties(mass, {0, 0, static_cast<double>(z)}, InertiaTensor::from_moments(moments));
 }
 
+/// As `positive`. The likely cause of a zero is that the body is meant to be the thin one of this name.
+inline double positive(double value, const char* where, const char* thin) {
+  if (value != 0) return positive(value, where);
+  throw InvalidInput(where, "positive and finite", "0", std::string("a thin body? that is shapes.") + thin);
+}
+
 /// Returns the three lengths. Throws InvalidInput unless each is positive and finite.
 inline const Vector3d& positive(const Vector3d& lengths, const char* where) {
   for (int i = 0; i < 3; ++i) {

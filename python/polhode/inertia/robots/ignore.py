@@ -54,6 +54,9 @@ def rules(given: Sequence[str | os.PathLike[str] | Rule]) -> list[Rule]:
             if not link.strip() or not reason.strip():
                 raise InvalidInput(f"ignore: must be LINK=reason with both of them, or a TOML file; got {text[:60]!r}")
             found.append(Rule(link.strip(), reason.strip()))
+        elif not text.endswith(".toml") and not pathlib.Path(text).is_file():
+            raise InvalidInput(f"ignore: must be LINK=reason, or a TOML file of rules; got {text[:60]!r} without a "
+                               "reason")
         else:
             found += _from_file(_files.to_path(text, "ignore"))
     return found

@@ -149,6 +149,14 @@ def conclude(case: Case, support: dict[str, int]) -> Diagnosis:
             breach = Breach("geometry", 100 * case.misfit, "differs from a uniform body of its geometry by "
                             f"{100 * case.misfit:.3g} % of the largest moment, by {100 * left:.2g} % once repaired")
             findings.append(_with_cause(breach, cause, case))
+    if not case.broken and case.known.worth == "none":
+        # Without a geometry nothing else would tell.
+        reason = is_placeholder(link.matrix, link.mass, case.known.copies)
+        if reason:
+            moments = " ".join(f"{x:.6g}" for x in link.matrix.diagonal())
+            text = f"the moments are {moments} kg m^2 beside {link.mass:.6g} kg, with no geometry"
+            breach = Breach("size", 0.0, text)
+            findings.append(_plain(breach, case, "placeholder", reason, "PI203"))
     if link.fixed:   # nothing uses these numbers
         findings = [dataclasses.replace(f, level="remark") if f.level == "warning" else f for f in findings]
     return Diagnosis(tuple(findings), case.margin, case.misfit)
