@@ -230,7 +230,7 @@ def test_limits_of_one_shape_are_another():
     same(s.ellipsoid_shell(2, (0.7, 0.7, 0.7)), s.spherical_shell(2, 0.7))
     same(s.frustum(2, 0.7, 0, 3), s.cone(2, 0.7, 3))
     same(s.frustum(2, 0.7, 0.7, 3), s.cylinder(2, 0.7, 3))
-    ball_ = s.half_ball(1, 0.7) + s.half_ball(1, 0.7).moved((1, 0, 0, 0))
+    ball_ = s.half_ball(1, 0.7) + s.half_ball(1, 0.7).moved(ph.Rotation.from_quat((1, 0, 0, 0)))
     same(ball_, s.sphere(2, 0.7))
     same(s.torus(2, 0.7, 0), s.cylindrical_shell(2, 0.7, 1e-12))
     same(s.cylinder(2, 0.7, 1e-12), s.disk(2, 0.7))

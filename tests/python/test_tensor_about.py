@@ -21,7 +21,7 @@ def test_a_report_about_the_origin():
 
 def test_against_fractions():
     mass, com, about = 2.5, (0.5, -0.25, 3.0), (1.0, 0.125, -2.0)
-    matrix = [[60.0, 1, 2], [1, 70.0, 3], [2, 3, 90.0]]
+    matrix = [[160.0, 1, 2], [1, 170.0, 3], [2, 3, 190.0]]
     d = [Fraction(c) - Fraction(a) for c, a in zip(com, about)]
     square = sum(x * x for x in d)
     exact = [[Fraction(matrix[i][j]) - Fraction(mass) * ((square if i == j else 0) - d[i] * d[j]) for j in range(3)]

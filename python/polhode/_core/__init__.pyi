@@ -195,7 +195,7 @@ class MassProperties:
         A mass that is not positive, anything not finite, and what InertiaTensor refuses.
     """
     @staticmethod
-    def from_file(path: typing.Any, *, density: typing.Any = None, mass: typing.Any = None, unit: typing.Any = 'm', check: bool = True, repair: typing.Any = None) -> MassProperties:
+    def from_file(path: typing.Any, *, density: typing.Any = None, mass: typing.Any = None, unit: typing.Any = 'm', check: bool = True, repair: typing.Any = None, weld: typing.Any = 1e-09) -> MassProperties:
         """
         The solid inside the surface that a file holds: STL, or with the `mesh` extra OBJ, PLY, glTF.
 
@@ -213,6 +213,8 @@ class MassProperties:
             As for `from_mesh`.
         repair : {"flip"}, optional
             As for `from_mesh`.
+        weld : float
+            As for `from_mesh`.
 
         Returns
         -------
@@ -224,13 +226,14 @@ class MassProperties:
             A file that cannot be read, is cut short or does not hold what it says, and what `from_mesh` refuses.
         """
     @staticmethod
-    def from_mesh(vertices: typing.Any, faces: typing.Any, *, density: typing.Any = None, mass: typing.Any = None, unit: typing.Any = 'm', check: bool = True, repair: typing.Any = None) -> MassProperties:
+    def from_mesh(vertices: typing.Any, faces: typing.Any, *, density: typing.Any = None, mass: typing.Any = None, unit: typing.Any = 'm', check: bool = True, repair: typing.Any = None, weld: typing.Any = 1e-09) -> MassProperties:
         """
         The solid of uniform density inside a surface of triangles, exact for its vertices wherever they are.
 
-        The surface must be closed, every edge between two faces that pass it in opposite directions; vertices at exactly one
-        place count as one. It may have several parts and cavities (shells wound inward); where parts overlap, the overlap
-        counts twice: a part inside another is warned of, surfaces that cross are not looked for.
+        The surface must be closed, every edge between two faces that pass it in opposite directions. Vertices at one place
+        count as one; so do those of open edges that lie nearer than `weld` times the mesh's size, as CAD programs write them.
+        :func:`polhode.mesh.report` counts them, and describes holes. The surface may have several parts and cavities (shells
+        wound inward); where parts overlap, the overlap counts twice: a part inside another is warned of, surfaces that cross are not looked for.
 
         Parameters
         ----------
@@ -248,6 +251,9 @@ class MassProperties:
             False leaves out all that is asked of the surface: fast, and wrong without a word when it is open.
         repair : {"flip"}, optional
             Turns a surface that is wound inward as a whole, and warns that it did.
+        weld : float
+            Part of the longest side of the box round the mesh, 0 or from 1e-15 to 0.01. Where open edges are left, their
+            vertices nearer than that take the place of the first of them. 0 takes equal vertices alone.
 
         Returns
         -------
@@ -280,6 +286,28 @@ class MassProperties:
             All positive [kg].
         positions : array_like, shape (n, 3)
             In the body's axes [m].
+        """
+    @staticmethod
+    def from_tensor(mass: typing.Any, com: typing.Any, inertia: typing.Any, *, about: typing.Any = (0, 0, 0)) -> MassProperties:
+        """
+        From a tensor about another point, as CAD reports give it: the parallel axes theorem, backwards.
+
+        Parameters
+        ----------
+        mass : float
+            Positive [kg].
+        com : array_like, shape (3,)
+            Centre of mass, from the origin of the body's axes [m].
+        inertia : InertiaTensor or array_like, shape (3, 3)
+            About the point `about`, in the body's axes [kg m^2].
+        about : array_like, shape (3,)
+            From the origin [m]; the origin itself unless given.
+
+        Raises
+        ------
+        InvalidInput
+            When no body has them: the tensor about the centre of mass has a negative moment, or one above the sum of the two
+            others.
         """
     def __add__(self: MassProperties, arg0: MassProperties) -> MassProperties:
         """
@@ -356,6 +384,8 @@ class FreeMotion:
         Angular velocity at t = 0, in body axes [rad/s].
     attitude : array_like of shape (4,), or a Rotation
         Body to space at t = 0, (x, y, z, w).
+    physical : bool
+        False gives up the triangle inequality for three moments, as in :class:`InertiaTensor`.
 
     Raises
     ------
@@ -377,7 +407,7 @@ class FreeMotion:
         ...
     def __hash__(self: FreeMotion) -> int:
         ...
-    def __init__(self: FreeMotion, inertia: typing.Any, omega: typing.Any, attitude: typing.Any = (0, 0, 0, 1)) -> None:
+    def __init__(self: FreeMotion, inertia: typing.Any, omega: typing.Any, attitude: typing.Any = (0, 0, 0, 1), *, physical: bool = True) -> None:
         ...
     def __reduce__(self) -> tuple[typing.Any, ...]:
         """
@@ -1557,9 +1587,9 @@ def mesh_is_refined(vertices: typing.Any, faces: typing.Any) -> bool:
     """
     Integrated in double-double, as plain numbers would lose digits.
     """
-def mesh_report(vertices: typing.Any, faces: typing.Any) -> dict[str, typing.Any]:
+def mesh_report(vertices: typing.Any, faces: typing.Any, weld: typing.Any = 1e-09) -> dict[str, typing.Any]:
     """
-    What the check of a surface found; see polhode.mesh.report.
+    What was found in a surface; see polhode.mesh.report.
     """
 def method_records() -> list[typing.Any]:
     """
