@@ -27,6 +27,13 @@ TEST_CASE("adding, taking away, moving") {
   CHECK_THROWS_AS(cone - moved, InvalidInput);
 }
 
+TEST_CASE("a tensor about another point") {
+  const MassProperties body = shapes::box(6, {1, 2, 3}).moved({0.5, 0.5, 0.5, 0.5}, {4, -5, 6});
+  const MassProperties back = MassProperties::from_tensor(6, body.com(), body.about({1, 2, 3}), {1, 2, 3});
+  CHECK((back.inertia().matrix() - body.inertia().matrix()).norm() < 1e-12);
+  CHECK_THROWS_AS(MassProperties::from_tensor(6, body.com(), body.inertia()), InvalidInput);
+}
+
 TEST_CASE("points: a dumbbell far away") {
   const double masses[] = {1, 3};
   const double positions[] = {1e6, 0, 1, 1e6, 0, 5};
@@ -37,7 +44,7 @@ TEST_CASE("points: a dumbbell far away") {
 }
 
 TEST_CASE("every record makes its shape from plain numbers") {
-  CHECK(shapes::all().size() == 14);
+  CHECK(shapes::all().size() == 18);
   const double box[] = {6, 1, 2, 3};
   CHECK(shapes::find("box").make(box) == shapes::box(6, {1, 2, 3}));
   const double prism[] = {6, 0, 0, 1, 0, 0, 1, 3};

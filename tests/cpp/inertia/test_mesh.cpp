@@ -123,6 +123,21 @@ TEST_CASE("meshes: every number of faces left over, against one face at a time")
   }
 }
 
+TEST_CASE("seams are welded, and holes described") {
+  Surface box = make_box({-1, -1, -1}, {1, 1, 1});
+  box.vertices.insert(box.vertices.end(), {-1, -1, -1 + 1e-10});  // vertex 0 again, nearly
+  box.faces[0] = 8;
+  CHECK(check_mesh(box.view()).welded == 1);
+  CHECK_THROWS_AS(check_mesh(box.view(), 0), InvalidInput);
+  CHECK_THROWS_AS(check_mesh(box.view(), 0.5), InvalidInput);
+  box.faces.resize(box.faces.size() - 3);
+  const MeshReport report = examine_mesh(box.view());
+  CHECK_FALSE(report.closed());
+  CHECK(report.holes.size() == 1);
+  CHECK(report.open_edges == 3);
+  CHECK(report.errors.mass > 1.0 / 12);  // a twelfth of the surface is missing
+}
+
 TEST_CASE("what checks find in a mesh") {
   Surface box = make_box({-1, -1, -1}, {1, 1, 1});
   CHECK(check_mesh(box.view()).components == 1);
