@@ -24,6 +24,7 @@ class Draft:
     want: tuple = ("omega", "attitude")
     inertia_unit: float = 1.0
     time_unit: float = 1.0
+    near_edges: bool = False                        # samples at the ends of windows and next to them
 
     @property
     def span(self):
@@ -58,8 +59,24 @@ class Draft:
         rotors = [ph.Rotor(axis, **scale_rotor(numbers, self.inertia_unit, self.time_unit),
                            during=None if windows is None else t0 + span * np.asarray(windows))
                   for axis, numbers, windows in self.rotors]
+        times = t0 + span * self.grid
+        if self.near_edges:
+            times = add_edges(times, torques, rotors)
         return ph.Scene(inertia=inertia, omega=omega / self.time_unit, attitude=self.attitude, torques=torques, t0=t0,
-                        rotors=rotors, times=t0 + span * self.grid, want=self.want, name=name)
+                        rotors=rotors, times=times, want=self.want, name=name)
+
+
+def add_edges(times, torques, rotors, most=12):
+    """The last times, the ends of windows of torques, and their neighbours in float64 and those of rotors' ends.
+
+    At the end of a rotor's window the rates jump, and at that very time the truth has those before.
+    """
+    own = {end for torque in torques if isinstance(torque, ph.torques.During) for window in torque.windows
+           for end in window}
+    jumps = {end for rotor in rotors if rotor.during is not None for window in rotor.during for end in window}
+    ends = [np.array(sorted(end for end in some if times.min() < end < times.max())[:most]) for some in (own, jumps)]
+    beside = np.concatenate(ends)
+    return np.unique([*times[-5:], *ends[0], *np.nextafter(beside, -np.inf), *np.nextafter(beside, np.inf)])
 
 
 def scale(torque, inertia, time):

@@ -1,7 +1,7 @@
 """The kinds, and scenes drawn from them.
 
 A kind changes a draft: STARTS the body and its start, TIMES what is asked for, TORQUES what acts. A scene of a kind of
-starts or times gets one kind of torques at random. "mixed" takes of all.
+starts or times gets one kind of torques at random. "mixed" takes of all three. HARD kinds are whole.
 """
 
 from dataclasses import dataclass
@@ -12,11 +12,12 @@ import polhode as ph
 
 from .dice import Dice
 from .draft import Draft
+from .hard import HARD
 from .starts import STARTS
 from .times import TIMES
 from .torques import TORQUES
 
-KINDS = (*TORQUES, *STARTS, *TIMES, "mixed")
+KINDS = (*TORQUES, *STARTS, *TIMES, "mixed", *HARD)
 DECADES = ((3, 6), (6, 9), (9, 12))   # of the accuracies asked of one scene
 
 
@@ -41,14 +42,14 @@ def draw(seed, kind, index):
                   turns=dice.decade(-0.3, 1.3), grid=np.linspace(0, 1, count))
     parts = choose(dice, kind)
     for part in parts:
-        {**STARTS, **TIMES, **TORQUES}[part](dice, draft)
+        {**STARTS, **TIMES, **TORQUES, **HARD}[part](dice, draft)
     accuracies = tuple(float(dice.decade(-high, -low)) for low, high in DECADES)
     return Drawn(seed, kind, index, parts, draft.finish(f"{kind} {index}"), accuracies)
 
 
 def choose(dice, kind):
     """The changes of a draft in their order: starts, times, torques."""
-    if kind in TORQUES:
+    if kind in TORQUES or kind in HARD:
         return (kind,)
     torques = [dice.pick(tuple(TORQUES))]
     if kind != "mixed":

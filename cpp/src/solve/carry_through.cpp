@@ -72,15 +72,17 @@ bool carry_through(const Scene& piece, const ClosedForm& form, double form_error
   const Rows rows(piece, form);
   const std::optional<Rows> lost = find_rows(perturb_start(piece, form, trace.loss));
   const std::optional<Rows> spread = find_rows(perturb_start(piece, form, trace.spread));
-  if (!lost || !spread) return false;
+  const std::optional<Rows> sample = find_rows(perturb_start(piece, form, trace.sample));
+  if (!lost || !spread || !sample) return false;
   double rate_error = 0.0, attitude_error = 0.0, size = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     subtract(*lost, rows, i, trace.loss);
     subtract(*spread, rows, i, trace.spread);
+    subtract(*sample, rows, i, trace.sample);
     size = math::hypot(rows.omega[3 * i], rows.omega[3 * i + 1], rows.omega[3 * i + 2]);
     trace.largest = std::max(trace.largest, size);
-    const double rates = measure_rates(trace.loss) + measure_rates(trace.spread);
-    const double angle = measure_angle(trace.loss) + measure_angle(trace.spread);
+    const double rates = measure_rates(trace.loss) + measure_rates(trace.spread) + measure_rates(trace.sample);
+    const double angle = measure_angle(trace.loss) + measure_angle(trace.spread) + measure_angle(trace.sample);
     rate_error = std::max(rate_error, rates / trace.scale + form_error * size);
     attitude_error = std::max(attitude_error, angle / trace.scale + form_error);
   }

@@ -27,21 +27,25 @@ struct ErrorTrace {
   double before = 0.0;             ///< the span from the start to that of the next run
   double largest = 0.0;            ///< the largest size of the first part so far
   double good_until = 0.0;         ///< the span from the start to the last sample that has the requested error
-  double scale = 1.0;              ///< enlarges the two vectors
+  double scale = 1.0;              ///< enlarges the vectors
   alignas(64) double loss[series_width] = {};     ///< what the steps have lost
   alignas(64) double spread[series_width] = {};   ///< what rounding may have done
+  alignas(64) double sample[series_width] = {};   ///< another sample of the same; 0 where it is a part of the loss
 
   /// An error below 1e-6 is enlarged to 1e-6, so that differences of two solutions show it.
   double first_scale() const { return std::max(1.0, 1e-6 / asked); }
   /// The relative perturbation of constants: half a unit in the last place, enlarged.
   double perturbation() const { return (continued ? scale : first_scale()) * 0x1p-53; }
 
-  /// The errors of a start: in both vectors each component is perturbed up or down, each in its own way.
+  /// Rounding has a vector of its own where it may be as large as the loss: in one vector they might cancel.
+  bool separates_rounding() const { return asked < 1e-8; }
+
+  /// The errors of a start: each component of two vectors is perturbed up or down, each in its own way.
   void start(const double* y0) {
     math::Coin coin;
     before = good_until = 0.0;
     scale = first_scale();
-    for (double* error : {spread, loss}) {
+    for (double* error : {spread, separates_rounding() ? sample : loss}) {
       for (int i = 0; i < series_width; ++i) error[i] = (coin.toss() ? 0x1p-53 : -0x1p-53) * scale * y0[i];
     }
   }
@@ -65,7 +69,7 @@ concept TrackedProblem = SeriesProblem<P> && requires(const P& problem, const do
   problem.measure_error(y, y, out);
 };
 
-/// Taylor steps that propagate two estimates of their error.
+/// Taylor steps that propagate estimates of their error.
 ///
 /// `loss_` is the sum of what the steps have lost, with its signs: it cancels where the true losses cancel. The loss of
 /// a step is the next terms of its series. They have the sign of the loss in each component and some per cent of error
@@ -73,10 +77,10 @@ concept TrackedProblem = SeriesProblem<P> && requires(const P& problem, const do
 /// `spread_` is what rounding may have made of the inputs and of each step, and a tenth of each loss. It starts from
 /// perturbed inputs, follows perturbed constants, and grows in its own direction, so that it never cancels. Random kicks
 /// by rounding are added, because its direction alone may be one that shrinks while others grow.
-/// `loss_` gets kicks and perturbed constants of its own as well. Where rounding is what grows, the two vectors are
-/// independent samples of it: one of them may lie by chance where little grows, but rarely both.
+/// `sample_` is a second sample of rounding, by kicks and perturbed constants of its own: one of them may lie by chance
+/// where little grows, but rarely both. At loose accuracies, where the loss is far larger, it is a part of `loss_`.
 ///
-/// Both are small and obey the equations linearised about y. So a few terms of their series suffice, which are the
+/// All are small and obey the equations linearised about y. So a few terms of their series suffice, which are the
 /// differences of the series of y + scale e and of y. If the requested error is below 1e-6, `scale` enlarges it to
 /// 1e-6. Where the error grows far beyond the requested one, the scale shrinks, so that the differences stay linear.
 /// (Transport of local errors by the linearised equations: Hairer, Norsett & Wanner 1993, I.13 and II.8, for estimates
@@ -91,27 +95,33 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   static constexpr double unsigned_part = 0.1;  // of the loss, that the spread gets too
   static constexpr double rounding = 0x1p-53;   // of y in a step, whose sums are compensated
   static constexpr double kick = 0x1p-51;       // of y in a step, in any direction
-  static constexpr double loss_kick = 0x1p-52;  // the same for the loss
-  static constexpr double most_enlarged = 1e-3; // relative, of the vectors
+  static constexpr double sample_kick = 0x1p-52;   // the same for the other sample
+  // Relative, of the vectors. Invariants hold to their second order, which a vector made smaller has no more. The next
+  // correction takes that part for an error of the first order, and near-singular bodies amplify it by thousands.
+  static constexpr double most_enlarged = 1e-5;
   static constexpr double join_rounding = 0x1p-51;   // of a state that one run hands to the next
   using Base = Taylor::Stepper<P>;
 
  public:
   /// @param lost       the same problem with the invariants of the start plus trace.loss, and constants perturbed by
-  ///                   trace.perturbation()
+  ///                   trace.perturbation() unless the trace separates rounding
   /// @param perturbed  the same with those of the start plus trace.spread, and constants perturbed by as much in other
-  ///                   directions; both starts are the problem's if the run continues none
-  TrackedTaylor(const P& problem, const P& lost, const P& perturbed, double t0, const double* y0, double t_end,
-                const Tolerances& tolerances, ErrorTrace& trace)
+  ///                   directions; the starts are the problem's if the run continues none
+  /// @param sampled    the same with trace.sample, if the trace separates rounding
+  TrackedTaylor(const P& problem, const P& lost, const P& perturbed, const P& sampled, double t0, const double* y0,
+                double t_end, const Tolerances& tolerances, ErrorTrace& trace)
       : Base(problem, t0, y0, t_end, tolerances),
         lost_(lost),
         perturbed_(perturbed),
+        sampled_(sampled),
         trace_(trace),
+        separate_(trace.separates_rounding()),
         t0_(t0) {
     this->further_ = std::min(loss_terms, most_series_order - this->order_);
     if (!trace.continued) trace.start(y0);
     std::copy_n(trace.loss, W, loss_);
     std::copy_n(trace.spread, W, spread_);
+    std::copy_n(trace.sample, W, sample_);
     if (trace.continued) grow_spread(y0, trace_.scale * join_rounding);
     measure(y0);
     old_[0] = now_[0], old_[1] = now_[1];
@@ -139,6 +149,7 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     const double s = ((this->time_.hi - this->time_old_.hi) + (this->time_.lo - this->time_old_.lo)) / this->unit_old_;
     propagate(lost_, signed_terms, s, loss_);
     propagate(perturbed_, error_terms, s, spread_);
+    if (separate_) propagate(sampled_, error_terms, s, sample_);
     alignas(64) double loss[W];
     double sizes[3];
     compute_loss(s, loss);
@@ -146,25 +157,25 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     this->problem_.measure_error(this->arrived_, loss, sizes);
     grow_spread(this->arrived_, trace_.scale * rounding + unsigned_part * find_relative_error(sizes));
     add_kick(this->arrived_, kick, spread_);
-    add_kick(this->arrived_, loss_kick, loss_);
+    add_kick(this->arrived_, sample_kick, separate_ ? sample_ : loss_);
     // Samples, and a run that continues this one, have the state before its correction.
     old_[0] = now_[0], old_[1] = now_[1];
     measure(this->arrived_);
     std::copy_n(loss_, W, trace_.loss);
     std::copy_n(spread_, W, trace_.spread);
+    std::copy_n(sample_, W, trace_.sample);
     if (std::max(now_[0] / trace_.largest, now_[1]) * trace_.scale > most_enlarged) shrink();
     restore(lost_, loss_);
     restore(perturbed_, spread_);
+    if (separate_) restore(sampled_, sample_);
   }
 
   /// A vector that grows beyond the linear range is made smaller.
   void shrink() {
     constexpr double part = 0x1p-10;
     trace_.scale *= part;
-    for (int i = 0; i < W; ++i) {
-      loss_[i] *= part, spread_[i] *= part;
-      trace_.loss[i] *= part, trace_.spread[i] *= part;
-    }
+    for (double* error : {loss_, spread_, sample_, trace_.loss, trace_.spread, trace_.sample})
+      for (int i = 0; i < W; ++i) error[i] *= part;
   }
 
   /// A small error over the step, by the difference of two series.
@@ -219,11 +230,12 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   }
 
   void measure(const double* y) {
-    double lost[3], spread[3];
+    double lost[3], spread[3], sample[3];
     this->problem_.measure_error(y, loss_, lost);
     this->problem_.measure_error(y, spread_, spread);
+    this->problem_.measure_error(y, sample_, sample);
     trace_.largest = std::max(trace_.largest, lost[0]);
-    const double rates = lost[1] + spread[1], angle = lost[2] + spread[2];
+    const double rates = lost[1] + spread[1] + sample[1], angle = lost[2] + spread[2] + sample[2];
     // An oscillating error is small at times, so its size is held for a few steps.
     now_[0] = std::max(rates / trace_.scale, 0.7 * now_[0]);
     now_[1] = std::max(angle / trace_.scale, 0.7 * now_[1]);
@@ -232,11 +244,13 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
 
   const P& lost_;
   const P& perturbed_;
+  const P& sampled_;
   ErrorTrace& trace_;
+  const bool separate_;
   double t0_;
   double now_[2] = {}, old_[2] = {};
   math::Coin coin_;
-  alignas(64) double loss_[W], spread_[W];
+  alignas(64) double loss_[W], spread_[W], sample_[W];
   alignas(64) double twin_rows_[W * (most_series_order + 1)] = {};
 };
 

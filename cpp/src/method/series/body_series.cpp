@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "method/series/lanes/levels.hpp"
+#include "method/series/seen_vector.hpp"
 #include "method/series/separatrix.hpp"
 #include "polhode/attitude/matrix.hpp"
 #include "polhode/core/simd.hpp"
@@ -72,8 +73,13 @@ BodySeries::BodySeries(const Scene& scene, bool attitude) {
   if (attitude_) {
     start_[4] = q_WP.x, start_[5] = q_WP.y, start_[6] = q_WP.z, start_[7] = q_WP.w;
   } else if (terms_.fixed_vectors == 1) {
-    const Vector3d seen = rotate(conjugate(q_WP), space_[0]);
-    for (int i = 0; i < 3; ++i) start_[4 + i] = seen[i];
+    // Not by q_WP, which is rounded: such a rounding of the vertical would turn an upright body.
+    const std::array<DD, 3> seen_B = see_from_body(q_WB, space_[0]);
+    for (int i = 0; i < 3; ++i) {
+      DD seen(0.0);
+      for (int j = 0; j < 3; ++j) seen = seen + seen_B[static_cast<std::size_t>(j)] * DD(R_BP_(j, i));
+      start_[4 + i] = seen.hi, start_carry_[4 + i] = seen.lo;
+    }
   }
   free_ = terms_.variables == RateVariables::separatrix && scene.torques().empty();
   find_invariants(scene);

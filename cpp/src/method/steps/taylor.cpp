@@ -17,25 +17,28 @@ Trajectory integrate_taylor(const Scene& scene, const RunOptions& options) {
   };
   using Tracked = ode::TrackedTaylor<BodySeries>;
   ode::ErrorTrace* trace = options.trace;
-  std::optional<BodySeries> lost, perturbed;
+  std::optional<BodySeries> lost, perturbed, sampled;
   if (trace != nullptr) {
-    lost = series->perturbed(trace->perturbation(), 2);
+    sampled = series->perturbed(trace->perturbation(), 2);
     perturbed = series->perturbed(trace->perturbation(), 1);
+    lost = trace->separates_rounding() ? *series : *sampled;
     if (trace->continued) {
-      series->pack_error(trace->loss), series->pack_error(trace->spread);
+      for (double* error : {trace->loss, trace->spread, trace->sample}) series->pack_error(error);
       lost = lost->shifted(scene.t0(), trace->loss);
       perturbed = perturbed->shifted(scene.t0(), trace->spread);
+      sampled = sampled->shifted(scene.t0(), trace->sample);
     }
   }
   const auto make = [&](const double* y, double t_end) -> std::unique_ptr<ode::Stepper> {
     if (trace != nullptr) {
-      return std::make_unique<Tracked>(*series, *lost, *perturbed, scene.t0(), y, t_end,
+      return std::make_unique<Tracked>(*series, *lost, *perturbed, *sampled, scene.t0(), y, t_end,
                                        options.tolerances, *trace);
     }
     return std::make_unique<ode::Taylor::Stepper<BodySeries>>(*series, scene.t0(), y, t_end, options.tolerances);
   };
   Trajectory trajectory = integrate(scene, options, series->start(), unpack, make);
-  if (trace != nullptr) series->unpack_error(trace->loss), series->unpack_error(trace->spread);
+  if (trace != nullptr)
+    for (double* error : {trace->loss, trace->spread, trace->sample}) series->unpack_error(error);
   trajectory.model = "euler", trajectory.state = series->describe_state();
   return trajectory;
 }
