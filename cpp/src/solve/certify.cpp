@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <numbers>
 
 #include "polhode/core/error.hpp"
 #include "polhode/math/detail/functions.hpp"
@@ -182,7 +183,10 @@ class Certifier {
                              "within the bound");
     } else {
       motion.error_kind = "limit";
-      motion.error = best_.error *= limit_safety;
+      best_.error *= limit_safety;
+      // So large an error grows by no linear rule any more: it is no bound below the largest angle.
+      if (best_.error > 0.5) best_.error = std::max(best_.error, std::numbers::pi);
+      motion.error = best_.error;
       note(describe_limit());
     }
     return finish();

@@ -200,14 +200,27 @@ class Motion:
             return False
         return not self._moved() if math.isnan(self.error) else self.error <= self.asked
 
+    def _describe_columns(self) -> str:
+        """The columns of `sensitivity` whose error is above the accuracy of the call; empty where there are none."""
+        error = None if self.sensitivity is None else self.sensitivity.error
+        if self.sensitivity is None or error is None or not len(error) or math.isnan(self.asked):
+            return ""
+        missed = int(np.sum(~(error <= self.asked)))
+        if not missed:
+            return ""
+        worst = int(np.argmax(np.nan_to_num(error, nan=np.inf)))
+        return (f"the sensitivity misses the accuracy of {self.asked:.3g} in {missed} of {len(error)} columns; the "
+                f"largest error is {error[worst]:.2g}, of {self.sensitivity.columns[worst]}")
+
     @property
     def message(self) -> str:
-        """How the run ended and what is known of the error."""
+        """How the run ended and what is known of the error, and of those columns that miss the accuracy."""
         kept: str | None = self.__dict__.get("_message")
         if kept is None:
             assert self._answer is not None
             moved = self._moved() if self.status in ("finished", "event") and math.isnan(self.error) else ""
-            kept = self.__dict__["_message"] = self._answer.message + (f"; {moved}" if moved else "")
+            notes = [note for note in (self._answer.message, moved, self._describe_columns()) if note]
+            kept = self.__dict__["_message"] = "; ".join(notes)
         return kept
 
     def __call__(self, t: npt.ArrayLike) -> tuple[Floats, Floats]:

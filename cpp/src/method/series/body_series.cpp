@@ -246,8 +246,10 @@ BodySeries BodySeries::perturbed(double part, int choice) const {
     change(terms.product[i], rounded ? std::max(own, I_.maxCoeff() / I_[i]) : own);
   }
   // A product or a difference and a division round each entry.
+  // Changes of u and v by the same size would leave w1 or w3 as they are. A needle's two are of unlike sizes.
+  const double unlike = terms.variables == RateVariables::separatrix ? 2.0 : 1.0;
   const auto change_column = [&](double* column) {
-    for (int i = 0; i < 3; ++i) change(column[i], 2.0 * column[i]);
+    for (int i = 0; i < 3; ++i) change(column[i], (i == 1 ? unlike : 1.0) * 2.0 * column[i]);
   };
   change_column(terms.torque);
   // Products and a division round each entry, and in a direction without damping all of it is rounding.
