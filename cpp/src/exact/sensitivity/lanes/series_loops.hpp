@@ -1,6 +1,7 @@
 #pragma once
 
 #include "exact/sensitivity/series.hpp"
+#include "polhode/math/detail/double_double.hpp"
 
 // The power series, with columns in the lanes of `Wide`.
 namespace polhode::POLHODE_ISA {
@@ -17,11 +18,13 @@ struct SeriesSources {
       const int b = (i + 1) % 3, c = (i + 2) % 3, slot = 3 + i;
       // J_i in the equations of the axes i, b and c
       of[i][6 + i][slot] = -1.0, of[b][b][slot] = -1.0, of[c][c][slot] = 1.0;
-      // The axes turned about axis i: dJ has the elements (b, c) and (c, b).
-      const double gap = s.I[b] - s.I[c];
+      // The axes turned about axis i: dJ has the elements (b, c) and (c, b). With omega' = gap / I times a product, two
+      // terms of a row are one, whose factor cancels for slender bodies. It is 0 for a plate across axis i.
+      const math::DD others = math::two_sum(s.I[b], s.I[c]);
+      const double gap = s.I[b] - s.I[c], left = (others.hi - s.I[i]) + others.lo;
       const int turned = 8 + i;
-      of[b][c][turned] = gap, of[b][6 + c][turned] = -gap;
-      of[c][b][turned] = -gap, of[c][6 + b][turned] = -gap;
+      of[b][c][turned] = gap * left / s.I[c];
+      of[c][b][turned] = -gap * left / s.I[b];
       of[i][3 + b][turned] = -gap, of[i][3 + c][turned] = gap;
     }
   }
