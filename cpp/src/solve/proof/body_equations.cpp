@@ -162,6 +162,11 @@ void BodyEquations::choose_units() {
   }
   for (const Rotor& rotor : scene_.rotors())
     fastest = std::max(fastest, std::abs(rotor.compute_momentum(scene_.omega())) / least);
+  if (fastest == 0.0) {   // at rest throughout: a radian over the span
+    double span = 0.0;
+    for (const double t : scene_.times()) span = std::max(span, std::abs(t - scene_.t0()));
+    if (span > 0.0 && std::isfinite(span)) fastest = 1.0 / span;
+  }
   if (fastest > 0.0 && std::isfinite(fastest)) rate_ = nearest_power(fastest);
   pace_ = damping > rate_ && std::isfinite(damping) ? nearest_power(damping) : rate_;
 }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "polhode/math/detail/number.hpp"
 #include "solve/proof/taylor_step.hpp"
 
 // What the polynomials of a step leave out, bounded.
@@ -10,7 +11,6 @@ namespace {
 using Kind = Term::Kind;
 
 constexpr double most = 0x1p60;             // no size may be larger: see raised()
-constexpr double margin = 1.0 + 0x1p-30;    // bounds hold on a step this much longer than asked
 
 /// At least e^x, 0 <= x <= 60.
 double exp_above(double x) {
@@ -152,15 +152,16 @@ double TaylorStep::compute_growth() const {
 }
 
 /// x(length) of x' = A x + source, x(0) = 0, with A_ij >= |J_ij| and A_ii >= max(0, J_ii): it bounds |r_i| and grows.
-void TaylorStep::compare_by_components(double length, const std::vector<double>& source,
+/// The components of the rates are measured in `rate_unit`, a power of two.
+void TaylorStep::compare_by_components(double length, double rate_unit, const std::vector<double>& source,
                                        std::vector<double>& result) const {
   const auto n = to_index(n_);
   std::vector<double> term(n), next(n);
   double largest_row = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     double sum = 0.0;
-    for (std::size_t j = 0; j < n; ++j) sum += jacobian_[i * n + j];
-    largest_row = std::max(largest_row, raised(sum) * length);
+    for (std::size_t j = 0; j < n; ++j) sum += jacobian_[i * n + j] * (j < 3 ? rate_unit : 1.0);
+    largest_row = std::max(largest_row, raised(i < 3 ? sum / rate_unit : sum) * length);
     term[i] = source[i] * length;
     result[i] = term[i];
   }
@@ -179,8 +180,9 @@ void TaylorStep::compare_by_components(double length, const std::vector<double>&
     for (std::size_t i = 0; i < n; ++i) result[i] += term[i];
   }
   // Each further term is at most half the last one's largest component.
-  const double left = *std::max_element(term.begin(), term.end());
-  for (std::size_t i = 0; i < n; ++i) result[i] = raised(result[i] + left);
+  double left = 0.0;
+  for (std::size_t i = 0; i < n; ++i) left = std::max(left, i < 3 ? term[i] / rate_unit : term[i]);
+  for (std::size_t i = 0; i < n; ++i) result[i] = raised(result[i] + (i < 3 ? left * rate_unit : left));
 }
 
 bool TaylorStep::bound(double asked_length, const ErrorSet& errors) {
@@ -211,8 +213,12 @@ bool TaylorStep::bound(double asked_length, const ErrorSet& errors) {
   }
   for (double& entry : jacobian_) entry = raised(entry);
   const double growth = raised(compute_growth() * length);
-  if (!(growth < 40.0)) return false;
-  const double stretch = raised(length * exp_above(growth));
+  // A slow body turns little in a long step, but an error of its rates shifts its attitude without end. In units of a
+  // radian over the step this is no growth. Else a body at rest would need a step for every 100 s.
+  if (!std::isfinite(growth)) return false;
+  const bool is_long = growth >= 40.0;
+  const double rate_unit = is_long ? math::power_of_two_below(std::min(1.0, 1.0 / length)) : 1.0;
+  const double stretch = is_long ? 0.0 : raised(length * exp_above(growth));
 
   // Q(e, e) needs a bound on e, which holds the bound on r that is sought: it is guessed and then confirmed.
   const std::vector<double> linear = spread_;
@@ -229,10 +235,10 @@ bool TaylorStep::bound(double asked_length, const ErrorSet& errors) {
     double square = 0.0;
     for (double& value : source) value = raised(value), square += value * value;
     const double by_length = raised(std::sqrt(square) * stretch);
-    compare_by_components(length, source, found);
+    compare_by_components(length, rate_unit, source, found);
     bool confirmed = true;
     for (std::size_t i = 0; i < n; ++i) {
-      found[i] = std::min(found[i], by_length);
+      if (!is_long) found[i] = std::min(found[i], by_length);
       if (!(found[i] < most)) return false;
       confirmed &= found[i] < guess[i];
     }

@@ -167,7 +167,8 @@ void TaylorStep::evaluate(DD time, double slack, std::vector<DD>& state, std::ve
   }
 }
 
-void TaylorStep::evaluate_derivative(double time, std::vector<double>& result, std::vector<double>& lost) const {
+void TaylorStep::evaluate_derivative(double time, double slack, std::vector<double>& result,
+                                     std::vector<double>& lost) const {
   const auto count = to_index(n_ * width_);
   result.assign(F(derivative_order_, 0), F(derivative_order_, 0) + count);
   for (int k = derivative_order_ - 1; k >= 0; --k) {
@@ -175,7 +176,7 @@ void TaylorStep::evaluate_derivative(double time, std::vector<double>& result, s
     for (std::size_t c = 0; c < count; ++c) result[c] = result[c] * time + rows[c];
   }
   // The time is rounded to a double, too. spread_ bounds what |F| makes of the box.
-  const double part = (6.0 * derivative_order_ + 4.0 * n_ + 8.0) * unit;
+  const double part = (6.0 * derivative_order_ + 4.0 * n_ + 8.0) * unit + slack * derivative_order_ / powers_[1];
   for (std::size_t v = 0; v < lost.size(); ++v) lost[v] = raised(part * spread_[v]);
 }
 

@@ -33,14 +33,20 @@ class TaylorStep {
   /// Expands about a state. @return the step length that the tolerance suggests
   double expand(std::span<const DD> state);
 
-  /// Bounds the rest over [0, length]. @return false where none was found: try a shorter one
+  /// Bounds the rest over [0, margin * length]. @return false where none was found: try a shorter one
   bool bound(double length, const ErrorSet& errors);
 
-  /// P at a time within the bounded step that is known within `slack`; `lost` bounds the error of each component.
+  /// Steps meet at times that are known within less than this part of their length: both hold what lies there.
+  static constexpr double margin = 1.0 + 0x1p-30;
+
+  /// Whether a time up to this one lies where bound(length, ...) holds.
+  static bool is_bounded_at(double time, double length) { return time <= length * (1.0 + 0x1p-31); }
+
+  /// P at a time that is_bounded_at() allows and that is known within `slack`; `lost` bounds the error of each component.
   void evaluate(DD time, double slack, std::vector<DD>& state, std::vector<double>& lost) const;
 
-  /// F at a time, and in `lost` a bound on the rounding of F e0 within the bounded step.
-  void evaluate_derivative(double time, std::vector<double>& F, std::vector<double>& lost) const;
+  /// F at a time that is known within `slack`, and in `lost` a bound on the error of F e0 within the bounded step.
+  void evaluate_derivative(double time, double slack, std::vector<double>& F, std::vector<double>& lost) const;
 
   int width() const { return width_; }                            ///< of a row of F
   const std::vector<double>& rest() const { return rest_; }       ///< bounds |r_i|
@@ -62,7 +68,8 @@ class TaylorStep {
   void compute_sizes(double length);
   void compute_defects(const std::vector<double>& box);
   double compute_growth() const;
-  void compare_by_components(double length, const std::vector<double>& source, std::vector<double>& result) const;
+  void compare_by_components(double length, double rate_unit, const std::vector<double>& source,
+                             std::vector<double>& result) const;
 
   /// Of a sum of at most 2^8 products of double-doubles, relative to their sizes.
   static constexpr double fine_rounding = 0x1p-93;
