@@ -21,6 +21,12 @@ bool flushes_to_zero() {
 #endif
 }
 
+bool rounds_to_nearest() {
+  // Sums show it, whichever register holds the mode: up, towards zero or down, one of them is another number.
+  const volatile double one = 1.0, little = 0x1p-60;
+  return one + little == 1.0 && one - little == 1.0 && -one + little == -1.0 && -one - little == -1.0;
+}
+
 void require_kept(double value, std::string_view where) {
   // Comparisons would take the number for 0, too.
   const std::uint64_t bits = std::bit_cast<std::uint64_t>(value);

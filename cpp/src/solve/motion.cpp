@@ -44,7 +44,9 @@ State Motion::at(double time) const {
   for (const auto& piece : pieces) {
     begin = &piece == &pieces.front() ? piece->t_begin : std::min(begin, piece->t_begin);
     end = &piece == &pieces.front() ? piece->t_reached : std::max(end, piece->t_reached);
-    if (time >= piece->t_begin && time <= piece->t_reached) within = piece.get();
+    // A window includes its begin: where two pieces meet, the later one holds.
+    const bool is_inside = time >= piece->t_begin && time <= piece->t_reached;
+    if (is_inside && (within == nullptr || time == piece->t_begin)) within = piece.get();
   }
   if (!(time >= begin && time <= end)) {
     throw InvalidInput("motion(t)",
@@ -52,7 +54,11 @@ State Motion::at(double time) const {
                        polhode::to_text(time));
   }
   if (time == start.t) return start;
-  if (within != nullptr) return within->at(time);
+  if (within != nullptr) {
+    State found = within->at(time);
+    if (time == within->t_reached) found.omega += within->end_jump;
+    return found;
+  }
   double y[64], q[4] = {NAN, NAN, NAN, NAN};
   State found;
   found.t = time;

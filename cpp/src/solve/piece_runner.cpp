@@ -62,6 +62,7 @@ class PieceRunner {
       motion_.status = motion.status;
       motion_.message = finished ? "" : motion.message;
       if (motion.status == Status::max_steps) motion_.message = describe_max_steps();
+      if (last && finished && forward) motion.end_jump = find_jump(part, piece.end);
       if (options_.dense) keep_dense(std::move(motion), piece);
       if (!finished) return motion_.status == Status::event;
       if (!last && wants_to_stop(pieces.back().end)) return false;
@@ -94,9 +95,7 @@ class PieceRunner {
   /// the jump there, because a window includes its begin.
   void place(const Scene& part, const Motion& motion, std::span<const std::size_t> order, double end) {
     std::size_t row = 0;
-    Vector3d jump = Vector3d::Zero();
-    if (const Vector3d dh = scene_.rotor_momentum(end) - part.rotor_momentum(); !dh.isZero(0.0))
-      jump = compute_rate_jump(scene_.inertia_B(), dh);
+    const Vector3d jump = find_jump(part, end);
     for (std::size_t i = 0; i < order.size() && row < motion.t.size(); ++i) {
       if (motion.t[row] != part.times()[i]) continue;
       if (!motion_.omega.empty()) std::copy_n(motion.omega.data() + 3 * row, 3, motion_.omega.data() + 3 * order[i]);
@@ -107,6 +106,12 @@ class PieceRunner {
       reached_[order[i]] = 1;
       ++row;
     }
+  }
+
+  /// The change of omega at the end of a piece.
+  Vector3d find_jump(const Scene& part, double end) const {
+    const Vector3d dh = scene_.rotor_momentum(end) - part.rotor_momentum();
+    return dh.isZero(0.0) ? dh : compute_rate_jump(scene_.inertia_B(), dh);
   }
 
   static double find_reached(const Motion& motion, const Piece& piece) {

@@ -1,3 +1,4 @@
+#include <cfenv>
 #include <doctest/doctest.h>
 
 #include <chrono>
@@ -76,6 +77,17 @@ TEST_CASE("batches end by the guard of the calling thread, on any number of thre
     CHECK_THROWS_AS(for (int i = 0; i < 100; ++i) free_motion(batch, out.data(), nullptr, threads), Asked);
     CHECK_THROWS_AS(solve_many(bodies, 1, make_scene, options, out.data(), nullptr, threads), Asked);
     CHECK(asked == 2);
+  }
+}
+
+TEST_CASE("other modes of rounding than to nearest are seen") {
+  const int before = std::fegetround();
+  CHECK(rounds_to_nearest());
+  for (const int mode : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
+    std::fesetround(mode);
+    const bool nearest = rounds_to_nearest();
+    std::fesetround(before);
+    CHECK_FALSE(nearest);
   }
 }
 

@@ -10,6 +10,9 @@ namespace polhode {
 /// linked with -ffast-math switches this on for the whole process.
 bool flushes_to_zero();
 
+/// Whether the processor rounds to nearest on this thread, as it does unless fesetround() or the like was called.
+bool rounds_to_nearest();
+
 /// Throws InvalidInput for a denormal number where the processor takes it for 0.
 void require_kept(double value, std::string_view where);
 

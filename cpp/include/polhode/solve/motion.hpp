@@ -57,6 +57,7 @@ struct Motion : Trajectory {
   double proved_end = std::numeric_limits<double>::quiet_NaN();
   /// Times at which a torque of the user's own was found to jump or kink; the span was divided there [s].
   std::vector<double> found_breaks = {};
+  Vector3d end_jump = Vector3d::Zero();  ///< of omega, where rotors start or stop at the last time of the last piece
   double t_begin = 0.0;                  ///< start of the span of a closed form or a piece
 
   Motion() = default;

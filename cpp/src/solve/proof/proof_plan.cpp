@@ -1,6 +1,7 @@
 #include "solve/proof/proof_plan.hpp"
 
 #include "polhode/core/error.hpp"
+#include "polhode/core/float_state.hpp"
 #include "solve/proof/body_equations.hpp"
 
 namespace polhode::proof {
@@ -26,6 +27,10 @@ void require_provable(const Scene& scene, const SolveOptions& options) {
   if (options.dense) refuse("dense", "True", "bounds are given at the scene's times: add the times that are needed");
   if (!options.events.empty())
     refuse("events", std::to_string(options.events.size()), "a function of the user's own has no known bounds");
+  if (!rounds_to_nearest()) {
+    throw InvalidInput("certify='proof'", "used where the processor rounds to nearest", "another rounding mode",
+                       "the bounds on rounding hold for that mode alone: a library or fesetround() changed it");
+  }
   if (has_custom(scene)) {
     throw InvalidInput("certify='proof'", "left out with torques of the user's own", "a Custom torque",
                        "its function gives numbers, and a proof needs bounds on them at every state nearby");
