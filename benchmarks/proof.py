@@ -177,10 +177,11 @@ def judge_edges(count, seed):
     return rows
 
 
-EDGES = """Samples lie within two units in the last place of the ends of windows, and between them. The scenes have torques and
+EDGES = """\
+Samples lie within two units in the last place of the ends of windows, and between them. The scenes have torques and
 rotors with windows. Starts lie at 0, at 1e8 s, before, in the middle, and spans go down to 1e-300 s. The truth is a
-Taylor series in fixed point of at least 190 bits, by `benchmarks/planner/family/exact.py`. It has no formula in common
-with proofs but Euler's equations."""
+Taylor series in fixed point of at least 190 bits, by `benchmarks/planner/family/exact.py`. It shares with proofs the
+equations of the rates and of the quaternion, and no code."""
 
 
 def main():

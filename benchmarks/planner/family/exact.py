@@ -1,7 +1,8 @@
 """The exact motion of plain numbers in fixed point: 190 bits and more, with Python's integers.
 
-Rates and quaternion are expanded in Taylor series about a time. The torques see the attitude through the rotation matrix
-of the quaternion. Proofs have neither, and their numbers are floating: the two share no formula but Euler's equations.
+Rates and quaternion are expanded in Taylor series about a time. The torques see the attitude through the rotation
+matrix of the quaternion. Proofs have neither that matrix nor fixed point: the two share the equations of the rates and
+of the quaternion.
 """
 
 import math
