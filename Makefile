@@ -130,7 +130,8 @@ docs-pictures: docs
 
 # The core as WebAssembly by Zig's Clang, its sizes, its numbers against the native baseline, the playground as one file.
 # The check skips nothing: POLHODE_WEB makes a test that lacks what it needs a failure.
-web web-check: install
+web-check: web
+web: install
 	@$(PYTHON) -m pip install -qq --disable-pip-version-check "ziglang==0.17.1" wasmtime
 	@JOBS=$(JOBS) $(PYTHON) web/build.py
 	@POLHODE_WEB=required POLHODE_SIMD=baseline $(PYTHON) -m pytest -q tests/python/test_web.py

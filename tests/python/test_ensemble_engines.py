@@ -81,7 +81,7 @@ def test_threads_that_open_an_array_together_write_its_chunks_of_nan(recipe, tmp
     out = str(tmp_path / "out.zarr")
     ph.ensemble(recipe, out=out, executor=0)
     first_opens, second_opens, first_has_it = (threading.Event() for _ in range(3))
-    opened = store._group
+    opened = store.group_of
 
     def group(path, mode):
         """The second thread begins while the first opens, and goes on when the first has its array."""
@@ -103,7 +103,7 @@ def test_threads_that_open_an_array_together_write_its_chunks_of_nan(recipe, tmp
         assert first_opens.wait(20)
         found["second"] = store._array(out, "error", "second")
 
-    monkeypatch.setattr(store, "_group", group)
+    monkeypatch.setattr(store, "group_of", group)
     threads = [threading.Thread(target=target, name=target.__name__) for target in (first, second)]
     for thread in threads:
         thread.start()

@@ -278,13 +278,17 @@ LONG = {
     "inertia.principal_axes": lambda: tensors(ph.inertia.principal_axes),
 }
 
+# An ensemble ends its processes first [s].
+PROMISED = {"ensemble": 1.5}
+
 
 # What the test leaves out, by the reason: whole groups by the beginning of the name.
 OUT = {
     "sets up one body, in microseconds": (
         "DampedFree", "FreeMotion", "Gyrostat", "HeavyTop", "Pendulum", "DampedFree.slowed_time", "Event", "Rotor",
         "InertiaTensor", "MassProperties", "PrincipalAxes", "shapes.", "torques.", "generalised_forces",
-        "inertia.check", "inertia.diagnose", "inertia.Diagnosis", "inertia.Finding", "inertia.Flaw"),
+        "inertia.check", "inertia.diagnose", "inertia.equivalent_box", "inertia.equivalent_ellipsoid",
+        "inertia.Diagnosis", "inertia.Finding", "inertia.Flaw"),
     "holds a result, or is an exception": (
         "FitResult", "Ensemble", "IntegrationFailure", "InvalidInput", "Lyapunov", "Motion", "Motions", "Plan",
         "Sensitivity", "charts.Entrant", "recipe.Draw", "recipe.Recipe", "build_info", "cmake_prefix", "methods"),
@@ -324,7 +328,7 @@ def test_a_signal_ends_long_work(name, after):
         before = fixed_work()
         late = delay(work, after)
         # Between two looks at the signal lies an amount of work, not of time: a slower machine takes longer for it.
-        allowed = 0.1 * max(1.0, (before + fixed_work()) / 2 / USUAL)
+        allowed = PROMISED.get(name, 0.1) * max(1.0, (before + fixed_work()) / 2 / USUAL)
         if late < allowed:
             return
         tries.append(f"{late:.3f} s after the signal, {allowed:.3f} s are allowed")

@@ -10,8 +10,8 @@ MassProperties half_ball(double mass, double radius) {
 
 Record describe_half_ball() {
   return with_volume(make_record<&half_ball>("half_ball",
-                                             "Half of a solid ball. The centre of its flat face is at the origin, its "
-                                             "pole at (0, 0, r), and its centre of mass at (0, 0, 3/8 r). "
+                                             "Half of a solid ball. The centre of its flat face is at the origin. Its "
+                                             "pole is at (0, 0, r), and its centre of mass at (0, 0, 3/8 r). "
                                              "About the centre of mass: Ix = Iy = 83/320 m r^2, Iz = 2/5 m r^2.",
                                              {{"mass", "mass [kg]"}, {"radius", "r [m]"}}),
                      [](const double* v) -> Real { return 2 * pi / 3 * v[0] * v[0] * v[0]; });
