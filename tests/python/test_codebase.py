@@ -13,7 +13,8 @@ import pytest
 import polhode
 
 ROOT = pathlib.Path(__file__).parents[2]
-ORDER = ["core", "math", "attitude", "inertia", "torque", "exact", "ode", "scene", "method", "solve", "batch"]
+ORDER = ["core", "math", "attitude", "inertia", "torque", "exact", "ode", "formula", "scene", "method", "solve",
+         "batch"]
 MAY_USE = {
     "core": [],
     "math": ["core"],
@@ -22,10 +23,11 @@ MAY_USE = {
     "torque": ["core", "math", "attitude"],
     "exact": ["core", "math", "attitude", "inertia"],
     "ode": ["core", "math"],
+    "formula": ["core", "math"],
     "scene": ["core", "math", "attitude", "inertia", "torque"],
-    "method": ORDER[:8],
-    "solve": ORDER[:9],
-    "batch": ORDER[:10],
+    "method": ORDER[:9],
+    "solve": ORDER[:10],
+    "batch": ORDER[:11],
 }
 OLD_PLACES = {"euler_formulas", "euler_problem", "lagrangian_problem", "methods"}   # headers of one line until 0.3
 

@@ -1,0 +1,15 @@
+// Compiled with the flags of avx2 (cpp/CMakeLists.txt) if the compiler has them, else empty.
+#include "formula/lanes/levels.hpp"
+
+#if defined(__AVX2__) && defined(__FMA__)
+#define POLHODE_ISA isa_avx2
+#include "formula/lanes/table_loops.hpp"
+
+namespace polhode::formula {
+TableKernel avx2_table_kernel() { return &POLHODE_ISA::run; }
+}  // namespace polhode::formula
+#else
+namespace polhode::formula {
+TableKernel avx2_table_kernel() { return nullptr; }
+}  // namespace polhode::formula
+#endif
