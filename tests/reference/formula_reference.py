@@ -1,7 +1,7 @@
 """Makes formula.txt: random formulas with their values, derivatives and Taylor series by mpmath at 40 digits.
 
-A function of a series is made from the function's own derivatives and powers of the series, and the series of a motion by
-Picard's iteration: no recurrence of polhode is used. Each value comes with a bound of the rounding errors of its float64
+A function of a series is made from the function's own derivatives, in closed form, and powers of the series. The series
+of a motion comes from Picard's iteration. No recurrence of polhode is used. Each value comes with a bound of the rounding errors of its float64
 evaluation, in units of 2^-53. Run: python formula_reference.py
 """
 
@@ -40,9 +40,9 @@ class Number:
         z = self.value / other.value
         return Number(z).rounded((self.error + abs(z) * other.error) / abs(other.value))
 
-    def apply(self, function):
-        slope = abs(mpmath.diff(function, self.value))
-        return Number(function(self.value)).rounded(slope * self.error + 8 * abs(function(self.value)))
+    def apply(self, coefficients):
+        value, slope = coefficients(self.value, 1)
+        return Number(value).rounded(abs(slope) * self.error + 8 * abs(value))
 
     @property
     def start(self):
@@ -65,11 +65,10 @@ class Series:
         return Series([mpmath.fdot(self.rows[:n + 1], other.rows[n::-1]) for n in range(ORDER + 1)])
 
     def __truediv__(self, other):
-        return self * other.apply(lambda x: 1 / x)
+        return self * other.apply(power(-1))
 
-    def apply(self, function):
-        with mpmath.workdps(120):
-            slopes = mpmath.taylor(function, self.rows[0], ORDER)
+    def apply(self, coefficients):
+        slopes = coefficients(self.rows[0], ORDER)
         rest, total = Series([0, *self.rows[1:]]), Series([slopes[ORDER]])
         for slope in reversed(slopes[:ORDER]):
             total = total * rest + Series([slope])
@@ -80,13 +79,58 @@ class Series:
         return self.rows[0]
 
 
-FUNCTIONS = {"sqrt": mpmath.sqrt, "exp": mpmath.exp, "log": mpmath.log, "sin": mpmath.sin, "cos": mpmath.cos,
-             "tan": mpmath.tan, "tanh": mpmath.tanh}
+# Taylor coefficients 0..n of functions at a.
+
+def power(c):
+    return lambda a, n: [mpmath.binomial(c, k) * a ** (c - k) for k in range(n + 1)]
+
+
+def exp(a, n):
+    return [mpmath.exp(a) / mpmath.factorial(k) for k in range(n + 1)]
+
+
+def log(a, n):
+    return [mpmath.log(a), *(-(-1 / a) ** k / k for k in range(1, n + 1))]
+
+
+def sin(a, n):
+    return [mpmath.sin(a + k * mpmath.pi / 2) / mpmath.factorial(k) for k in range(n + 1)]
+
+
+def cos(a, n):
+    return sin(a + mpmath.pi / 2, n)
+
+
+def atan(a, n):
+    # the imaginary part of log(1 + i a)
+    z = mpmath.mpc(0, 1) / mpmath.mpc(1, a)
+    return [mpmath.atan(a), *(mpmath.im(-(-z) ** k / k) for k in range(1, n + 1))]
+
+
+FUNCTIONS = {"sqrt": power(mpf("0.5")), "exp": exp, "log": log, "sin": sin, "cos": cos}
+
+
+def quotient(above, below):
+    """Two functions of one series, divided."""
+    if isinstance(above, Number):
+        # Not wider than needed: the errors of both parts are those of one function.
+        value = above.value / below.value
+        return Number(value).rounded((above.error + abs(value) * below.error) / abs(below.value))
+    return above / below
+
+
+def tan(a):
+    return quotient(a.apply(sin), a.apply(cos))
+
+
+def tanh(a):
+    plus, minus = a.apply(exp), a.apply(lambda x, n: [(-1) ** k * c for k, c in enumerate(exp(-x, n))])
+    return quotient(plus - minus, plus + minus)
 
 
 def atan2(y, x):
     # Both are series or numbers; here x > 0.
-    return (y / x).apply(mpmath.atan)
+    return (y / x).apply(atan)
 
 
 def evaluate(tree, names, kind):
@@ -97,13 +141,18 @@ def evaluate(tree, names, kind):
     if head == "number":
         return kind(rest[0]) if kind is Number else kind([rest[0]])
     if head == "^":
-        exponent = mpf(rest[1])
-        return evaluate(rest[0], names, kind).apply(lambda x: x ** (int(exponent) if exponent == int(exponent) else exponent))
+        base = evaluate(rest[0], names, kind)
+        if rest[1] == int(rest[1]):
+            product = base
+            for _ in range(int(rest[1]) - 1):
+                product = product * base
+            return product
+        return base.apply(power(mpf(rest[1])))
     a = [evaluate(operand, names, kind) for operand in rest]
     if head in FUNCTIONS:
         return a[0].apply(FUNCTIONS[head])
-    if head == "atan2":
-        return atan2(*a)
+    if head in ("atan2", "tan", "tanh"):
+        return {"atan2": atan2, "tan": tan, "tanh": tanh}[head](*a)
     if head == "where":
         return a[2] if a[0].start < a[1].start else a[3]
     if head == "min":
@@ -124,7 +173,7 @@ def text(tree):
     parts = [text(operand) for operand in rest]
     if head == "where":
         return f"where({parts[0]} < {parts[1]}, {parts[2]}, {parts[3]})"
-    if head in FUNCTIONS or head in ("atan2", "min", "max", "abs"):
+    if head in FUNCTIONS or head in ("atan2", "tan", "tanh", "min", "max", "abs"):
         return f"{head}({', '.join(parts)})"
     return f"({parts[0]} {head} {parts[1]})"
 
@@ -246,10 +295,10 @@ def space_vector(which, q, w, t):
         return turn_to_body(q, [Series([0]), Series([0]), one])
     if which == 2:
         angle, quarter = t * Series([0.5]) + one, Series([0.25])
-        return turn_to_body(q, [quarter * angle.apply(mpmath.cos), quarter * angle.apply(mpmath.sin), Series([-0.5])])
+        return turn_to_body(q, [quarter * angle.apply(cos), quarter * angle.apply(sin), Series([-0.5])])
     if which == 3:
         angle = t * Series([2])
-        u = turn_to_body(q, [angle.apply(mpmath.cos), angle.apply(mpmath.sin), Series([0])])
+        u = turn_to_body(q, [angle.apply(cos), angle.apply(sin), Series([0])])
         return cross(u, [Series([1 + i]) * u[i] for i in range(3)])
     return turn_to_body(q, [w[0], one, t * t])
 
