@@ -64,7 +64,7 @@ int main() {
               "ratio", "difference", "picks");
   for (const Scenery& s : sceneries) {
     const Scene scene({.inertia_B = InertiaTensor(Matrix3d(s.moments.asDiagonal())), .omega = s.omega,
-                       .attitude = {half, half, -half, half}, .torques = {s.torque}});
+                       .attitude = {half, half, -half, half}, .torques = {s.torque}, .times = {1.0}});
     const BodySeries series(scene, true);
     for (const int effort : {0, 2000}) {
       const double begin = now();

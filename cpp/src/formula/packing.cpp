@@ -75,15 +75,16 @@ std::vector<Pick> pick_operands(const std::vector<int>& offsets) {
   std::vector<Pick> picks;
   while (!rest.empty()) {
     Pick pick;
-    pick.first = pick.second = *rest.begin();
+    const int first = *rest.begin();
     rest.erase(rest.begin());
-    if (!rest.empty()) pick.second = *rest.begin(), rest.erase(rest.begin());
+    int second = first;
+    if (!rest.empty()) second = *rest.begin(), rest.erase(rest.begin());
+    pick.first = 8 * first, pick.second = 8 * second;
     for (std::size_t i = 0; i < 8; ++i) {
       const int offset = i < offsets.size() && offsets[i] >= 0 ? offsets[i] : any;
       pick.offset[i] = offset;
-      const bool here = offset / 8 == pick.first || offset / 8 == pick.second;
-      pick.index[i] = offset % 8 + (offset / 8 == pick.first ? 0 : 8);
-      if (here) pick.mask |= 1 << i;
+      pick.index[i] = offset % 8 + (offset / 8 == first ? 0 : 8);
+      if (offset / 8 == first || offset / 8 == second) pick.mask |= 1 << i;
     }
     picks.push_back(pick);
   }
@@ -122,7 +123,7 @@ std::vector<Pick> pick_terms(std::vector<Form*> lanes, const Packing& packing) {
       }
     }
     Choice choice;
-    choice.pick.first = first, choice.pick.second = second;
+    choice.pick.first = 8 * first, choice.pick.second = 8 * second;
     int any = -1;
     for (std::size_t i = 0; i < rest.size(); ++i) {
       const auto part = std::find_if(rest[i].begin(), rest[i].end(),

@@ -1,6 +1,7 @@
 #include "polhode/formula/table.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "formula/lanes/levels.hpp"
@@ -48,9 +49,9 @@ class Writer {
 
  private:
   Range add(const std::vector<Pick>& picks) {
-    const int begin = static_cast<int>(parts_.picks.size());
+    const std::ptrdiff_t begin = std::ssize(parts_.picks);
     parts_.picks.insert(parts_.picks.end(), picks.begin(), picks.end());
-    return {begin, static_cast<int>(parts_.picks.size())};
+    return {begin, std::ssize(parts_.picks)};
   }
 
   Stage make_sum(std::vector<Form*> lanes, int octet) {
@@ -74,7 +75,6 @@ class Writer {
     }
     Stage stage;
     stage.kind = group.kind, stage.octet = octet, stage.store = parts_.stores++;
-    stage.lanes = static_cast<int>(end - begin);
     std::vector<int> first, second, left, right;
     for (std::size_t lane = 0; lane < 8; ++lane) {
       // Free lanes do what the first one does.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -14,24 +15,23 @@ struct alignas(64) Pick {
   std::array<double, 8> factor{};
   std::array<std::int64_t, 8> index{};    ///< 0 to 7: of the first octet, 8 to 15: of the second
   std::array<std::int32_t, 8> offset{};   ///< the same numbers among all values
-  std::int32_t first = 0, second = 0;     ///< octets
+  std::ptrdiff_t first = 0, second = 0;   ///< where the two octets begin among all values
   std::int32_t mask = 0;                  ///< lanes that are used
 };
 
 /// A row of picks: of a sum, or of one octet of operands, whose lanes may come from more than two octets.
 struct Range {
-  int begin = 0, end = 0;
+  std::ptrdiff_t begin = 0, end = 0;
 };
 
 /// Eight operations, or eight forms, of one level.
 struct Stage {
   enum class Kind : std::int32_t { sum, product, general };
   Kind kind = Kind::sum;
-  int octet = 0;               ///< where the values go
-  int store = -1;              ///< the rows of its factors, for operations
+  std::ptrdiff_t octet = 0;    ///< where the values go, of octets
+  std::ptrdiff_t store = -1;   ///< the rows of its factors, for operations
   Range first, second;         ///< sum: its terms. product: left and right. general: the terms c1 and c2
   Range left, right;           ///< general: the factors of older
-  int lanes = 0;               ///< number of operations
   std::array<int, 8> operations{}, a{}, b{};             ///< general: into the tape; offsets of the operands of values
   alignas(64) std::array<double, 8> constant{};          ///< sum: of row 0
   alignas(64) std::array<double, 8> weighted{}, divided{};   ///< general: 1 where left_j has the factor j, alpha 1 / n

@@ -30,13 +30,13 @@ POLHODE_INLINE Octet operator*(Octet a, Octet b) { return {_mm512_mul_pd(a.v, b.
 POLHODE_INLINE Octet operator/(Octet a, Octet b) { return {_mm512_div_pd(a.v, b.v)}; }
 POLHODE_INLINE Octet madd(Octet a, Octet b, Octet c) { return {_mm512_fmadd_pd(a.v, b.v, c.v)}; }
 POLHODE_INLINE Octet take(const double* values, const Pick& pick) {
-  return {_mm512_permutex2var_pd(_mm512_load_pd(values + 8 * pick.first), _mm512_load_si512(pick.index.data()),
-                                 _mm512_load_pd(values + 8 * pick.second))};
+  return {_mm512_permutex2var_pd(_mm512_load_pd(values + pick.first), _mm512_load_si512(pick.index.data()),
+                                 _mm512_load_pd(values + pick.second))};
 }
 /// An octet of operands from any lanes.
 POLHODE_INLINE Octet gather(const double* values, const Pick* picks, Range range) {
   Octet found = take(values, picks[range.begin]);
-  for (int i = range.begin + 1; i < range.end; ++i)
+  for (std::ptrdiff_t i = range.begin + 1; i < range.end; ++i)
     found.v = _mm512_mask_mov_pd(found.v, static_cast<__mmask8>(picks[i].mask), take(values, picks[i]).v);
   return found;
 }

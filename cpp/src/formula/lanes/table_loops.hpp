@@ -11,13 +11,16 @@ namespace polhode::formula::POLHODE_ISA {
 class Expansion {
  public:
   POLHODE_INLINE Expansion(const TableParts& parts, const Workspace& workspace, double unit)
-      : parts_(parts), picks_(parts.picks.data()), values_(workspace.values), w_(workspace), unit_(unit),
-        row_size_(16 * parts.stores) {}
+      : stages_(parts.stages.data()), stages_end_(stages_ + parts.stages.size()), rates_(parts.rates.data()),
+        picks_(parts.picks.data()), values_(workspace.values), w_(workspace), unit_(unit), states_(parts.states),
+        waves_(parts.waves), stores_(parts.stores), given_(parts.given), extras_(parts.extras),
+        first_wave_(8 * parts.first_wave), first_extra_(8 * parts.first_extra), row_size_(16 * parts.stores) {}
 
   /// Values of row 0, and the constants of the recurrences.
   POLHODE_INLINE void begin(const Recurrence* operations) {
     double* constants = w_.constants;
-    for (const Stage& stage : parts_.stages) {
+    for (const Stage* at_stage = stages_; at_stage != stages_end_; ++at_stage) {
+      const Stage& stage = *at_stage;
       double* out = values_ + 8 * stage.octet;
       if (stage.kind == Stage::Kind::sum) {
         store(out, sum(stage.first, load(stage.constant.data())));
@@ -41,7 +44,8 @@ class Expansion {
   /// of the last pass.
   POLHODE_INLINE void advance(int n, bool second) {
     const double* constants = w_.constants;
-    for (const Stage& stage : parts_.stages) {
+    for (const Stage* at_stage = stages_; at_stage != stages_end_; ++at_stage) {
+      const Stage& stage = *at_stage;
       double* out = values_ + 8 * stage.octet;
       if (stage.kind == Stage::Kind::sum) {
         store(out, sum(stage.first, all(0.0)));
@@ -64,7 +68,8 @@ class Expansion {
 
   /// Factors of general operations, once all values of row n are known.
   POLHODE_INLINE void put_general(int n) {
-    for (const Stage& stage : parts_.stages) {
+    for (const Stage* at_stage = stages_; at_stage != stages_end_; ++at_stage) {
+      const Stage& stage = *at_stage;
       if (stage.kind != Stage::Kind::general) continue;
       double* at = row(n) + 16 * stage.store;
       const Octet weighted = load(stage.weighted.data());
@@ -75,26 +80,25 @@ class Expansion {
 
   /// Row n + 1 of the states and the waves.
   POLHODE_INLINE void integrate(int n) {
-    const Octet scale = all(n == 2 ? unit_ : unit_ * (1.0 / (n + 1)));
-    for (const Stage& stage : parts_.rates) {
-      Octet rate = sum(stage.first, n == 0 ? load(stage.constant.data()) : all(0.0)) * scale;
-      if (n == 2) rate = rate / all(3.0);
-      store(w_.scratch + 8 * stage.octet, rate);
+    switch (states_) {
+      case 1: integrate_states<1>(n); break;
+      case 2: integrate_states<2>(n); break;
+      case 3: integrate_states<3>(n); break;
+      default: integrate_many(n);
     }
-    for (int i = 0; i < parts_.states; ++i) store(values_ + 8 * i, load(w_.scratch + 8 * i));
-    for (int i = 0; i < parts_.waves; ++i)
-      store(values_ + 8 * (parts_.first_wave + i), load(w_.waves + 8 * ((n + 1) * parts_.waves + i)));
+    for (int i = 0; i < waves_; ++i)
+      store(values_ + first_wave_ + 8 * i, load(w_.waves + 8 * ((n + 1) * waves_ + i)));
   }
 
   /// The terms of rows n and n + 1, n even, that need rows below n only.
   POLHODE_INLINE void sum_older(int n) {
     int o = 0;
-    for (; o + octets_at_once <= parts_.stores; o += octets_at_once) sum_group<octets_at_once>(n, o);
+    for (; o + octets_at_once <= stores_; o += octets_at_once) sum_group<octets_at_once>(n, o);
     if constexpr (octets_at_once > 2) {
-      if (o + 2 <= parts_.stores) sum_group<2>(n, o), o += 2;
+      if (o + 2 <= stores_) sum_group<2>(n, o), o += 2;
     }
     if constexpr (octets_at_once > 1) {
-      if (o < parts_.stores) sum_group<1>(n, o);
+      if (o < stores_) sum_group<1>(n, o);
     }
   }
 
@@ -102,17 +106,17 @@ class Expansion {
   POLHODE_INLINE void sum_newer(int n) {
     if (n == 0) return;
     const double *now = row(n), *start = row(1);
-    for (int o = 0; o < parts_.stores; ++o, now += 16, start += 16) {
+    for (int o = 0; o < stores_; ++o, now += 16, start += 16) {
       double* out = w_.older + 16 * o + 8;
       store(out, madd(load(start), load(now + 8), madd(load(now), load(start + 8), load(out))));
     }
   }
 
   POLHODE_INLINE void write(int n, double* rows, double* extras) const {
-    for (int i = 0; i < parts_.given; ++i) copy(values_ + 8 * i, rows + 8 * (n * parts_.given + i));
+    for (int i = 0; i < given_; ++i) copy(values_ + 8 * i, rows + 8 * (n * given_ + i));
     if (extras == nullptr) return;
-    for (int i = 0; i < parts_.extras; ++i)
-      copy(values_ + 8 * (parts_.first_extra + i), extras + 8 * (n * parts_.extras + i));
+    for (int i = 0; i < extras_; ++i)
+      copy(values_ + first_extra_ + 8 * i, extras + 8 * (n * extras_ + i));
   }
 
  private:
@@ -128,8 +132,8 @@ class Expansion {
   }
 
   POLHODE_INLINE Octet sum(Range terms, Octet total) const {
-    for (int i = terms.begin; i < terms.end; ++i)
-      total = madd(load(picks_[i].factor.data()), take(values_, picks_[i]), total);
+    for (const Pick *pick = picks_ + terms.begin, *end = picks_ + terms.end; pick != end; ++pick)
+      total = madd(load(pick->factor.data()), take(values_, *pick), total);
     return total;
   }
 
@@ -138,6 +142,26 @@ class Expansion {
     double* at = row(n) + 16 * stage.store;
     store(at, now.left), store(at + 8, now.right);
     return now;
+  }
+
+  /// A rate times unit / (n + 1).
+  POLHODE_INLINE Octet compute_next(const Stage& stage, int n) const {
+    if (n == 0) return sum(stage.first, load(stage.constant.data())) * all(unit_);
+    const Octet rate = sum(stage.first, all(0.0));
+    // Of the first divisions the one by 3 rounds, and its error would be the same in each step.
+    return n == 2 ? rate * all(unit_) / all(3.0) : rate * all(unit_ * (1.0 / (n + 1)));
+  }
+
+  /// All rates are computed before the first state changes.
+  template <int count>
+  POLHODE_INLINE void integrate_states(int n) {
+    Octet next[count];
+    for (int i = 0; i < count; ++i) next[i] = compute_next(rates_[i], n);
+    for (int i = 0; i < count; ++i) store(values_ + 8 * i, next[i]);
+  }
+  POLHODE_INLINE void integrate_many(int n) {
+    for (int i = 0; i < states_; ++i) store(w_.scratch + 8 * i, compute_next(rates_[i], n));
+    for (int i = 0; i < states_; ++i) store(values_ + 8 * i, load(w_.scratch + 8 * i));
   }
 
   template <int count>
@@ -169,12 +193,14 @@ class Expansion {
       store(w_.older + 16 * (first + p), out[p]), store(w_.older + 16 * (first + p) + 8, next[p]);
   }
 
-  const TableParts& parts_;
+  // Copies, because each store of a vector may change what a pointer or a reference leads to.
+  const Stage *stages_, *stages_end_, *rates_;
   const Pick* picks_;
   double* values_;
   Workspace w_;
   double unit_;
-  std::ptrdiff_t row_size_;
+  int states_, waves_, stores_, given_, extras_;
+  std::ptrdiff_t first_wave_, first_extra_, row_size_;
 };
 
 void run(const TableParts& parts, const Recurrence* operations, const Workspace& workspace, double unit, int order,
