@@ -147,7 +147,7 @@ Program rewrite(const Program& program, const Change& change) {
   return made;
 }
 
-Program bind(const Program& program, const std::vector<double>& values) {
+Program bind_parameters(const Program& program, const std::vector<double>& values) {
   if (values.size() != list_values(program.parameters).size()) {
     throw InvalidInput("parameters", std::to_string(list_values(program.parameters).size()) + " numbers",
                        std::to_string(values.size()));

@@ -20,7 +20,7 @@ double largest(const std::vector<double>& row) {
 }
 
 Tape make_tape(const TableCase& c) {
-  const Program torque = bind(parse(c.text), {0.375, -1.25});
+  const Program torque = bind_parameters(parse(c.text), {0.375, -1.25});
   const Program system = make_body_equations(torque, make_inertia(c.diagonal));
   return Tape(in_mode(system, find_mode(system, c.t, c.y.data())));
 }
@@ -68,7 +68,7 @@ TEST_CASE("formula: operations of the heavy body and of the gravity gradient") {
   CHECK(tape.forms().empty());
   Text text{"3 * n^2 * cross(u, [20, 40, 52] * u)", {{"n", {1e-3}}}, {}, {},
             {{"u", "to_body([cos(n * t), sin(n * t), 0])"}}};
-  const Tape gradient(make_body_equations(bind(parse(text), {1e-3}), Vector3d(20, 40, 52).asDiagonal()));
+  const Tape gradient(make_body_equations(bind_parameters(parse(text), {1e-3}), Vector3d(20, 40, 52).asDiagonal()));
   CHECK(gradient.operations().size() == 30);
   CHECK(gradient.state_slots().size() == 13);
   CHECK(gradient.waves().empty());

@@ -67,7 +67,7 @@ TEST_CASE("formula: tables have the bits of the reference at each level") {
     if (c.rows.empty()) continue;
     ++count;
     CAPTURE(c.text.torque);
-    const Program system = make_body_equations(bind(parse(c.text), {0.375, -1.25}), make_inertia(c.diagonal));
+    const Program system = make_body_equations(bind_parameters(parse(c.text), {0.375, -1.25}), make_inertia(c.diagonal));
     const Program smooth = in_mode(system, find_mode(system, c.t, c.y.data()), true);
     for (const int order : {1, 2, 3, 4, 5, 8, 15, 22}) {
       CAPTURE(order);

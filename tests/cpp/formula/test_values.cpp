@@ -36,7 +36,7 @@ TEST_CASE("formula: values against mpmath, as text and printed again") {
     const Program again = parse(print(program));
     CHECK(is_same(program, again));
     // Bound parameters round the same constants in another place.
-    const Program bound = bind(program, parameters);
+    const Program bound = bind_parameters(program, parameters);
     CHECK(bound.parameters.empty());
     double other[5];
     Evaluator evaluate_bound(bound);

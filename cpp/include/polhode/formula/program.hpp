@@ -70,7 +70,7 @@ bool is_same(const Program& a, const Program& b);
 /// A program without dead nodes: the inputs by their numbers first, then the nodes in the order of the given one.
 Program rewrite(const Program& program, const Change& change = {});
 /// Parameters become numbers: one value for each number of all parameters.
-Program bind(const Program& program, const std::vector<double>& values);
+Program bind_parameters(const Program& program, const std::vector<double>& values);
 /// Components of R_WB^T v become polynomials in the attitude.
 /// @param but_carried  not those of a vector that a tape carries
 Program expand_rotations(const Program& program, bool but_carried = false);
