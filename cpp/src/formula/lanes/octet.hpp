@@ -49,7 +49,6 @@ constexpr int octets_at_once = 2;
 struct Part {
   __m256d v;
 };
-constexpr int part_count = 2, part_width = 4;
 POLHODE_INLINE Part load_part(const double* p) { return {_mm256_load_pd(p)}; }
 POLHODE_INLINE void store_part(double* p, Part a) { _mm256_store_pd(p, a.v); }
 POLHODE_INLINE Part all_part(double a) { return {_mm256_set1_pd(a)}; }
@@ -69,7 +68,6 @@ struct Part {
   typedef double Vector __attribute__((vector_size(16)));
   Vector v;
 };
-constexpr int part_count = 4, part_width = 2;
 POLHODE_INLINE Part load_part(const double* p) { return {*reinterpret_cast<const Part::Vector*>(p)}; }
 POLHODE_INLINE void store_part(double* p, Part a) { *reinterpret_cast<Part::Vector*>(p) = a.v; }
 POLHODE_INLINE Part all_part(double a) { return {Part::Vector{a, a}}; }
@@ -83,39 +81,54 @@ POLHODE_INLINE Part take_part(const double* values, const std::int32_t* offset) 
 
 #endif
 
+// Members by name: GCC keeps arrays of registers in memory.
+#if defined(__AVX2__)
 struct Octet {
-  Part part[part_count];
+  Part a, b;
 };
 template <class Function>
 POLHODE_INLINE Octet each(Function function) {
-  Octet out;
-  for (int i = 0; i < part_count; ++i) out.part[i] = function(i);
-  return out;
+  return {function(&Octet::a, 0), function(&Octet::b, 4)};
 }
+#else
+struct Octet {
+  Part a, b, c, d;
+};
+template <class Function>
+POLHODE_INLINE Octet each(Function function) {
+  return {function(&Octet::a, 0), function(&Octet::b, 2), function(&Octet::c, 4), function(&Octet::d, 6)};
+}
+#endif
+using Member = Part Octet::*;
+
 POLHODE_INLINE Octet load(const double* p) {
-  return each([&](int i) POLHODE_LAMBDA { return load_part(p + part_width * i); });
+  return each([&](Member, int at) POLHODE_LAMBDA { return load_part(p + at); });
 }
-POLHODE_INLINE void store(double* p, Octet a) {
-  for (int i = 0; i < part_count; ++i) store_part(p + part_width * i, a.part[i]);
+POLHODE_INLINE void store(double* p, Octet x) {
+  each([&](Member m, int at) POLHODE_LAMBDA {
+    store_part(p + at, x.*m);
+    return x.*m;
+  });
 }
-POLHODE_INLINE Octet all(double a) {
-  return each([&](int) POLHODE_LAMBDA { return all_part(a); });
+POLHODE_INLINE Octet all(double value) {
+  const Part part = all_part(value);
+  return each([&](Member, int) POLHODE_LAMBDA { return part; });
 }
-POLHODE_INLINE Octet operator+(Octet a, Octet b) {
-  return each([&](int i) POLHODE_LAMBDA { return add(a.part[i], b.part[i]); });
+POLHODE_INLINE Octet operator+(Octet x, Octet y) {
+  return each([&](Member m, int) POLHODE_LAMBDA { return add(x.*m, y.*m); });
 }
-POLHODE_INLINE Octet operator*(Octet a, Octet b) {
-  return each([&](int i) POLHODE_LAMBDA { return multiply(a.part[i], b.part[i]); });
+POLHODE_INLINE Octet operator*(Octet x, Octet y) {
+  return each([&](Member m, int) POLHODE_LAMBDA { return multiply(x.*m, y.*m); });
 }
-POLHODE_INLINE Octet operator/(Octet a, Octet b) {
-  return each([&](int i) POLHODE_LAMBDA { return divide(a.part[i], b.part[i]); });
+POLHODE_INLINE Octet operator/(Octet x, Octet y) {
+  return each([&](Member m, int) POLHODE_LAMBDA { return divide(x.*m, y.*m); });
 }
-POLHODE_INLINE Octet madd(Octet a, Octet b, Octet c) {
-  return each([&](int i) POLHODE_LAMBDA { return madd(a.part[i], b.part[i], c.part[i]); });
+POLHODE_INLINE Octet madd(Octet x, Octet y, Octet z) {
+  return each([&](Member m, int) POLHODE_LAMBDA { return madd(x.*m, y.*m, z.*m); });
 }
 // Loads by offset: instructions that move numbers across halves of a register cost more.
 POLHODE_INLINE Octet take(const double* values, const Pick& pick) {
-  return each([&](int i) POLHODE_LAMBDA { return take_part(values, pick.offset.data() + part_width * i); });
+  return each([&](Member, int at) POLHODE_LAMBDA { return take_part(values, pick.offset.data() + at); });
 }
 POLHODE_INLINE Octet gather(const double* values, const Pick* picks, Range range) {
   return take(values, picks[range.begin]);
