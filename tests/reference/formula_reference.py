@@ -1,10 +1,11 @@
 """Makes formula.txt: random formulas with their values, derivatives and Taylor series by mpmath at 40 digits.
 
 A function of a series is made from the function's own derivatives, in closed form, and powers of the series. The series
-of a motion comes from Picard's iteration. No recurrence of polhode is used. Each value comes with a bound of the rounding errors of its float64
-evaluation, in units of 2^-53. Run: python formula_reference.py
+of a motion comes from Picard's iteration. No recurrence of polhode is used. Each value comes with a bound of the
+rounding errors of its float64 evaluation, in units of 2^-53. Run: python formula_reference.py
 """
 
+import operator
 import pathlib
 import random
 
@@ -161,7 +162,7 @@ def evaluate(tree, names, kind):
         return a[0] if a[0].start > a[1].start else a[1]
     if head == "abs":
         return a[0] if a[0].start > 0 else kind(0) - a[0] if kind is Number else Series([0]) - a[0]
-    return {"+": lambda: a[0] + a[1], "-": lambda: a[0] - a[1], "*": lambda: a[0] * a[1], "/": lambda: a[0] / a[1]}[head]()
+    return {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv}[head](*a)
 
 
 def text(tree):

@@ -53,7 +53,9 @@ void fill_wave(const Wave& wave, math::DD t, double unit, int order, double* row
   const math::DD product = math::two_prod(wave.rate, t.hi), angle = math::two_sum(product.hi, wave.phase);
   const double low = angle.lo + product.lo + wave.rate * t.lo;
   const auto [s0, c0] = math::sincos(angle.hi);
-  const double s = s0 + c0 * low, c = c0 - s0 * low, step = wave.rate * unit;
+  // The square counts from some 1e7 revolutions on.
+  const double square = 0.5 * low * low, step = wave.rate * unit;
+  const double s = s0 + (c0 * low - s0 * square), c = c0 - (s0 * low + c0 * square);
   const double cycle[4] = {s, c, -s, -c};
   double factor = 1.0;
   for (int n = 0; n <= order; ++n) {

@@ -48,8 +48,13 @@ TEST_CASE("formula: limits of a text") {
   CHECK(refusal("omega" + std::string(10'000, ' ')) == "torque: must be at most 10000 characters, got 10005");
   CHECK(refusal(std::string(40, '(') + "omega" + std::string(40, ')')) == "taken");
   Text large{"x", {}, {}, {}, {{"x", "omega"}}};
-  for (int i = 0; i < 4000; ++i)
-    large.let.emplace_back("x" + std::to_string(i), (i == 0 ? "x" : "x" + std::to_string(i - 1)) + " * omega");
+  std::string last = "x";
+  for (int i = 0; i < 4000; ++i) {
+    std::string name = "x";
+    name += std::to_string(i);
+    large.let.emplace_back(name, last + " * omega");
+    last = name;
+  }
   large.torque = "x3999";
   CHECK_THROWS_AS(parse(large), InvalidInput);
 }

@@ -7,6 +7,7 @@
 #include "polhode/core/error.hpp"
 #include "polhode/formula/modes.hpp"
 #include "polhode/formula/tape.hpp"
+#include "polhode/math/detail/double_double.hpp"
 
 using namespace polhode;
 using namespace polhode::formula;
@@ -72,6 +73,42 @@ TEST_CASE("formula: operations of the heavy body and of the gravity gradient") {
   CHECK(gradient.operations().size() == 30);
   CHECK(gradient.state_slots().size() == 13);
   CHECK(gradient.waves().empty());
+}
+
+TEST_CASE("formula: a wave keeps its angle after many revolutions, and its rows") {
+  const double phase = 0.3, rate = 1.1, unit = 0.25;
+  for (const math::DD t : {math::DD(0.7), math::DD(1e9, 3e-8), math::DD(-3e7, 1e-9)}) {
+    const math::DD angle = math::two_prod(rate, t.hi) + math::DD(rate * t.lo) + math::DD(phase);
+    const math::SinCos truth = math::sincos(angle);
+    const double cycle[4] = {truth.sin.hi, truth.cos.hi, -truth.sin.hi, -truth.cos.hi};
+    double sine[7], cosine[7], factor = 1.0;
+    fill_wave({phase, rate, false}, t, unit, 6, sine, 1);
+    fill_wave({phase, rate, true}, t, unit, 6, cosine, 1);
+    for (int n = 0; n <= 6; ++n) {
+      if (n > 0) factor *= rate * unit / n;
+      CHECK(std::abs(sine[n] - factor * cycle[n % 4]) <= 4e-16 * factor * (n + 1));
+      CHECK(std::abs(cosine[n] - factor * cycle[(n + 1) % 4]) <= 4e-16 * factor * (n + 1));
+    }
+  }
+}
+
+TEST_CASE("formula: guards have series of their own") {
+  const Program torque = parse_torque("clip(-omega.x - 2 * attitude.y, -0.5, 0.5) * [1, 2, 3]");
+  const Program system = make_body_equations(torque, Vector3d(1.0, 2.0, 2.5).asDiagonal());
+  const double y[7] = {0.1, 0.2, 0.3, 0.5, 0.1, -0.5, 0.7};
+  const Mode mode = find_mode(system, 0.0, y);
+  const Tape tape(in_mode(system, mode, true), 7);
+  REQUIRE(tape.extras() == 2);
+  constexpr int order = 6;
+  double rows[7 * (order + 1)], extras[2 * (order + 1)];
+  compute_series(tape, Rounding::fused, 0.0, 1.0, y, order, rows, extras);
+  // u = -w_x - 2 q_y: of max(u, low) the guard is u - low, of min(that, high) in this mode u - high.
+  for (int n = 0; n <= order; ++n) {
+    const double u = -rows[7 * n] - 2 * rows[7 * n + 4], low = n == 0 ? -0.5 : 0.0;
+    const double size = std::abs(rows[7 * n]) + 2 * std::abs(rows[7 * n + 4]) + std::abs(low);
+    CHECK(std::abs(2 * extras[2 * n] - (u - low)) <= 1e-15 * size);   // its largest coefficient is made 1
+    CHECK(std::abs(extras[2 * n + 1] - (u + low)) <= 1e-15 * size);
+  }
 }
 
 TEST_CASE("formula: a tape refuses parameters and switches") {
