@@ -59,7 +59,8 @@ int main() {
       {"heavy body", {1.0, 2.0, 2.5}, {0.3, 0.2, 3.0}, torques::Gravity(2.0, Vector3d(0.3, 0.2, 0.5)),
        {"-cross([0.6, 0.4, 1], to_body([0, 0, 1]))", {}, {}, {}, {}}, 0.25},
       {"gravity gradient", {20, 40, 52}, {0.002, 0.004, 0.006}, torques::GravityGradient(1e-3),
-       {"3e-6 * cross(u, [20, 40, 52] * u)", {}, {}, {}, {{"u", "to_body([cos(1e-3 * t), sin(1e-3 * t), 0])"}}}, 128.0}};
+       {"3e-6 * cross(u, [20, 40, 52] * u)", {}, {}, {}, {{"u", "to_body([cos(1e-3 * t), sin(1e-3 * t), 0])"}}},
+       128.0}};
   std::printf("%-17s %-9s %6s %12s %12s %7s %10s %6s\n", "torque", "level", "order", "formula, ns", "built in, ns",
               "ratio", "difference", "picks");
   for (const Scenery& s : sceneries) {

@@ -18,8 +18,8 @@ namespace {
 namespace f = formula;
 
 constexpr const char* words[] = {"omega", "attitude", "t", "kp", "h", "u", "+", "-", "*", "/", "^", "(", ")", "[", "]",
-                                 ",", ".xyz", ".x", ".w", "[1]", "<", ">", "0", "1", "2", "0.5", "1e-3", "1e300", "sqrt(",
-                                 "tanh(", "exp(", "log(", "sin(", "cos(", "atan2(", "where(", "abs(", "clip(", "norm(",
+                                 ",", ".xyz", ".x", ".w", "[1]", "<", ">", "0", "1", "2", "0.5", "1e-3", "1e300",
+                                 "sqrt(", "tanh(", "exp(", "log(", "sin(", "cos(", "atan2(", "where(", "abs(", "clip(", "norm(",
                                  "cross(", "dot(", "to_body(", "to_space(", "min(", " ", "\n"};
 
 /// Words of the language, or bytes.
@@ -48,10 +48,12 @@ void try_series(const f::Program& torque, const double* y) {
   std::free(workspace);
   bool finite = true;
   for (const double x : truth) finite = finite && x - x == 0.0;
-  for (std::size_t n = 0; finite && n <= order; ++n)
-    for (std::size_t i = 0; i < states; ++i)
-      require(is_same(truth[n * states + i], rows[n * width + static_cast<std::size_t>(f::Table::column_of(static_cast<int>(i)))]),
-              "a table has the bits of its tape");
+  for (std::size_t n = 0; finite && n <= order; ++n) {
+    for (std::size_t i = 0; i < states; ++i) {
+      const auto column = static_cast<std::size_t>(f::Table::column_of(static_cast<int>(i)));
+      require(is_same(truth[n * states + i], rows[n * width + column]), "a table has the bits of its tape");
+    }
+  }
 }
 
 }  // namespace

@@ -31,7 +31,8 @@ Expr operator-(const Expr& a) { return make(a.graph(), -a.form()); }
 
 Expr operator*(const Expr& a, const Expr& b) {
   Graph* graph = graph_of(a, b);
-  return graph != nullptr ? Expr(*graph, graph->multiply(a.form(), b.form())) : Expr(a.form().constant * b.form().constant);
+  if (graph == nullptr) return Expr(a.form().constant * b.form().constant);
+  return Expr(*graph, graph->multiply(a.form(), b.form()));
 }
 
 Expr operator/(const Expr& a, const Expr& b) {

@@ -157,7 +157,9 @@ Form Graph::power(const Form& a, double exponent) {
   return apply(Op::power, a, exponent);
 }
 
-Form Graph::exponential(const Form& a) { return a.is_constant() ? Form(math::exp(a.constant)) : apply(Op::exponential, a); }
+Form Graph::exponential(const Form& a) {
+  return a.is_constant() ? Form(math::exp(a.constant)) : apply(Op::exponential, a);
+}
 
 Form Graph::logarithm(const Form& a) {
   if (!a.is_constant()) return apply(Op::logarithm, a);

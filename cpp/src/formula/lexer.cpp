@@ -46,7 +46,8 @@ void Lexer::next() {
     token_.kind = Token::Kind::name;
   } else {
     if (std::string_view("+-*/^()[],.<>").find(c) == std::string_view::npos) refuse("an operator, a name or a number");
-    const bool two = end < text_.size() && ((text_[end] == '=' && (c == '<' || c == '>')) || (c == '*' && text_[end] == '*'));
+    const char second = end < text_.size() ? text_[end] : ' ';
+    const bool two = ((c == '<' || c == '>') && second == '=') || (c == '*' && second == '*');
     if (two) ++end;
     token_.kind = Token::Kind::symbol;
   }

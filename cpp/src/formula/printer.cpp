@@ -18,7 +18,7 @@ class Printer {
   Printer(const Program& program, bool inlined) : program_(program), graph_(program.graph), inlined_(inlined) {
     for (const std::vector<Input>* inputs : {&program.parameters, &program.states})
       for (const Input& input : *inputs)
-        while (input.name.compare(0, prefix_.size(), prefix_) == 0 && input.name.size() > prefix_.size()) prefix_ += '_';
+        while (input.name.size() > prefix_.size() && input.name.starts_with(prefix_)) prefix_ += '_';
   }
 
   Text print() {

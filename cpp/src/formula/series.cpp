@@ -27,7 +27,8 @@ class Reference {
           fill_wave(tape_.waves()[index], t, unit, order_, &at(0, slot), slots_);
       }
       if (n == order_) return;
-      for (const StateSlot& state : tape_.state_slots()) at(n + 1, state.slot) = integrate(sum(state.rate, n), unit, n + 1);
+      for (const StateSlot& state : tape_.state_slots())
+        at(n + 1, state.slot) = integrate(sum(state.rate, n), unit, n + 1);
     }
   }
 

@@ -31,8 +31,8 @@ void check_vector(const Vector3d& found, const Vector3d& truth) {
 TEST_CASE("formula: a formula that is gravity in disguise is found") {
   for (const std::string text :
        {"-2 * cross([0.3, 0.2, 0.5], to_body([0, 0, 1]))",
-        "2 * cross([2 * (attitude.x * attitude.z - attitude.w * attitude.y), 2 * (attitude.y * attitude.z + attitude.w * "
-        "attitude.x), 1 - 2 * (attitude.x^2 + attitude.y^2)], [0.3, 0.2, 0.5])",
+        "2 * cross([2 * (attitude.x * attitude.z - attitude.w * attitude.y), 2 * (attitude.y * attitude.z + "
+        "attitude.w * attitude.x), 1 - 2 * (attitude.x^2 + attitude.y^2)], [0.3, 0.2, 0.5])",
         "dot(attitude, attitude) * cross(to_body([0, 0, 2]), [0.3, 0.2, 0.5])"}) {
     const Recognition found = find(text);
     REQUIRE(found.parts.size() == 1);
@@ -44,7 +44,8 @@ TEST_CASE("formula: a formula that is gravity in disguise is found") {
 
 TEST_CASE("formula: built-in torques are found in sums") {
   const Recognition found =
-      find("[0.1, 0.2, 0.3] - [0.5, 0.5, 0.4] * omega + to_body([1, 2, 0.5]) - cross([0.6, 0.4, 1], to_body([0, 0, 1]))");
+      find("[0.1, 0.2, 0.3] - [0.5, 0.5, 0.4] * omega + to_body([1, 2, 0.5]) - "
+           "cross([0.6, 0.4, 1], to_body([0, 0, 1]))");
   CHECK(found.is_whole);
   REQUIRE(found.parts.size() == 4);
   CHECK(found.parts[0].kind == Kind::damping);
@@ -73,8 +74,8 @@ TEST_CASE("formula: built-in torques are found in sums") {
 TEST_CASE("formula: the gravity gradient is found with its rate and phase") {
   Text text{"3 * 0.001^2 * cross(u, h) - 0.5 * omega", {}, {}, {},
             {{"u", "to_body([cos(0.001 * t + 0.25), sin(0.001 * t + 0.25), 0])"},
-             {"h", "[2 * u.x + 0.25 * u.y - 0.125 * u.z, 0.25 * u.x + 3 * u.y + 0.5 * u.z, -0.125 * u.x + 0.5 * u.y + 4 "
-                   "* u.z]"}}};
+             {"h", "[2 * u.x + 0.25 * u.y - 0.125 * u.z, 0.25 * u.x + 3 * u.y + 0.5 * u.z, -0.125 * u.x + "
+                   "0.5 * u.y + 4 * u.z]"}}};
   const Recognition found = recognise(parse(text), inertia());
   CHECK(found.is_whole);
   REQUIRE(found.parts.size() == 2);

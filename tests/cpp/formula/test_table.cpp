@@ -67,7 +67,8 @@ TEST_CASE("formula: tables have the bits of the reference at each level") {
     if (c.rows.empty()) continue;
     ++count;
     CAPTURE(c.text.torque);
-    const Program system = make_body_equations(bind_parameters(parse(c.text), {0.375, -1.25}), make_inertia(c.diagonal));
+    const Program torque = bind_parameters(parse(c.text), {0.375, -1.25});
+    const Program system = make_body_equations(torque, make_inertia(c.diagonal));
     const Program smooth = in_mode(system, find_mode(system, c.t, c.y.data()), true);
     for (const int order : {1, 2, 3, 4, 5, 8, 15, 22}) {
       CAPTURE(order);
@@ -79,7 +80,8 @@ TEST_CASE("formula: tables have the bits of the reference at each level") {
 }
 
 TEST_CASE("formula: the packing of the gravity gradient improves") {
-  const Text text{"3e-6 * cross(u, [20, 40, 52] * u)", {}, {}, {}, {{"u", "to_body([cos(1e-3 * t), sin(1e-3 * t), 0])"}}};
+  const Text text{"3e-6 * cross(u, [20, 40, 52] * u)", {}, {}, {},
+                  {{"u", "to_body([cos(1e-3 * t), sin(1e-3 * t), 0])"}}};
   const Tape tape(make_body_equations(parse(text), Vector3d(20, 40, 52).asDiagonal()));
   const Table plain(tape), packed(tape, 2000);
   CHECK(packed.count_picks() < plain.count_picks());

@@ -69,7 +69,8 @@ TEST_CASE("formula: a lambda gives the same on numbers and on symbols") {
     const Vec<T, 3> command = in.attitude.xyz() * (-in.p("kp") * in.attitude.w()) -
                               in.template p<3>("kd") * in.omega;
     Vec<T, 3> u;
-    for (std::size_t i = 0; i < 3; ++i) u[i] = clip(command[i], T(-0.05), T(0.05)) + formula::tanh(in.omega[i]) / norm(in.omega);
+    for (std::size_t i = 0; i < 3; ++i)
+      u[i] = clip(command[i], T(-0.05), T(0.05)) + formula::tanh(in.omega[i]) / norm(in.omega);
     return TorqueResult<T>{u - cross(in.omega, in.template s<3>("h")), {-u[0], -u[1], -u[2]}};
   };
   const Program program = trace(wheels, parameters, states);

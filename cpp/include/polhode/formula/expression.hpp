@@ -12,7 +12,7 @@
 
 namespace polhode::formula {
 
-/// A number under construction: a form of a graph's nodes. Generic code that runs on `double` runs on it, and is traced.
+/// A number under construction: a form of a graph's nodes. Generic code that runs on `double` runs on it: a trace.
 class Expr {
  public:
   Expr(double value = 0.0) : form_(value) {}   // NOLINT(google-explicit-constructor)

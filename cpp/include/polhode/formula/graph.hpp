@@ -46,8 +46,8 @@ struct Node {
 /// @throws InvalidInput for a constant that left float64's range
 void require_finite(const Form& form);
 
-/// Nodes without duplicates: equal operations on equal operands are one node. Operands precede their node. The functions
-/// fold constants, so an operation may come back as a form without a new node.
+/// Nodes without duplicates: equal operations on equal operands are one node. Operands precede their node. The
+/// functions fold constants, so an operation may come back as a form without a new node.
 ///
 /// The factor of a product's operand is taken out of the product: all of a single node's, else a power of two, so that
 /// no coefficient of a form is rounded by it.

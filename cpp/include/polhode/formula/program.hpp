@@ -19,7 +19,7 @@ struct Input {
   friend bool operator==(const Input&, const Input&) = default;
 };
 
-/// Numbers that follow one another in `inputs`, those of `name`: the first and the count; {-1, 0} if there is no such name.
+/// The numbers of `name` among those of all inputs: the first and the count; {-1, 0} if there is no such name.
 struct Place {
   int first, count;
 };
@@ -67,7 +67,7 @@ std::vector<bool> find_live(const Graph& graph, const std::vector<Form>& forms,
 /// The same nodes in the same order, with the same outputs and inputs: the same bits.
 bool is_same(const Program& a, const Program& b);
 
-/// A program without dead nodes: the inputs by their numbers first, then the nodes in the order of the given one.
+/// A program without dead nodes: the inputs by their numbers first, then the nodes in their old order.
 Program rewrite(const Program& program, const Change& change = {});
 /// Parameters become numbers: one value for each number of all parameters.
 Program bind_parameters(const Program& program, const std::vector<double>& values);
@@ -75,7 +75,7 @@ Program bind_parameters(const Program& program, const std::vector<double>& value
 /// @param but_carried  not those of a vector that a tape carries
 Program expand_rotations(const Program& program, bool but_carried = false);
 
-/// The equations of a body with a torque: w' = I^-1 (tau - w x I w), q' = q w / 2, and the rates of the torque's states.
+/// The equations of a body with a torque: w' = I^-1 (tau - w x I w), q' = q w / 2, and the rates of its states.
 Program make_body_equations(const Program& torque, const Matrix3d& inertia_B);
 
 /// Values of a program's outputs on doubles, for methods that need no series.

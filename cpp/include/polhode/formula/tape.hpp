@@ -80,8 +80,8 @@ struct CarriedVector {
 /// v' = v x w. It starts anew from the attitude at each step. This needs fewer levels than products of the attitude.
 class Tape {
  public:
-  /// @param system  without parameters (bind_parameters() them) and without switches (in_mode()); outputs are the rates of states
-  ///                0, 1, ..., and after `states` of them the extras, which are returned but not integrated
+  /// @param system  without parameters (bind_parameters()) and without switches (in_mode()); outputs are the rates
+  ///                of states 0, 1, ..., and after `states` of them the extras, returned but not integrated
   /// @throws InvalidInput for a parameter or a switch
   Tape(const Program& system, int states);
   explicit Tape(const Program& system) : Tape(system, static_cast<int>(system.outputs.size())) {}
