@@ -80,48 +80,73 @@ double Polynomial::coefficient(const Monomial& monomial) const {
   return found == terms_.end() || found->second.is_zero() ? 0.0 : found->second.value.hi;
 }
 
-std::optional<TorquePolynomials> expand_torque(const Program& torque) {
-  const Program program = expand_rotations(torque);
-  const Graph& graph = program.graph;
-  const std::vector<Form> wanted(program.outputs.begin(), program.outputs.begin() + 3);
+TorquePolynomials expand_torque(const Program& torque) {
+  TorquePolynomials found;
+  found.rest = expand_rotations(torque);
+  const Graph& graph = found.rest.graph;
   const auto find_node_wave = [&](int node) -> std::optional<Wave> {
     const Node& n = graph[node];
     if (n.op != Op::sine && n.op != Op::cosine) return std::nullopt;
     return find_wave(graph, n.operands[0]);
   };
-  const std::vector<bool> live = find_live(graph, wanted, [&](int node) { return find_node_wave(node).has_value(); });
-  TorquePolynomials found;
-  std::vector<Polynomial> of(live.size());
-  const auto sum = [&](const Form& form) {
-    Polynomial p(form.constant);
-    for (const Term& term : form.terms) p.add(of[static_cast<std::size_t>(term.node)], term.factor);
-    return p;
-  };
-  for (int i = 0; i < graph.size(); ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    if (!live[at]) continue;
+  std::vector<std::optional<Polynomial>> of(static_cast<std::size_t>(graph.size()));
+  const auto at = [&](int node) -> std::optional<Polynomial>& { return of[static_cast<std::size_t>(node)]; };
+  const auto expand = [&](int i) -> std::optional<Polynomial> {
     const Node& n = graph[i];
-    if (n.op == Op::constant) {
-      of[at] = Polynomial(n.constant);
-    } else if (n.op == Op::state && n.index < first_extra) {
-      of[at] = Polynomial::variable(static_cast<std::size_t>(n.index));
-    } else if (n.op == Op::linear) {
-      of[at] = sum(graph.linear(i));
-    } else if (n.op == Op::multiply) {
-      const auto product = Polynomial::multiply(of[static_cast<std::size_t>(n.operands[0])],
-                                                of[static_cast<std::size_t>(n.operands[1])]);
-      if (!product) return std::nullopt;
-      of[at] = *product;
-    } else if (const std::optional<Wave> wave = find_node_wave(i)) {
-      if (found.wave && (found.wave->phase != wave->phase || found.wave->rate != wave->rate)) return std::nullopt;
-      found.wave = wave;
-      of[at] = Polynomial::variable(n.op == Op::cosine ? cosine_place : sine_place);
-    } else {
+    if (n.op == Op::constant) return Polynomial(n.constant);
+    if (n.op == Op::state && n.index < first_extra) return Polynomial::variable(static_cast<std::size_t>(n.index));
+    if (n.op == Op::linear) {
+      Polynomial sum(graph.linear(i).constant);
+      for (const Term& term : graph.linear(i).terms) {
+        if (!at(term.node)) return std::nullopt;
+        sum.add(*at(term.node), term.factor);
+      }
+      return sum;
+    }
+    if (n.op == Op::multiply) {
+      const std::optional<Polynomial>&a = at(n.operands[0]), &b = at(n.operands[1]);
+      return a && b ? Polynomial::multiply(*a, *b) : std::nullopt;
+    }
+    const std::optional<Wave> wave = find_node_wave(i);
+    if (!wave || (found.wave && (found.wave->phase != wave->phase || found.wave->rate != wave->rate)))
       return std::nullopt;
+    found.wave = wave;
+    return Polynomial::variable(n.op == Op::cosine ? cosine_place : sine_place);
+  };
+  for (int i = 0; i < graph.size(); ++i) at(i) = expand(i);
+  for (std::size_t i = 0; i < 3; ++i) {
+    Form& output = found.rest.outputs[i];
+    found.tau[i] = Polynomial(output.constant);
+    output.constant = 0.0;
+    std::erase_if(output.terms, [&](const Term& term) {
+      if (!at(term.node)) return false;
+      found.tau[i].add(*at(term.node), term.factor);
+      return true;
+    });
+  }
+  return found;
+}
+
+Program add_polynomials(Program torque, const std::array<Polynomial, 3>& tau, const std::optional<Wave>& wave) {
+  Graph& graph = torque.graph;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (const auto& [monomial, coefficient] : tau[i].terms()) {
+      if (coefficient.is_zero()) continue;
+      Form product(coefficient.value.hi);
+      for (std::size_t place = 0; place < monomial.size(); ++place) {
+        for (int k = 0; k < monomial[place]; ++k) {
+          if (place < cosine_place) {
+            product = graph.multiply(product, graph.state(static_cast<int>(place)));
+          } else {
+            const Form angle = graph.time() * wave->rate + Form(wave->phase);
+            product = graph.multiply(product, place == cosine_place ? graph.cosine(angle) : graph.sine(angle));
+          }
+        }
+      }
+      torque.outputs[i] = torque.outputs[i] + product;
     }
   }
-  for (std::size_t i = 0; i < 3; ++i) found.tau[i] = sum(wanted[i]);
-  return found;
+  return rewrite(torque);
 }
 
 }  // namespace polhode::formula

@@ -48,11 +48,15 @@ class Polynomial {
   std::map<Monomial, Coefficient> terms_;
 };
 
-/// The first three outputs as polynomials; nothing where they are none, or depend on states of their own.
+/// The first three outputs: polynomials, and the terms that are none.
 struct TorquePolynomials {
   std::array<Polynomial, 3> tau;
   std::optional<Wave> wave;
+  Program rest;   ///< the other terms, and the further outputs
 };
-std::optional<TorquePolynomials> expand_torque(const Program& torque);
+TorquePolynomials expand_torque(const Program& torque);
+
+/// Adds polynomials to the first three outputs.
+Program add_polynomials(Program torque, const std::array<Polynomial, 3>& tau, const std::optional<Wave>& wave);
 
 }  // namespace polhode::formula

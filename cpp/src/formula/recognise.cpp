@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "formula/polynomial.hpp"
 #include "polhode/core/error.hpp"
@@ -105,8 +106,8 @@ void find_in_attitude(const std::array<Polynomial, 3>& tau, std::vector<KnownTor
 }
 
 void subtract(const KnownTorque& known, const Matrix3d& I, std::array<Polynomial, 3>& tau) {
-  const auto polynomials = expand_torque(make_program(known, I));
-  for (std::size_t i = 0; i < 3; ++i) tau[i].add(polynomials->tau[i], -1.0);
+  const TorquePolynomials polynomials = expand_torque(make_program(known, I));
+  for (std::size_t i = 0; i < 3; ++i) tau[i].add(polynomials.tau[i], -1.0);
 }
 
 std::size_t count_terms(const std::array<Polynomial, 3>& tau) {
@@ -122,15 +123,11 @@ std::size_t count_terms(const std::array<Polynomial, 3>& tau) {
 Recognition recognise(const Program& torque, const Matrix3d& inertia_B) {
   if (!torque.parameters.empty()) throw InvalidInput("formula", "bound parameters", "free ones");
   Recognition found;
-  std::optional<TorquePolynomials> expanded = expand_torque(torque);
-  if (!expanded) return found;
-  std::array<Polynomial, 3>& rest = expanded->tau;
+  TorquePolynomials expanded = expand_torque(torque);
+  std::array<Polynomial, 3>& rest = expanded.tau;
   std::vector<KnownTorque> candidates;
-  if (expanded->wave && expanded->wave->rate != 0.0) {
-    const KnownTorque gradient{.kind = Kind::gravity_gradient, .rate = expanded->wave->rate,
-                               .phase = expanded->wave->phase};
-    candidates.push_back(gradient);
-  }
+  if (const std::optional<Wave>& wave = expanded.wave)
+    candidates.push_back({.kind = Kind::gravity_gradient, .rate = wave->rate, .phase = wave->phase});
   // Together, because torques in space share terms, and one of them alone may leave as many as there were.
   const auto take = [&] {
     std::array<Polynomial, 3> less = rest;
@@ -148,6 +145,12 @@ Recognition recognise(const Program& torque, const Matrix3d& inertia_B) {
   find_in_attitude(rest, candidates);
   take();
   found.is_whole = count_terms(rest) == 0;
+  for (std::size_t i = 0; i < 3; ++i) found.is_whole = found.is_whole && expanded.rest.outputs[i].is_zero();
+  if (found.parts.empty() && !found.is_whole) {
+    found.rest = torque;
+  } else {
+    found.rest = add_polynomials(std::move(expanded.rest), rest, expanded.wave);
+  }
   return found;
 }
 

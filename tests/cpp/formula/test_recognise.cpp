@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <Eigen/Geometry>
 #include <string>
 
 #include "polhode/formula/facts.hpp"
@@ -96,9 +97,26 @@ TEST_CASE("formula: what vanishes identically is found, and what does not is not
   for (const std::string other : {"tanh(omega)", "norm(omega) * omega", "omega * omega * omega", "attitude.xyz",
                                   "-cross([0.6, 0.4, 1], to_body([1, 0, 0]))", "where(omega.x > 0, omega, -omega)"})
     CHECK_FALSE(find(other).is_whole);
-  // A part is split off; the rest stays.
-  const Recognition part = find("-0.5 * omega + 0.1 * omega * norm(omega, 1)");
-  CHECK_FALSE(part.is_whole);
+}
+
+TEST_CASE("formula: known parts are split off and the rest stays, with the same sum") {
+  const Program torque = parse_torque("-0.5 * omega + 0.1 * omega * norm(omega, 1) + omega * omega * omega.z + "
+                                      "cross(to_body([0, 0, 1]), [0.6, 0.4, 1])");
+  const Recognition found = recognise(torque, inertia());
+  CHECK_FALSE(found.is_whole);
+  REQUIRE(found.parts.size() == 2);
+  CHECK(found.parts[0].kind == Kind::damping);
+  CHECK(found.parts[1].kind == Kind::gravity);
+  CHECK(find_facts(found.rest).uses_rates);
+  CHECK_FALSE(find_facts(found.rest).uses_attitude);
+  const double y[7] = {0.3, -0.2, 0.5, 0.1, 0.5, 0.7, 0.5};
+  double whole[3], rest[3];
+  Evaluator evaluate(torque), evaluate_rest(found.rest);
+  evaluate(0.0, y, nullptr, whole), evaluate_rest(0.0, y, nullptr, rest);
+  const Vector3d omega(y[0], y[1], y[2]);
+  const Vector3d up = rotate({-y[3], -y[4], -y[5], y[6]}, {0, 0, 1});
+  const Vector3d sum = Vector3d(rest) - found.parts[0].matrix * omega - found.parts[1].vector.cross(up);
+  CHECK((sum - Vector3d(whole)).norm() <= 1e-15);
 }
 
 TEST_CASE("formula: facts by structure") {

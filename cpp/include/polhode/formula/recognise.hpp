@@ -26,12 +26,15 @@ struct KnownTorque {
 
 struct Recognition {
   std::vector<KnownTorque> parts;
-  /// The parts are the whole torque: what is left vanishes identically but for the rounding of its coefficients.
+  /// What is left of the torque, and the rates of its own states.
+  Program rest;
+  /// The rest of the torque vanishes identically, but for the rounding of its coefficients.
   bool is_whole = false;
 };
 
 /// Expands a torque as a polynomial in w and q modulo |q| = 1, up to degree 4, and finds the built-in torques in it.
-/// Parameters must be bound. A torque that is identically zero is whole and has no parts.
+/// Terms that are no such polynomials stay in the rest. Parameters must be bound. A torque that is identically zero is
+/// whole and has no parts.
 Recognition recognise(const Program& torque, const Matrix3d& inertia_B);
 
 }  // namespace polhode::formula
