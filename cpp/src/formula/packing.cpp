@@ -37,11 +37,27 @@ Packing::Packing(const Tape& tape) : offsets_(tape.slots().size(), -1), levels_(
     group.slots.push_back(static_cast<int>(i));
   }
   for (auto& [key, group] : found) {
+    sort_by_use(tape, group.slots);
     group.first_octet = octets_;
     octets_ += (static_cast<int>(group.slots.size()) + 7) / 8;
     place(group);
     groups_.push_back(std::move(group));
   }
+}
+
+void Packing::sort_by_use(const Tape& tape, std::vector<int>& slots) const {
+  std::map<int, std::pair<int, int>> use;
+  for (const StateSlot& state : tape.state_slots()) {
+    int turn = 0;
+    for (const Term& term : state.rate.terms)
+      if (tape.slots()[static_cast<std::size_t>(term.node)].kind != SlotKind::state)
+        use.try_emplace(term.node, turn++, offset_of(state.slot));
+  }
+  const auto key = [&](int slot) {
+    const auto found = use.find(slot);
+    return found == use.end() ? std::pair(1 << 20, slot) : found->second;
+  };
+  std::stable_sort(slots.begin(), slots.end(), [&](int a, int b) { return key(a) < key(b); });
 }
 
 void Packing::place(const Group& group) {

@@ -19,9 +19,6 @@ class Packing {
  public:
   explicit Packing(const Tape& tape);
 
-  /// Exchanges slots within their groups where that saves picks.
-  void improve(const Tape& tape, int effort);
-
   /// Where a slot is among all values.
   int offset_of(int slot) const { return offsets_[static_cast<std::size_t>(slot)]; }
   int octet_of(int slot) const { return offset_of(slot) / 8; }
@@ -31,11 +28,12 @@ class Packing {
   int given() const { return given_; }
   int waves() const { return waves_; }
   int octets() const { return octets_; }
-  int level_of(int slot) const { return levels_[static_cast<std::size_t>(slot)]; }
 
  private:
   void find_levels(const Tape& tape);
   void place(const Group& group);
+  /// Operations that are the first terms of all rates side by side, then those that are the second terms, ...
+  void sort_by_use(const Tape& tape, std::vector<int>& slots) const;
 
   std::vector<int> offsets_, levels_;
   std::vector<Group> groups_;
@@ -46,7 +44,6 @@ class Packing {
 std::vector<Pick> pick_operands(const std::vector<int>& offsets);
 
 /// Picks of sums, one form a lane, by offsets. Sorts the terms of the forms as the picks have them.
-/// @param offset_of  of the slots that the terms name
 std::vector<Pick> pick_terms(std::vector<Form*> lanes, const Packing& packing);
 
 }  // namespace polhode::formula

@@ -102,9 +102,8 @@ class Writer {
 
 }  // namespace
 
-Table::Table(Tape tape, int effort) : tape_(std::move(tape)) {
-  Packing packing(tape_);
-  if (effort > 0) packing.improve(tape_, effort);
+Table::Table(Tape tape) : tape_(std::move(tape)) {
+  const Packing packing(tape_);
   Writer writer(tape_, packing, parts_);
   writer.write();
   writer.order_terms(tape_);

@@ -56,8 +56,7 @@ struct TableParts {
 /// (w_1, w_2, w_3, 0, x, y, z, w).
 class Table {
  public:
-  /// @param effort  tries of a better packing: some thousand pay for a run of some thousand steps
-  explicit Table(Tape tape, int effort = 0);
+  explicit Table(Tape tape);
 
   /// The tape with its terms in the table's order: compute_series() of it has the bits of the table.
   const Tape& tape() const { return tape_; }
