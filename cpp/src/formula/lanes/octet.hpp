@@ -18,7 +18,7 @@ namespace polhode::formula::POLHODE_ISA {
 
 #if defined(__AVX512DQ__)
 
-constexpr int octets_at_once = 4;   ///< of which sums of two rows fit into the registers
+constexpr int octets_at_once = 2;   ///< whose sums of two rows are under way at a time, by measurement
 struct Octet {
   __m512d v;
 };
@@ -45,7 +45,7 @@ POLHODE_INLINE Octet gather(const double* values, const Pick* picks, Range range
 
 #if defined(__AVX2__)
 
-constexpr int octets_at_once = 2;
+constexpr int octets_at_once = 1;
 struct Part {
   __m256d v;
 };
@@ -68,8 +68,12 @@ struct Part {
   typedef double Vector __attribute__((vector_size(16)));
   Vector v;
 };
-POLHODE_INLINE Part load_part(const double* p) { return {*reinterpret_cast<const Part::Vector*>(p)}; }
-POLHODE_INLINE void store_part(double* p, Part a) { *reinterpret_cast<Part::Vector*>(p) = a.v; }
+POLHODE_INLINE Part load_part(const double* p) {
+  Part part;
+  __builtin_memcpy(&part.v, __builtin_assume_aligned(p, 16), sizeof part.v);
+  return part;
+}
+POLHODE_INLINE void store_part(double* p, Part a) { __builtin_memcpy(__builtin_assume_aligned(p, 16), &a.v, sizeof a.v); }
 POLHODE_INLINE Part all_part(double a) { return {Part::Vector{a, a}}; }
 POLHODE_INLINE Part add(Part a, Part b) { return {a.v + b.v}; }
 POLHODE_INLINE Part multiply(Part a, Part b) { return {a.v * b.v}; }

@@ -94,9 +94,6 @@ class Expansion {
   POLHODE_INLINE void sum_older(int n) {
     int o = 0;
     for (; o + octets_at_once <= stores_; o += octets_at_once) sum_group<octets_at_once>(n, o);
-    if constexpr (octets_at_once > 2) {
-      if (o + 2 <= stores_) sum_group<2>(n, o), o += 2;
-    }
     if constexpr (octets_at_once > 1) {
       if (o < stores_) sum_group<1>(n, o);
     }
