@@ -68,12 +68,9 @@ struct Part {
   typedef double Vector __attribute__((vector_size(16)));
   Vector v;
 };
-POLHODE_INLINE Part load_part(const double* p) {
-  Part part;
-  __builtin_memcpy(&part.v, __builtin_assume_aligned(p, 16), sizeof part.v);
-  return part;
-}
-POLHODE_INLINE void store_part(double* p, Part a) { __builtin_memcpy(__builtin_assume_aligned(p, 16), &a.v, sizeof a.v); }
+typedef double Stored __attribute__((vector_size(16), may_alias));   // memory that is read as doubles too
+POLHODE_INLINE Part load_part(const double* p) { return {*reinterpret_cast<const Stored*>(p)}; }
+POLHODE_INLINE void store_part(double* p, Part a) { *reinterpret_cast<Stored*>(p) = a.v; }
 POLHODE_INLINE Part all_part(double a) { return {Part::Vector{a, a}}; }
 POLHODE_INLINE Part add(Part a, Part b) { return {a.v + b.v}; }
 POLHODE_INLINE Part multiply(Part a, Part b) { return {a.v * b.v}; }
