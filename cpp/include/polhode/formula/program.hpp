@@ -81,7 +81,8 @@ Program make_body_equations(const Program& torque, const Matrix3d& inertia_B);
 /// Values of a program's outputs on doubles, for methods that need no series.
 class Evaluator {
  public:
-  explicit Evaluator(const Program& program);
+  explicit Evaluator(const Program& program);   ///< which must live as long
+  explicit Evaluator(Program&&) = delete;
 
   /// @param y  the states by their numbers, the attitude of unit length
   void operator()(double t, const double* y, const double* parameters, double* outputs);
