@@ -49,7 +49,7 @@ def methods() -> str:
 def models() -> str:
     """Return the closed forms."""
     return table(("model", "what it is", "source"),
-                 ((code(name), doc, source) for name, doc, source in ph._core.exact_models()))
+                 ((code(form["name"]), form["doc"], form["source"]) for form in ph._core.closed_forms()))
 
 
 def torques() -> str:

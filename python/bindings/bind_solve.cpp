@@ -31,6 +31,7 @@ py::object view(const py::object& answer, const std::vector<double>& values, py:
 struct Answer {
   Motion motion;
   Wanted want;
+  PlannedScene planned;   // what ran
 };
 
 /// Bounds of a proof; None without one.
@@ -41,11 +42,16 @@ py::object view_part(const py::object& self) {
               answer.motion.plan.proof && (columns == 3 ? answer.want.omega : answer.want.attitude));
 }
 
-std::unique_ptr<Answer> solve_scene(const Scene& scene, const py::dict& given) {
+/// @param plan  a PlannedScene of this scene that is to run; None to plan
+std::unique_ptr<Answer> solve_scene(const Scene& scene, const py::dict& given, py::handle plan) {
   SolveOptions options = to_solve_options(given);
   if (!options.progress) options.progress = make_progress(py::none());
+  const auto* made = plan.is_none() ? nullptr : &plan.cast<const PlannedScene&>();
   const WithoutGil nogil;   // Python callables take it back for themselves
-  return std::unique_ptr<Answer>(new Answer{solve(scene, options), scene.want()});
+  PlannedScene planned = made != nullptr ? *made : PlannedScene(scene, options);
+  Motion motion = planned.run(options);
+  if (made == nullptr) motion.stats += planned.cost();
+  return std::unique_ptr<Answer>(new Answer{std::move(motion), scene.want(), std::move(planned)});
 }
 
 py::dict describe_stats(const Motion& motion) {
@@ -110,6 +116,7 @@ void bind_solve(py::module_& m) {
                                const Motion& motion = answer.motion;
                                return describe_plan(motion.plan, motion.state, motion.rtol_used);
                              })
+      .def_property_readonly("planned", [](const Answer& answer) { return answer.planned; })
       .def_property_readonly("error", [](const Answer& answer) { return answer.motion.error; })
       .def_property_readonly("error_kind", [](const Answer& answer) { return answer.motion.error_kind; })
       .def_property_readonly("asked", [](const Answer& answer) { return answer.motion.asked; })
@@ -140,7 +147,7 @@ void bind_solve(py::module_& m) {
         return py::make_tuple(omega, attitude);
       });
 
-  m.def("solve", &solve_scene, py::arg("scene"), py::arg("options"));
+  m.def("solve", &solve_scene, py::arg("scene"), py::arg("options"), py::arg("plan") = py::none());
 
   m.def("method_refusal", [](const std::string& method, const Scene& scene) { return compute_refusal(method, scene); },
         "The reason why a method cannot integrate a scene, or an empty string.");

@@ -4,6 +4,7 @@
 
 #include "bind_solve_options.hpp"
 #include "gil.hpp"
+#include "polhode/exact/closed_forms.hpp"
 #include "polhode/solve/closed_form.hpp"
 
 namespace polhode::python {
@@ -59,20 +60,34 @@ py::dict describe_piece(const PiecePlan& piece) {
   all["method"] = piece.method;
   all["turns"] = piece.turns;
   all["predicted_seconds"] = piece.predicted_seconds;
+  all["ran"] = piece.ran.empty() ? py::object(py::none()) : py::object(py::str(piece.ran));
   return all;
 }
 
-py::dict make_report(const Scene& scene, const py::dict& options) {
+/// The closed form as the class that evaluates it.
+py::object to_python(const ClosedForm* form) {
+#define POLHODE_CAST(name, type) \
+  if (const auto* found = dynamic_cast<const ClosedFormOf<type>*>(form)) return py::cast(found->motion());
+  POLHODE_CLOSED_FORMS(POLHODE_CAST)
+#undef POLHODE_CAST
+  return py::none();
+}
+
+std::unique_ptr<PlannedScene> make_planned(const Scene& scene, const py::dict& options) {
   SolveOptions chosen = to_solve_options(options);
   if (!chosen.progress) chosen.progress = make_progress(py::none());   // pilot runs heed Ctrl-C
+  const WithoutGil nogil;   // Python callables take it back for themselves
+  return std::make_unique<PlannedScene>(scene, chosen);
+}
+
+py::dict make_report(const PlannedScene& planned) {
   const PlanReport report = [&] {
-    const WithoutGil nogil;   // Python callables take it back for themselves
-    return explain_plan(scene, chosen);
+    const WithoutGil nogil;
+    return planned.explain();
   }();
   py::list candidates;
   for (const Candidate& candidate : report.candidates) candidates.append(describe_candidate(candidate));
   py::dict all;
-  all["plan"] = describe_plan(report.plan, report.plan.state, report.plan.rtol);
   all["facts"] = describe_facts(report.facts);
   all["candidates"] = candidates;
   all["reasons"] = py::cast(report.reasons);
@@ -104,14 +119,38 @@ void bind_solve_plan(py::module_& m) {
              return Factors{CostFactors(factors.begin(), factors.end())};
            }),
            py::arg("factors"));
-  m.def("plan", &make_report, py::arg("scene"), py::arg("options"));
-  m.def("exact_models", [] {
+  py::class_<PlannedScene>(m, "PlannedScene", "A scene and what was decided for it, once.")
+      .def(py::init(&make_planned), py::arg("scene"), py::arg("options"))
+      .def_property_readonly("parts", [](const PlannedScene& planned) {
+        return describe_plan(planned.plan(), planned.plan().state, planned.plan().rtol);
+      })
+      .def_property_readonly("report", &make_report);
+  m.def("closed_forms", [] {
     py::list list;
-    for (const ExactModel& model : exact_models()) {
-      list.append(py::make_tuple(std::string(model.name), std::string(model.doc), std::string(model.source)));
+    for (const ClosedFormRecord* form : closed_forms()) {
+      py::dict record;
+      record["name"] = std::string(form->name);
+      record["type"] = std::string(form->type);
+      record["doc"] = std::string(form->doc);
+      record["source"] = std::string(form->source);
+      list.append(record);
     }
     return list;
-  }, "The closed forms: name, doc, source.");
+  }, "The closed forms, simplest first: name, type (the class), doc, source.");
+  m.def("find_closed_form", [](const Scene& scene) { return to_python(find_closed_form(scene, compute_facts(scene)).get()); },
+        py::arg("scene"), "The closed form that holds for a scene without windows, as its class; None if none does.");
+  m.def("closed_form_refusal", [](const Scene& scene, const std::string& type) {
+    const Facts facts = compute_facts(scene);
+    const ClosedFormRecord* found = find_closed_form_record(scene, facts);
+    if (found != nullptr && found->type == type) return std::string();
+    std::string why;
+    for (const ClosedFormRecord* form : closed_forms()) {
+      if (form->type != type) continue;
+      const Refusal refusal = form->refuse(scene, facts, Words::yes);
+      why = refusal ? refusal.why : "also holds, but " + std::string(found->name) + " is simpler";
+    }
+    return why;
+  }, py::arg("scene"), py::arg("type"), "Why a class of closed forms is not that of a scene; empty if it is.");
 }
 
 }  // namespace polhode::python

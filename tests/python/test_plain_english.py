@@ -61,7 +61,7 @@ def helps():
 def records():
     """The descriptions of methods, closed forms and torques, and the needs of methods."""
     found = {record["name"]: record["doc"] for record in [*ph.methods(), *ph.torques.records()]}
-    found |= {name: doc for name, doc, _ in ph._core.exact_models()}
+    found |= {form["name"]: form["doc"] for form in ph._core.closed_forms()}
     return found | {f"{record['name']} needs": record["needs"] for record in ph.methods()}
 
 

@@ -337,7 +337,7 @@ def test_bad_options_are_refused(options):
         ph.solve(scene("S5"), **options)
 
 
-@pytest.mark.parametrize("act", [ph._core.solve, ph._core.plan])
+@pytest.mark.parametrize("act", [ph._core.solve, ph._core.PlannedScene])
 def test_the_core_refuses_an_option_that_it_does_not_know(act):
     with pytest.raises(ph.InvalidInput, match="acuracy"):
         act(scene("S5"), {"acuracy": 1e-6})

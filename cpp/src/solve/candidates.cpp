@@ -13,15 +13,6 @@
 namespace polhode {
 namespace {
 
-// Costs of a closed form [s], by benchmarks/planner/fit.py.
-struct FormCost {
-  std::string_view model;
-  double start, sample;   ///< of one set-up, and of one sample
-};
-constexpr FormCost free_cost{"", 1.5e-6, 8e-9};
-constexpr FormCost form_costs[] = {{"heavy_top", 3.6e-6, 9e-9},  {"heavy_gyrostat", 3.6e-6, 3.5e-8},
-                                   {"gyrostat", 2e-5, 1.2e-8},   {"damped_free", 2e-6, 3.5e-8},
-                                   {"pendulum", 1e-5, 1e-8}};
 // Decay x span from which an implicit method may be chosen: below, stability limits no explicit step.
 constexpr double least_implicit_stiffness = 50.0;
 
@@ -119,11 +110,11 @@ Candidate evaluate_method(const Scene& scene, const Facts& facts, const SolveOpt
 
 Candidate evaluate_closed_form(const Scene& scene, const ClosedForm& form, const Facts& facts,
                                const SolveOptions& options) {
-  Candidate candidate{.name = std::string(form.model()), .exact = true};
-  candidate.predicted_error = compute_closed_form_error(scene, facts, form);
+  Candidate candidate{.name = std::string(form.name()), .exact = true};
+  candidate.predicted_error = form.measure_error(scene, facts);
   candidate.predicted_seconds =
       find_factor(options.cost_factors, candidate.name) * solve_seconds +
-      predict_closed_form(candidate.name, 1 + count_error_set_ups(scene, facts, candidate.name),
+      predict_closed_form(form.record(), 1 + form.record().count_error_set_ups(scene, facts),
                           static_cast<double>(scene.times().size()), options.cost_factors);
   return candidate;
 }
@@ -136,11 +127,8 @@ double find_atol(const ode::MethodRecord& record, const Scene& scene, double rto
   return rtol * std::min({1.0, scene.omega().norm(), 1.0 / span});
 }
 
-double predict_closed_form(std::string_view model, int set_ups, double samples, const CostFactors* factors) {
-  const auto* found = std::find_if(std::begin(form_costs), std::end(form_costs),
-                                   [model](const FormCost& cost) { return cost.model == model; });
-  const FormCost& cost = found == std::end(form_costs) ? free_cost : *found;
-  return (cost.start * set_ups + cost.sample * samples) * find_factor(factors, model);
+double predict_closed_form(const ClosedFormRecord& form, int set_ups, double samples, const CostFactors* factors) {
+  return (form.set_up_seconds * set_ups + form.sample_seconds * samples) * find_factor(factors, form.name);
 }
 
 double find_factor(const CostFactors* factors, std::string_view name) {

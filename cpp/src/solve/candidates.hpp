@@ -36,7 +36,7 @@ Candidate evaluate_closed_form(const Scene& scene, const ClosedForm& form, const
 /// because it would not lengthen their steps.
 double find_atol(const ode::MethodRecord& record, const Scene& scene, double rtol);
 /// The time of a closed form and of the changed ones that bound its error [s].
-double predict_closed_form(std::string_view model, int set_ups, double samples, const CostFactors* factors);
+double predict_closed_form(const ClosedFormRecord& form, int set_ups, double samples, const CostFactors* factors);
 Candidate choose_method(const Scene& scene, const Facts& facts, const SolveOptions& options);
 Plan make_method_plan(const Scene& scene, const Facts& facts, const SolveOptions& options);
 Plan make_exact_plan(const Scene& scene, const ClosedForm& form, const Facts& facts, const SolveOptions& options);

@@ -26,7 +26,7 @@ struct Rows {
 
 /// The rows from a perturbed start, if it has a closed form.
 std::optional<Rows> find_rows(const Scene& piece) {
-  const std::optional<ClosedForm> form = find_closed_form(piece, compute_facts(piece));
+  const std::shared_ptr<const ClosedForm> form = find_closed_form(piece, compute_facts(piece));
   return form ? std::optional(Rows(piece, *form)) : std::nullopt;
 }
 

@@ -12,6 +12,7 @@
 #include "solve/certify_carried.hpp"
 #include "solve/certify_pair.hpp"
 #include "solve/pilot.hpp"
+#include "solve/planned_run.hpp"
 
 namespace polhode {
 namespace {
@@ -231,7 +232,7 @@ class Certifier {
 
   Motion finish() {
     Motion& motion = best_.motion;
-    motion.plan = decision_.plan;
+    motion.plan = describe_run(decision_, motion);
     motion.asked = accuracy_;
     motion.stats = runs_.stats();
     motion.runs = runs_.runs();

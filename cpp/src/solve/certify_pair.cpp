@@ -6,7 +6,7 @@
 
 #include "polhode/math/detail/functions.hpp"
 #include "solve/candidates.hpp"
-#include "solve/distance.hpp"
+#include "solve/form/distance.hpp"
 #include "solve/perturb.hpp"
 
 namespace polhode {

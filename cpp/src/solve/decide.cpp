@@ -71,6 +71,4 @@ Decision decide(const Scene& scene, const SolveOptions& options) {
   return decision;
 }
 
-Plan make_plan(const Scene& scene, const SolveOptions& options) { return decide(scene, options).plan; }
-
 }  // namespace polhode

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <optional>
+#include <memory>
 
 #include "polhode/ode/problem.hpp"
 #include "polhode/solve/closed_form.hpp"
@@ -16,7 +16,7 @@ struct Decision {
   Facts facts = {};                        ///< of pieces: `turns` gives the forecast of all pieces together
   Plan plan = {};
   Pieces pieces = {};                      ///< empty if the span is not cut
-  std::optional<ClosedForm> form = {};     ///< of the whole span
+  std::shared_ptr<const ClosedForm> form = {};   ///< of the whole span
   std::size_t slow_forms = 0;              ///< pieces whose closed form holds, but takes longer than steps
   double turns = 0.0;                      ///< revolutions of all pieces together
   bool looked = false;                     ///< the pilot run looked at the user's own torques over the whole span

@@ -98,10 +98,10 @@ Motion evaluate(const Scene& scene, const SolveOptions& options, const ClosedFor
 
 }  // namespace
 
-Motion run_closed_form(const Scene& scene, const Facts& facts, const SolveOptions& options, ClosedForm form,
-                       const Plan& plan) {
+Motion run_closed_form(const Scene& scene, const Facts& facts, const SolveOptions& options,
+                       std::shared_ptr<const ClosedForm> form, const Plan& plan) {
   const double error = plan.predicted_error;
-  Motion motion = options.events.empty() ? evaluate(scene, options, form) : run_with_events(scene, options, form);
+  Motion motion = options.events.empty() ? evaluate(scene, options, *form) : run_with_events(scene, options, *form);
   motion.plan = plan;
   motion.model = plan.model, motion.state = plan.state;
   motion.asked = plan.accuracy;
@@ -110,7 +110,7 @@ Motion run_closed_form(const Scene& scene, const Facts& facts, const SolveOption
   if (options.events.empty()) motion.t_reached = scene.t0() + facts.after;
   motion.t_begin = scene.t0() - facts.before;
   motion.has_dense = options.dense;
-  if (options.dense) motion.closed_form = std::make_shared<const ClosedForm>(std::move(form));
+  if (options.dense) motion.closed_form = std::move(form);
   if (motion.message.empty())
     motion.message = "evaluated at every time by the closed form; its rounding error is the bound";
   if (error > motion.asked && motion.status == Status::finished) {

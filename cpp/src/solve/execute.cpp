@@ -29,7 +29,7 @@ Motion run_by_tolerance(const Decision& decision, const SolveOptions& options) {
 
 Motion execute(const Decision& decision, const SolveOptions& options) {
   if (is_by_tolerance(options)) return run_by_tolerance(decision, options);
-  if (decision.form) return run_closed_form(decision.scene, decision.facts, options, *decision.form, decision.plan);
+  if (decision.form) return run_closed_form(decision.scene, decision.facts, options, decision.form, decision.plan);
   if (decision.plan.method == "exact") return solve_exact_pieces(decision, options);
   return certify(decision, options);
 }

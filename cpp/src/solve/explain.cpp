@@ -5,14 +5,12 @@
 
 #include "method/method.hpp"
 #include "solve/candidates.hpp"
-#include "solve/decide.hpp"
-#include "solve/distance.hpp"
+#include "solve/form/distance.hpp"
 #include "solve/explain.hpp"
 #include "solve/explain_pieces.hpp"
 #include "solve/options.hpp"
 #include "solve/perturb.hpp"
 #include "solve/proof/proof_plan.hpp"
-#include "solve/proportional_damping.hpp"
 
 namespace polhode {
 namespace {
@@ -31,17 +29,18 @@ bool has(const Scene& scene, const char* name) {
   return false;
 }
 
-/// Adds the exact models in the order of their list. Only the chosen one has a cost.
-void evaluate_exact_models(const Scene& scene, const Facts& facts, const SolveOptions& options,
-                           const std::optional<ClosedForm>& form, PlanReport& report) {
-  for (const ExactModel& model : exact_models()) {
-    if (form && model.name == form->model()) {
+/// Adds the closed forms in the order of their list. Only the chosen one has a cost.
+void evaluate_closed_forms(const Scene& scene, const Facts& facts, const SolveOptions& options,
+                           const ClosedForm* form, PlanReport& report) {
+  for (const ClosedFormRecord* record : closed_forms()) {
+    if (form && record == &form->record()) {
       report.candidates.push_back(evaluate_closed_form(scene, *form, facts, options));
       continue;
     }
-    Candidate candidate{.name = std::string(model.name), .exact = true, .why_not = model.refuse(scene, facts)};
+    Candidate candidate{.name = std::string(record->name), .exact = true,
+                        .why_not = record->refuse(scene, facts, Words::yes).why};
     std::string& why_not = candidate.why_not;
-    if (why_not.empty() && form) why_not = "also holds, but " + std::string(form->model()) + " is simpler";
+    if (why_not.empty() && form) why_not = "also holds, but " + std::string(form->name()) + " is simpler";
     if (why_not.empty()) why_not = "its start has no exact float64 representation";
     report.candidates.push_back(std::move(candidate));
   }
@@ -50,7 +49,7 @@ void evaluate_exact_models(const Scene& scene, const Facts& facts, const SolveOp
 /// The change of a closed form at the end of its span when the inputs change by half a unit in the last place.
 double compute_condition(const Scene& scene, const ClosedForm& form) {
   const Scene perturbed = perturb(scene);
-  const std::optional<ClosedForm> other = find_closed_form(perturbed, compute_facts(perturbed));
+  const std::shared_ptr<const ClosedForm> other = find_closed_form(perturbed, compute_facts(perturbed));
   if (!other) return std::numeric_limits<double>::quiet_NaN();
   double t = 0.0;
   for (const double time : scene.times()) t = std::abs(time - scene.t0()) > std::abs(t) ? time - scene.t0() : t;
@@ -62,57 +61,12 @@ double compute_condition(const Scene& scene, const ClosedForm& form) {
 
 void explain_exact(const Scene& scene, const Facts& facts, const ClosedForm& form, PlanReport& report) {
   auto& reasons = report.reasons;
-  const std::string model(form.model());
-  if (model == "rest") {
-    reasons.push_back("The body does not rotate and no torque acts: every sample equals the start.");
-  } else if (model == "spherical") {
-    reasons.push_back("All moments are equal and no torque acts: omega is constant.");
-  } else if (model == "steady") {
-    reasons.push_back(
-        "The body rotates about a principal axis and no torque acts: omega is constant, even if the rotation is "
-        "unstable.");
-  } else if (model == "symmetric") {
-    reasons.push_back(
-        "Two moments are equal and no torque acts: the motion is a regular precession, two rotations at constant "
-        "rates.");
-  } else if (model == "separatrix") {
-    reasons.push_back(
-        "The start is exactly on the separatrix: the body flips once, described by hyperbolic functions.");
-  } else if (model == "triaxial") {
-    reasons.push_back("No torque acts: theta functions give each sample directly, without steps.");
-  } else if (model == "gyrostat") {
-    reasons.push_back(
-        "No torque acts, and the rotors' momentum is constant in the body: a free gyrostat. One theta series gives "
-        "each sample directly, without steps.");
-  } else if (model == "damped_free") {
-    const double rate = find_proportional_damping(scene)->rate;
-    reasons.push_back(format(
-        "The damping is -c I omega with c = %.3g /s. The motion is the free one in slowed time, s = (1 - exp(-c t)) / "
-        "c.",
-        rate));
-  } else if (model == "pendulum") {
-    reasons.push_back(
-        "Gravity acts alone, and omega is along a horizontal principal axis across the arm: the body is a plane "
-        "pendulum. Elliptic functions give each sample.");
-  } else if (model == "heavy_gyrostat") {
-    reasons.push_back(
-        "A symmetric body on a pivot on its axis, with gravity and a rotor on the same axis: Lagrange's top with "
-        "omega3 + h / J3, turned back about the axis by h t / J3.");
-  } else {
-    reasons.push_back(
-        "A symmetric body on a pivot on its axis, with gravity alone, is Lagrange's top. It has a closed form.");
-  }
-  if (facts.turns > 10 && model != "rest") {
+  reasons.push_back(form.record().explain(scene, facts));
+  if (facts.turns > 10) {
     reasons.push_back(
         format("A closed form has no drift: its error after %.0f turns is the same as after one.", facts.turns));
   }
-  if (model == "triaxial" && facts.separatrix < 1e-3) {
-    reasons.push_back(
-        format("The start is close to the separatrix (k'^2 = %.1e). An integration loses digits at each flip, a closed "
-               "form does not.",
-               facts.separatrix));
-  }
-  const double condition = model == "rest" ? 0.0 : compute_condition(scene, form);
+  const double condition = compute_condition(scene, form);
   if (condition > 20 * report.plan.predicted_error) {
     reasons.push_back(
         format("The motion is sensitive: changing the inputs by half a unit in the last place changes the last sample "
@@ -224,14 +178,19 @@ void explain_left_out(const Scene& scene, const Facts& facts, const SolveOptions
 }  // namespace
 
 PlanReport explain(const Decision& decision, const SolveOptions& options) {
+  if (is_by_tolerance(options)) {
+    return {.plan = decision.plan, .facts = compute_facts(decision.scene),
+            .reasons = {"Tolerances or a fixed step were given with method " + decision.plan.method +
+                        ", so nothing was planned."}};
+  }
   if (decision.plan.proof)
     return {.plan = decision.plan, .facts = decision.facts, .reasons = proof::explain(decision.scene)};
   if (decision.pieces.size() > 0 && decision.pieces.method_switches.empty()) return explain_pieces(decision, options);
   PlanReport report{.plan = decision.plan, .facts = decision.facts};
   const Scene& scene = decision.scene;
   const Facts& facts = report.facts;
-  const std::optional<ClosedForm> form = decision.form ? decision.form : find_closed_form(scene, facts);
-  evaluate_exact_models(scene, facts, options, form, report);
+  const std::shared_ptr<const ClosedForm> form = decision.form ? decision.form : find_closed_form(scene, facts);
+  evaluate_closed_forms(scene, facts, options, form.get(), report);
   for (const ode::MethodRecord& record : methods()) {
     if (!record.adaptive) continue;
     report.candidates.push_back(evaluate_method(scene, facts, options, record));
@@ -241,17 +200,12 @@ PlanReport explain(const Decision& decision, const SolveOptions& options) {
   if (decision.form) {
     explain_exact(scene, facts, *decision.form, report);
   } else {
-    explain_steps(scene, facts, options, form.has_value(), report);
+    explain_steps(scene, facts, options, form != nullptr, report);
   }
   explain_rotors(scene, report);
   if (facts.only_at_end) report.reasons.push_back("Only one sample time is given, so nothing is interpolated.");
   explain_left_out(scene, facts, options, report);
   return report;
-}
-
-PlanReport explain_plan(const Scene& scene, const SolveOptions& options) {
-  check_options(scene, options);
-  return explain(decide(scene, options), options);
 }
 
 }  // namespace polhode

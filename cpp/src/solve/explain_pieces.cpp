@@ -36,13 +36,13 @@ PlanReport explain_pieces(const Decision& decision, const SolveOptions& options)
   const std::vector<PiecePlan>& parts = report.plan.pieces;
   std::size_t formulas = 0;
   for (const PiecePlan& piece : parts) formulas += piece.method == "exact";
-  for (const ExactModel& model : exact_models()) {
+  for (const ClosedFormRecord* record : closed_forms()) {
     std::size_t held = 0;
-    for (const PiecePlan& piece : parts) held += piece.model == model.name;
-    const bool is_slow = model.name == "gyrostat" && decision.slow_forms > 0;
+    for (const PiecePlan& piece : parts) held += piece.model == record->name;
+    const bool is_slow = record->slow_set_up && decision.slow_forms > 0;
     if (held == 0 && !is_slow) continue;
     const std::size_t pieces = is_slow ? decision.slow_forms : held;
-    report.candidates.push_back({.name = std::string(model.name),
+    report.candidates.push_back({.name = std::string(record->name),
                                  .exact = true,
                                  .why_not = (is_slow ? "takes longer than steps in " : "used in ") +
                                             std::to_string(pieces) + " of " + count(parts.size(), "piece")});

@@ -8,7 +8,7 @@
 
 #include "polhode/math/detail/coin.hpp"
 #include "solve/pieces.hpp"
-#include "solve/proportional_damping.hpp"
+#include "solve/form/proportional_damping.hpp"
 
 namespace polhode {
 namespace {

@@ -34,9 +34,10 @@ class PieceRunner {
     State start = scene_.start();
     Vector3d h = scene_.rotor_momentum();
     std::size_t next = 0;
-    // A pendulum's axis of rotation is exact, through the pieces before it too.
-    const bool keep_zeros = std::any_of(pieces.begin(), pieces.end(),
-                                        [](const Piece& piece) { return piece.plan.model == "pendulum"; });
+    // The zeros of a start that a closed form needs are kept through the pieces before it too.
+    const bool keep_zeros = std::any_of(pieces.begin(), pieces.end(), [](const Piece& piece) {
+      return piece.form != nullptr && piece.form->needs_zeros;
+    });
     for (const Piece& piece : pieces) {
       const bool forward = piece.end >= piece.begin, last = &piece == &pieces.back();
       std::vector<double> times;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "polhode/solve/closed_form.hpp"
 #include "polhode/solve/solve.hpp"
 
 // A span that is cut where torques or rotors start or stop. Each piece is integrated from the end of the last.
@@ -16,6 +17,7 @@ struct Piece {
   std::vector<AnyTorque> torques;   ///< those that act, without their windows
   std::vector<Rotor> rotors;        ///< those that rotate, without their windows
   PiecePlan plan = {};              ///< its model and method; no method before planning
+  const ClosedFormRecord* form = nullptr;   ///< what runs it: a closed form, or the plan's method where it is null
 };
 
 /// The pieces, in the order of the run from the scene's start.

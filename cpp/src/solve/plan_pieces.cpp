@@ -24,11 +24,14 @@ constexpr long piece_pilot_steps = 20'000, all_pilot_steps = 100'000, custom_pil
 // The error that the finest run of taylor states is below this, times one more than the revolutions.
 constexpr double carried_rounding = 4e-13;
 
-/// What decides between the closed form of a gyrostat and steps.
+/// What decides between a closed form and steps.
 struct PieceWork {
   double turns = 0.0;
-  bool is_gyrostat = false, has_form = false;   ///< a closed form of any model
+  const ClosedFormRecord* form = nullptr;   ///< the closed form that holds
   int error_set_ups = 0;   ///< that a bound of the closed form's error takes
+
+  /// Steps may take less time than the closed form.
+  bool may_be_stepped() const { return form != nullptr && form->slow_set_up; }
 };
 
 /// Plans each piece when a pilot run reaches it.
@@ -47,9 +50,9 @@ class PiecePlanner {
     if (options_.method == "exact") require_closed_forms();
     if (calls_custom(scene_)) call_seconds_ = measure_call_seconds(scene_);
     left_ = calls_custom(scene_) ? custom_pilot_steps : all_pilot_steps;
-    if (may_step_gyrostats()) step_gyrostats_ = expect_cheaper_steps();
+    if (may_step_slow_forms()) step_slow_forms_ = expect_cheaper_steps();
     run_pilot();
-    if (may_step_gyrostats()) reconsider_gyrostats();
+    if (may_step_slow_forms()) reconsider_slow_forms();
     choose_tolerances();
     predict_closed_forms();
     Plan& plan = decision_.plan;
@@ -83,7 +86,7 @@ class PiecePlanner {
     for (const Piece* piece : pieces_) {
       const Scene part = make_piece_scene(scene_, *piece, scene_.start(), {piece->end}, scene_.want());
       const Facts facts = compute_facts(part);
-      if (is_gyrostat(facts) || find_closed_form(part, facts)) continue;
+      if (find_closed_form_record(part, facts) != nullptr) continue;
       throw InvalidInput("method 'exact'", "used with pieces that all have a closed form",
                          "one without, " + describe_span(*piece),
                          explain_no_closed_form(part, facts) + "; leave method out");
@@ -97,7 +100,7 @@ class PiecePlanner {
     return make_piece_scene(scene_, piece, start, {piece.end}, scene_.want());
   }
 
-  bool may_step_gyrostats() const {
+  bool may_step_slow_forms() const {
     return method_is_free(options_) && options_.formulation == Formulation::euler &&
            std::any_of(pieces_.begin(), pieces_.end(), [](const Piece* piece) {
              return !piece->rotors.empty() && summarize(piece->torques).acting == 0;
@@ -110,11 +113,11 @@ class PiecePlanner {
     for (const Piece* piece : pieces_) {
       const double span = std::abs(piece->end - piece->begin);
       PieceWork one{.turns = scene_.omega().norm() * span / (2 * std::numbers::pi)};
-      one.has_form = summarize(piece->torques).acting == 0;
-      if (one.has_form && !piece->rotors.empty()) {
+      if (summarize(piece->torques).acting == 0) {
         const Scene part = make_part(*piece);
         const Facts facts = compute_facts(part);
-        one = {facts.turns, is_gyrostat(facts), true, count_error_set_ups(part, facts, "gyrostat")};
+        one.form = find_closed_form_record(part, facts);
+        if (one.may_be_stepped()) one.turns = facts.turns, one.error_set_ups = one.form->count_error_set_ups(part, facts);
       }
       work.push_back(one);
     }
@@ -122,21 +125,22 @@ class PiecePlanner {
   }
 
   /// After the pilot run, with the revolutions that it found.
-  void reconsider_gyrostats() {
-    const bool before = step_gyrostats_;
-    step_gyrostats_ = are_steps_cheaper(work_);
+  void reconsider_slow_forms() {
+    const bool before = step_slow_forms_;
+    step_slow_forms_ = are_steps_cheaper(work_);
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      if (!work_[i].is_gyrostat) continue;
-      decision_.slow_forms += step_gyrostats_;
+      if (!work_[i].may_be_stepped()) continue;
+      decision_.slow_forms += step_slow_forms_;
+      if (step_slow_forms_ == before) continue;
       PiecePlan& plan = pieces_[i]->plan;
-      if (step_gyrostats_ == before) continue;
-      plan.model = step_gyrostats_ ? "euler" : "gyrostat";
-      plan.method = step_gyrostats_ ? choose_piece_method(make_part(*pieces_[i]), facts_[i]) : "exact";
+      pieces_[i]->form = step_slow_forms_ ? nullptr : work_[i].form;
+      plan.model = step_slow_forms_ ? "euler" : work_[i].form->name;
+      plan.method = step_slow_forms_ ? choose_piece_method(make_part(*pieces_[i]), facts_[i]) : "exact";
     }
   }
 
-  /// A gyrostat's closed form takes long to set up, and several set-ups bound its error. Where the pieces are short,
-  /// steps take less. All gyrostats among the pieces go the same way: a chain without steps loses fewer digits.
+  /// Some closed forms take long to set up, and several set-ups bound the error. Where the pieces are short, steps take
+  /// less. The decision holds for all pieces with such forms, because a chain without steps loses fewer digits.
   bool are_steps_cheaper(const std::vector<PieceWork>& work) const {
     const ode::MethodRecord& record = find_method("taylor");
     double turns = 0.0, forms = 0.0, steps = 0.0;
@@ -144,10 +148,10 @@ class PiecePlanner {
     const double accuracy = get_accuracy(options_);
     if (carried_rounding * (1 + turns) * (1 + turns / record.forecast.secular) > accuracy) return false;
     const double rtol = record.forecast.find_rtol(accuracy, turns) / pair_ratio;
-    const bool all_forms = std::all_of(work.begin(), work.end(), [](const PieceWork& one) { return one.has_form; });
+    const bool all_forms = std::all_of(work.begin(), work.end(), [](const PieceWork& one) { return one.form != nullptr; });
     for (const PieceWork& one : work) {
-      if (!one.is_gyrostat) continue;
-      forms += predict_closed_form("gyrostat", count_set_ups(one, all_forms), 0.0, options_.cost_factors);
+      if (!one.may_be_stepped()) continue;
+      forms += predict_closed_form(*one.form, count_set_ups(one, all_forms), 0.0, options_.cost_factors);
       const auto step = [&](double tolerance) {
         return record.forecast.compute_seconds(std::max(tolerance, record.least_rtol), one.turns, 0.0, 0.0);
       };
@@ -193,7 +197,7 @@ class PiecePlanner {
     if (plan.method == "exact") {
       Plan unbounded;   // nobody asks for the error of a pilot run
       unbounded.model = plan.model, unbounded.method = plan.method;
-      return run_closed_form(part, facts, options, std::move(*form_), unbounded);
+      return run_closed_form(part, facts, options, std::move(form_), unbounded);
     }
     SolveOptions limited = options;
     limited.max_steps = std::max(1L, std::min({piece_pilot_steps, left_, options_.max_steps}));
@@ -215,17 +219,19 @@ class PiecePlanner {
     }
     if (!part.rotor_momentum().isZero(0.0)) plan.torques.emplace_back("rotors");
     form_.reset();
-    const bool is_stepped = step_gyrostats_ && is_gyrostat(facts);
-    if (!is_stepped && (method_is_free(options_) || options_.method == "exact")) form_ = find_closed_form(part, facts);
-    PieceWork work{facts.turns, is_gyrostat(facts), is_stepped || form_};
+    const ClosedFormRecord* record =
+        method_is_free(options_) || options_.method == "exact" ? find_closed_form_record(part, facts) : nullptr;
+    PieceWork work{.turns = facts.turns, .form = record};
+    if (record != nullptr && !(step_slow_forms_ && record->slow_set_up)) form_ = record->make(part, facts);
+    Piece& piece = *pieces_[facts_.size()];
+    piece.form = form_ ? &form_->record() : nullptr;
     if (form_) {
-      plan.model = form_->model(), plan.method = "exact";
+      plan.model = form_->name(), plan.method = "exact";
     } else {
       plan.method = choose_piece_method(part, facts);
       if (options_.formulation == Formulation::lagrangian) plan.model = "lagrangian";
     }
-    if (form_ || is_stepped)
-      work.error_set_ups = count_error_set_ups(part, facts, is_stepped ? "gyrostat" : form_->model());
+    if (record != nullptr) work.error_set_ups = record->count_error_set_ups(part, facts);
     facts_.push_back(facts);
     work_.push_back(work);
     return plan;
@@ -285,7 +291,7 @@ class PiecePlanner {
       const auto samples = std::upper_bound(sorted_.begin(), sorted_.end(), std::max(plan.begin, plan.end)) -
                            std::lower_bound(sorted_.begin(), sorted_.end(), std::min(plan.begin, plan.end));
       plan.predicted_seconds =
-          predict_closed_form(plan.model, count_set_ups(work_[i], main_ == nullptr), static_cast<double>(samples),
+          predict_closed_form(*pieces_[i]->form, count_set_ups(work_[i], main_ == nullptr), static_cast<double>(samples),
                               options_.cost_factors) +
           piece_seconds * (main_ == nullptr || options_.certify ? 2 : 1);
     }
@@ -324,8 +330,8 @@ class PiecePlanner {
   std::vector<double> sorted_;
   std::vector<Facts> facts_;           // of the pieces that have been planned
   std::vector<PieceWork> work_;        // of the same pieces
-  std::optional<ClosedForm> form_;     // of the piece that was planned last
-  bool step_gyrostats_ = false;
+  std::shared_ptr<const ClosedForm> form_;     // of the piece that was planned last
+  bool step_slow_forms_ = false;
   const ode::MethodRecord* main_ = nullptr;
   double turns_ = 0.0, coarse_ = 0.0, call_seconds_ = 0.0;
   long left_ = 0;                      // steps of the pilot run

@@ -8,7 +8,7 @@
 #include "polhode/core/error.hpp"
 #include "solve/candidates.hpp"
 #include "solve/carry_through.hpp"
-#include "solve/distance.hpp"
+#include "solve/form/distance.hpp"
 #include "solve/exact_run.hpp"
 #include "solve/options.hpp"
 #include "solve/perturb.hpp"
@@ -38,7 +38,16 @@ void add_jump(const Scene& part, const Vector3d& dh, ode::ErrorTrace& trace) {
 }
 
 void copy_plans(const std::vector<Piece>& from, std::vector<Piece>& to) {
-  for (std::size_t i = 0; i < to.size() && !from.empty(); ++i) to[i].plan = from[std::min(i, from.size() - 1)].plan;
+  for (std::size_t i = 0; i < to.size() && !from.empty(); ++i) {
+    const Piece& planned = from[std::min(i, from.size() - 1)];
+    to[i].plan = planned.plan, to[i].form = planned.form;
+  }
+}
+
+/// The planned closed form of a piece. Where it does not hold at the start that the chain has reached, the first that
+/// does; null if none does.
+std::shared_ptr<const ClosedForm> make_form(const Scene& part, const Facts& facts, const ClosedFormRecord& planned) {
+  return planned.refuse(part, facts, Words::no) ? find_closed_form(part, facts) : planned.make(part, facts);
 }
 
 }  // namespace
@@ -48,17 +57,22 @@ Motion run_planned(const Decision& decision, const Scene& scene, const SolveOpti
   Pieces pieces = cut(scene, decision.pieces.method_switches);
   copy_plans(decision.pieces.backward, pieces.backward);
   copy_plans(decision.pieces.forward, pieces.forward);
+  std::vector<std::string> runs;
   const auto run_one = [&](const Scene& part, const Piece& piece, const SolveOptions& piece_options) -> Motion {
     std::string name = piece.plan.method;
-    if (name == "exact") {
+    runs.emplace_back();
+    if (piece.form != nullptr) {
       const Facts facts = compute_facts(part);
-      if (const std::optional<ClosedForm> form = find_closed_form(part, facts)) {
+      if (const std::shared_ptr<const ClosedForm> form = make_form(part, facts, *piece.form)) {
         const Plan plan = make_exact_plan(part, *form, facts, piece_options);
-        if (trace == nullptr || carry_through(part, *form, plan.predicted_error, *trace))
-          return run_closed_form(part, facts, piece_options, *form, plan);
+        if (trace == nullptr || carry_through(part, *form, plan.predicted_error, *trace)) {
+          if (form->name() != piece.plan.model) runs.back() = form->name();
+          return run_closed_form(part, facts, piece_options, form, plan);
+        }
       }
       // Perturbed inputs may have no closed form, and a chain may reach a piece with a start that has none.
       name = trace != nullptr ? "taylor" : choose_method(part, facts, piece_options).name;
+      runs.back() = name;
     }
     const BodyMethod& method = find_body_method(name);
     const double scaled = std::max(rtol * piece.plan.rtol_scale, method.record.least_rtol);
@@ -70,6 +84,7 @@ Motion run_planned(const Decision& decision, const Scene& scene, const SolveOpti
     const bool stuck = motion.status == Status::failed && motion.stats.steps == 0;
     if (!stuck || name == "taylor" || !compute_refusal("taylor", start).empty()) return motion;
     const double least = taylor_method.record.least_rtol;
+    runs.back() = "taylor";
     return Motion(taylor_method.integrate(start, to_run_options(piece_options, {std::max(rtol, least)})));
   };
   Vector3d h = Vector3d::Zero();   // of the rotors before the piece
@@ -89,13 +104,25 @@ Motion run_planned(const Decision& decision, const Scene& scene, const SolveOpti
     trace->before += std::abs(piece.end - piece.begin);
     return motion;
   };
-  return run_pieces(scene, pieces, options, run_piece, perturb_joins);
+  Motion motion = run_pieces(scene, pieces, options, run_piece, perturb_joins);
+  motion.piece_runs = std::move(runs);
+  return motion;
+}
+
+Plan describe_run(const Decision& decision, const Motion& motion) {
+  Plan plan = decision.plan;
+  const std::vector<const Piece*> pieces = decision.pieces.all();
+  for (std::size_t i = 0; i < motion.piece_runs.size() && i < pieces.size(); ++i) {
+    for (PiecePlan& piece : plan.pieces)
+      if (piece.begin == pieces[i]->plan.begin) piece.ran = motion.piece_runs[i];
+  }
+  return plan;
 }
 
 Motion solve_exact_pieces(const Decision& decision, const SolveOptions& options) {
   const Scene& scene = decision.scene;
   Motion motion = run_planned(decision, scene, options, 0.0, false);
-  motion.plan = decision.plan;
+  motion.plan = describe_run(decision, motion);
   motion.asked = decision.plan.accuracy;
   constexpr double safety = 1.5;
   constexpr std::size_t most = 256;   // samples to compare: the error grows along the span

@@ -11,6 +11,9 @@ namespace polhode {
 Motion run_planned(const Decision& decision, const Scene& scene, const SolveOptions& options, double rtol,
                    bool perturb_joins, ode::ErrorTrace* trace = nullptr);
 
+/// The plan of a run: that of the decision, and for each piece what ran in its place.
+Plan describe_run(const Decision& decision, const Motion& motion);
+
 /// Evaluates pieces that all have closed forms. A second, perturbed run measures the effect of rounding at the joins.
 Motion solve_exact_pieces(const Decision& decision, const SolveOptions& options);
 

@@ -28,8 +28,8 @@ double find_distance(double value, double lower, double upper) {
 /// Makes a Motion from enclosures.
 class Proof {
  public:
-  Proof(const Scene& scene, const SolveOptions& options)
-      : scene_(scene), options_(options), decision_(decide(scene, options)), accuracy_(decision_.plan.accuracy) {}
+  Proof(const Decision& decision, const SolveOptions& options)
+      : scene_(decision.scene), options_(options), decision_(decision), accuracy_(decision_.plan.accuracy) {}
 
   Motion prove() {
     // First with steps that suffice for most motions, then with the finest that double-doubles carry.
@@ -208,7 +208,7 @@ class Proof {
 
   const Scene& scene_;
   const SolveOptions& options_;
-  const Decision decision_;
+  const Decision& decision_;
   const double accuracy_;
   Enclosure enclosure_;
   std::vector<double> errors_;
@@ -218,6 +218,6 @@ class Proof {
 
 }  // namespace
 
-Motion prove(const Scene& scene, const SolveOptions& options) { return Proof(scene, options).prove(); }
+Motion prove(const Decision& decision, const SolveOptions& options) { return Proof(decision, options).prove(); }
 
 }  // namespace polhode

@@ -6,9 +6,11 @@
 #include <limits>
 
 #include "polhode/solve/invariants.hpp"
+#include "polhode/solve/plan.hpp"
 #include "solve/custom_check.hpp"
 #include "solve/decide.hpp"
 #include "solve/execute.hpp"
+#include "solve/explain.hpp"
 #include "solve/options.hpp"
 #include "solve/pieces.hpp"
 #include "solve/prove.hpp"
@@ -45,42 +47,82 @@ void describe_breaks(std::vector<double> breaks, Motion& motion) {
   motion.message += (motion.message.empty() ? "" : "; ") + text;
 }
 
-Motion solve_planned(const Scene& scene, const SolveOptions& options) {
-  Scene divided = scene;
+using Clock = std::chrono::steady_clock;
+
+double find_seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// Carries out a decision. Where a torque of the user's own is found to jump, the span is divided there, decided and run
+/// again.
+Motion run_divided(std::shared_ptr<const Decision> decision, const SolveOptions& options) {
   std::vector<double> breaks;
   ode::Counts before;
   int runs = 0;
-  for (int round = 0;; ++round) {
-    Decision decision = decide(divided, options);
-    decision.may_cut = round < most_divisions;
-    breaks.insert(breaks.end(), decision.looks.breaks.begin(), decision.looks.breaks.end());
-    Motion motion = execute(decision, options);
-    motion.stats += decision.pilot;
+  for (int divisions = 0;; ++divisions) {
+    breaks.insert(breaks.end(), decision->looks.breaks.begin(), decision->looks.breaks.end());
+    Motion motion = execute(*decision, options);
     motion.stats += before;
     motion.runs += runs;
     const std::vector<double>& found = motion.found_breaks;
     breaks.insert(breaks.end(), found.begin(), found.end());
-    const bool again = decision.may_cut && !found.empty() && motion.status != Status::stopped;
-    if (!again) {
+    if (!decision->may_cut || found.empty() || motion.status == Status::stopped) {
       describe_breaks(std::move(breaks), motion);
       return motion;
     }
+    Decision divided = decide(add_breaks(decision->scene, found), options);
+    divided.may_cut = divisions + 1 < most_divisions;
     before = motion.stats;
+    before += divided.pilot;
     runs = motion.runs;
-    divided = add_breaks(divided, found);
+    decision = std::make_shared<const Decision>(std::move(divided));
   }
 }
 
 }  // namespace
 
-Motion solve(const Scene& scene, const SolveOptions& options) {
-  const auto begin = std::chrono::steady_clock::now();
+PlannedScene::PlannedScene(const Scene& scene, const SolveOptions& options) : options_(options) {
+  const auto begin = Clock::now();
   check_options(scene, options);
   check_torques(scene);
-  Motion motion = options.proof ? prove(scene, options) : solve_planned(scene, options);
+  decision_ = std::make_shared<const Decision>(decide(scene, options));
+  options_.events.clear();
+  options_.progress = {};
+  if (options.cost_factors != nullptr) {
+    cost_factors_ = std::make_shared<const CostFactors>(*options.cost_factors);
+    options_.cost_factors = cost_factors_.get();
+  }
+  cost_ = decision_->pilot;
+  cost_.seconds = find_seconds_since(begin);
+}
+
+const Plan& PlannedScene::plan() const { return decision_->plan; }
+
+PlanReport PlannedScene::explain() const { return polhode::explain(*decision_, options_); }
+
+Motion PlannedScene::run(const SolveOptions& options) const {
+  const auto begin = Clock::now();
+  SolveOptions run = options_;
+  run.max_steps = options.max_steps, run.dense = options.dense;
+  run.events = options.events, run.progress = options.progress;
+  check_options(decision_->scene, run);
+  Motion motion = run.proof ? prove(*decision_, run) : run_divided(decision_, run);
   if (!motion.all_finite()) refuse_samples(motion);
-  motion.stats.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  motion.stats.seconds = find_seconds_since(begin);
   return motion;
+}
+
+Motion solve(const Scene& scene, const SolveOptions& options) {
+  const PlannedScene planned(scene, options);
+  Motion motion = planned.run(options);
+  motion.stats += planned.cost();
+  return motion;
+}
+
+Plan make_plan(const Scene& scene, const SolveOptions& options) { return PlannedScene(scene, options).plan(); }
+
+PlanReport explain_plan(const Scene& scene, const SolveOptions& options) {
+  return PlannedScene(scene, options).explain();
 }
 
 bool succeeded(const Scene& scene, const Motion& motion) {

@@ -1430,6 +1430,22 @@ class CostFactors:
         """
         Return what pickle makes the object from.
         """
+class PlannedScene:
+    """
+    A scene and what was decided for it, once.
+    """
+    def __init__(self, scene: Scene, options: dict[str, typing.Any]) -> None:
+        ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
+    @property
+    def parts(self) -> dict[str, typing.Any]:
+        ...
+    @property
+    def report(self) -> dict[str, typing.Any]:
+        ...
 class Answer:
     def __call__(self, arg0: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         ...
@@ -1475,6 +1491,9 @@ class Answer:
         ...
     @property
     def plan(self) -> dict[str, typing.Any]:
+        ...
+    @property
+    def planned(self) -> PlannedScene:
         ...
     @property
     def proved_span(self) -> typing.Any:
@@ -1565,13 +1584,21 @@ def check_inertia(matrices: typing.Any) -> tuple[numpy.typing.NDArray[numpy.floa
     """
     (margins, flaws); see polhode.inertia.check.
     """
+def closed_form_refusal(scene: Scene, type: str) -> str:
+    """
+    Why a class of closed forms is not that of a scene; empty if it is.
+    """
+def closed_forms() -> list[typing.Any]:
+    """
+    The closed forms, simplest first: name, type (the class), doc, source.
+    """
 def drift(arg0: Scene, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Any, arg3: typing.Any) -> dict[str, float]:
     ...
 def energy(arg0: Scene, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg3: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
     ...
-def exact_models() -> list[typing.Any]:
+def find_closed_form(scene: Scene) -> typing.Any:
     """
-    The closed forms: name, doc, source.
+    The closed form that holds for a scene without windows, as its class; None if none does.
     """
 def flushes_to_zero() -> bool:
     """
@@ -1599,8 +1626,6 @@ def method_refusal(arg0: str, arg1: Scene) -> str:
     """
     The reason why a method cannot integrate a scene, or an empty string.
     """
-def plan(scene: Scene, options: dict[str, typing.Any]) -> dict[str, typing.Any]:
-    ...
 def principal_axes(matrices: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], int]:
     """
     (moments, axes, number of matrices that are not finite); see polhode.inertia.principal_axes.
@@ -1627,7 +1652,7 @@ def shape_volume(name: str, values: collections.abc.Sequence[typing.Any]) -> flo
     """
     The volume of a body, from all its parameters, in the record's order.
     """
-def solve(scene: Scene, options: dict[str, typing.Any]) -> Answer:
+def solve(scene: Scene, options: dict[str, typing.Any], plan: typing.Any = None) -> Answer:
     ...
 def to_numbers(value: typing.Any, name: str, shape: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], finite: bool = True) -> numpy.typing.NDArray[numpy.float64]:
     """

@@ -116,7 +116,8 @@ class Motion:
         if name not in _PARTS or self.__dict__.get("_answer") is None:
             raise AttributeError(f"'Motion' object has no attribute {name!r}")
         part = getattr(self._answer, name)
-        value = self.__dict__[name] = Plan(self.scene, part, self._options) if name == "plan" else _PARTS[name](part)
+        value = self.__dict__[name] = (Plan(self.scene, part, self._options, self._answer.planned) if name == "plan"
+                                       else _PARTS[name](part))
         return value
 
     def __dir__(self) -> list[str]:

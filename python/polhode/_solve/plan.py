@@ -34,10 +34,13 @@ class Piece(NamedTuple):
     method: str                 # "exact", or a name of `methods()`
     turns: float                # expected revolutions
     predicted_seconds: float    # including every run of the certificate
+    ran: str | None = None      # what ran in its place, where the closed form did not hold at the piece's start
 
 
 class Plan:
     """The model and the method for a scene and an accuracy, with the reasons; prints as a table.
+
+    It is decided once: ``solve(scene, plan=plan)`` runs exactly this, and `facts` and `reasons` describe it.
 
     Attributes
     ----------
@@ -82,20 +85,29 @@ class Plan:
     predicted_error: float
     predicted_seconds: float
 
-    def __init__(self, scene: Scene, parts: dict[str, Any], options: dict[str, Any]) -> None:
+    def __init__(self, scene: Scene, parts: dict[str, Any], options: dict[str, Any],
+                 planned: _core.PlannedScene | None = None) -> None:
         self.scene = scene
         vars(self).update(parts)
         self.pieces = tuple(Piece(**{**piece, "torques": tuple(piece["torques"])}) for piece in parts["pieces"])
         self.wishes = options
+        self._made = planned
+
+    @property
+    def _planned(self) -> _core.PlannedScene:
+        """What was decided. It is decided again for a plan from a file or another process."""
+        if self._made is None:
+            options = {"rtol": 1e-9} if math.isnan(self.accuracy) else {"accuracy": self.accuracy}
+            self._made = _core.PlannedScene(self.scene, {**self.wishes, **options, "certify": self.certify,
+                                                         "cost_factors": costs.factors()})
+        return self._made
 
     @functools.cached_property
     def _report(self) -> dict[str, Any]:
-        if math.isnan(self.accuracy):   # tolerances were given
-            facts = _core.plan(self.scene, {"cost_factors": costs.factors()})["facts"]
-            reason = f"Tolerances or a fixed step were given with method {self.method}, so nothing was planned."
-            return {"facts": facts, "candidates": [], "left_out": [], "reasons": [reason]}
-        return _core.plan(self.scene, {**self.wishes, "accuracy": self.accuracy, "certify": self.certify,
-                                       "cost_factors": costs.factors()})
+        return self._planned.report
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**vars(self), "_made": None, "_report": self._report}
 
     @property
     def facts(self) -> dict[str, Any]:
@@ -239,6 +251,7 @@ def _pieces(plan: Plan, most: int = 12) -> list[str]:
     """List the pieces; of many, the first and the last."""
     def row(piece: Piece) -> tuple[str, ...]:
         how = f"{piece.model}, closed form" if piece.method == "exact" else piece.method
+        how += f" ({piece.ran} ran)" if piece.ran else ""
         return (f"{piece.begin:.6g}", f"{piece.end:.6g}", f"{piece.turns:.3g}", _duration(piece.predicted_seconds), how,
                 ", ".join(piece.torques) or "none")
 
@@ -322,9 +335,7 @@ def plan(scene: Scene, accuracy: float | None = None, *, method: str | None = No
     for name, value in (("method", method), ("certify", certify), ("formulation", formulation)):
         require_text(value, name)
     asked = {"method": method, "formulation": str(formulation)}
-    report = _core.plan(scene, {**asked, "accuracy": accuracy,
-                                "certify": certify if isinstance(certify, str) else require_bool(certify, "certify"),
-                                "cost_factors": costs.factors()})
-    made = Plan(scene, report["plan"], asked)
-    made.__dict__["_report"] = report
-    return made
+    planned = _core.PlannedScene(scene, {**asked, "accuracy": accuracy,
+                                         "certify": certify if isinstance(certify, str) else require_bool(certify, "certify"),
+                                         "cost_factors": costs.factors()})
+    return Plan(scene, planned.parts, asked, planned)

@@ -50,15 +50,14 @@ def _event(item: Any) -> Event:
     return Event(item, getattr(item, "direction", 0), bool(getattr(item, "terminal", False)))
 
 
-def _take(plan: Plan, accuracy: float | None, method: str | None, rtol: float | None, atol: float | None,
-          step: float | None, certify: bool | Literal["proof"],
-          formulation: str) -> tuple[float, str | None, bool | Literal["proof"], str]:
-    """Return the options of a plan; refuse options that contradict it."""
+def _check_plan(plan: Plan, scene: Scene, given: dict[str, Any], certify: bool | Literal["proof"],
+                formulation: str) -> None:
+    """Refuse options that contradict a plan."""
     if not isinstance(plan, Plan):
         raise _core.InvalidInput(f"plan: must be what polhode.plan() made, got {type(plan).__name__}")
-    for name, value in (("accuracy", accuracy), ("rtol", rtol), ("atol", atol), ("step", step)):
-        if value is not None:
-            raise _core.InvalidInput(f"{name}: must be left out with plan=, which has its own, got {value!r}")
+    for name in ("accuracy", "rtol", "atol", "step"):
+        if given[name] is not None:
+            raise _core.InvalidInput(f"{name}: must be left out with plan=, which has its own, got {given[name]!r}")
     if math.isnan(plan.accuracy):
         raise _core.InvalidInput("plan: must be made for an accuracy, got one for tolerances")
     asked = plan.wishes.get("formulation", "euler")
@@ -67,13 +66,10 @@ def _take(plan: Plan, accuracy: float | None, method: str | None, rtol: float | 
                                  f"{formulation!r}")
     if certify == "proof" and plan.certify != "proof":
         raise _core.InvalidInput("certify: must be left out with a plan made without certify='proof', got 'proof'")
-    if certify:
-        certify = plan.certify
-    proves = plan.certify == "proof"
-    if proves and not certify:
+    if plan.certify == "proof" and not certify:
         raise _core.InvalidInput("certify: must be left out with a plan made with certify='proof', got False")
-    own = plan.wishes.get("method") if plan.pieces or proves else plan.method   # pieces: each has its own
-    return plan.accuracy, method if method is not None else own, certify, asked
+    if scene is not plan.scene and scene != plan.scene:
+        raise _core.InvalidInput("plan: must be made for this scene, got one for another; make it by polhode.plan(scene)")
 
 
 def check_max_steps(max_steps: int) -> int:
@@ -170,17 +166,23 @@ def solve(
     require_text(formulation, "formulation")
     if not isinstance(certify, str):
         certify = require_bool(certify, "certify")
+    given: dict[str, Any] = {"accuracy": accuracy, "method": method, "rtol": rtol, "atol": atol, "step": step}
+    planned = None
     if plan is not None:
-        accuracy, method, certify, formulation = _take(plan, accuracy, method, rtol, atol, step, certify, formulation)
+        _check_plan(plan, scene, given, certify, formulation)
+        accuracy, formulation = plan.accuracy, plan.wishes.get("formulation", "euler")
+        if method is None and bool(certify) == bool(plan.certify):
+            planned = plan._planned
+        if method is None:   # pieces have a method each, and a proof has none
+            method = plan.wishes.get("method") if plan.pieces or plan.certify == "proof" else plan.method
+        certify = plan.certify if certify else False
+        given |= {"accuracy": accuracy, "method": method}
     with shown(progress, f"solving {scene.name}".strip()) as callback:
         answer = _core.solve(scene, {
-            "accuracy": accuracy, "method": method, "rtol": rtol, "atol": atol, "step": step,
-            "certify": certify,
-            "max_steps": check_max_steps(max_steps), "dense": require_bool(dense, "dense"),
+            **given, "certify": certify, "max_steps": check_max_steps(max_steps), "dense": require_bool(dense, "dense"),
             "formulation": str(formulation),
-            "events": [_event(item) for item in items], "progress": callback, "cost_factors": factors()})
+            "events": [_event(item) for item in items], "progress": callback, "cost_factors": factors()}, planned)
     asked = None if method is None and formulation == "euler" else {"method": method, "formulation": formulation}
-    given = {"accuracy": accuracy, "method": method, "rtol": rtol, "atol": atol, "step": step}
     options = {name: value for name, value in given.items() if value is not None}
     options |= {"certify": certify} if certify is not True else {}
     options |= {"max_steps": max_steps} if max_steps != 10_000_000 else {}

@@ -1,6 +1,6 @@
 """The candidates: every method, the plan's choice, the closed forms that apply, and other programs.
 
-A method joins by the compiled list, another program by its file and a name in `peers`, a closed form by a line here.
+A method and a closed form join by the compiled lists, another program by its file and a name in `peers`.
 """
 
 from __future__ import annotations
@@ -9,9 +9,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-
-from .. import _core, torques
+from .. import _core
 from .._scene.scene import Scene
 from .._solve.motion import Motion
 from .._solve.solve import methods, solve
@@ -66,52 +64,26 @@ def _plan() -> Candidate:
                      lambda scene: _solving(scene, "accuracy"), lambda scene: "", "accuracy")
 
 
-def _closed_form(name: str, source: str, make: Callable[[Scene], Any], refuses: Callable[[Scene], str]) -> Candidate:
+def _closed_form(name: str, source: str) -> Candidate:
     def start(scene: Scene) -> Run:
         def run(value: float, limit: float | None) -> Answer:
-            omega, attitude = make(scene).at(scene.times - scene.t0)
+            omega, attitude = _core.find_closed_form(scene).at(scene.times - scene.t0)
             return Answer(omega, attitude, {})
 
         return run
 
+    def refuses(scene: Scene) -> str:
+        if any(rotor.during is not None for rotor in scene.rotors) or any(hasattr(t, "windows") for t in scene.torques):
+            return "torques or rotors start or stop within the span"
+        return str(_core.closed_form_refusal(scene, name))
+
     return Candidate(name, "exact", source, fixed("closed form"), start, refuses, "")
 
 
-def _free(scene: Scene) -> str:
-    return "the body is not free" if scene.torques or scene.rotors else ""
-
-
-def _rotors(scene: Scene) -> str:
-    if scene.torques:
-        return "the body is not free"
-    windows = any(rotor.during is not None for rotor in scene.rotors)
-    return "" if scene.rotor_momentum.any() and not windows else "no rotors that always turn"
-
-
-def _top(scene: Scene) -> str:
-    """Why the scene is not Lagrange's top about body z."""
-    if scene.rotors or len(scene.torques) != 1 or not isinstance(scene.torques[0], torques.Gravity):
-        return "not a body under gravity alone"
-    matrix = scene.inertia.matrix
-    if (matrix != np.diag(np.diag(matrix))).any() or matrix[0, 0] != matrix[1, 1] or scene.torques[0].arm[:2].any():
-        return "not symmetric about an axis through the pivot and the centre of mass"
-    return ""
-
-
-def _make_top(scene: Scene) -> Any:
-    gravity = scene.torques[0]
-    return _core.HeavyTop(scene.inertia, gravity.weight * gravity.arm[2], scene.omega, scene.attitude)
-
-
 def _exact() -> list[Candidate]:
-    return [
-        _closed_form("FreeMotion", "Jacobi 1850, in Cayley-Klein form",
-                     lambda s: _core.FreeMotion(s.inertia, s.omega, s.attitude), _free),
-        _closed_form("Gyrostat", "Volterra 1899, as one theta series",
-                     lambda s: _core.Gyrostat(s.carrier_inertia, momentum=s.rotor_momentum, omega=s.omega,
-                                              attitude=s.attitude), _rotors),
-        _closed_form("HeavyTop", "Klein and Sommerfeld 1897", _make_top, _top),
-    ]
+    """Return a candidate for each class of closed forms; its source is that of its last name, the general one."""
+    sources = {form["type"]: form["source"] for form in _core.closed_forms()}
+    return [_closed_form(name, source) for name, source in sources.items()]
 
 
 def candidates(with_peers: bool = True) -> list[Candidate]:

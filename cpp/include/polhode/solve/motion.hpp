@@ -16,16 +16,18 @@ class ClosedForm;
 struct PiecePlan {
   double begin = 0.0, end = 0.0;       ///< [s], begin < end
   std::vector<std::string> torques = {};   ///< the names of the acting torques
-  std::string model = {};              ///< a name of exact_models(), or "euler"
+  std::string model = {};              ///< a name of closed_forms(), or "euler"
   std::string method = {};             ///< "exact", or a name of ph.methods()
   double turns = 0.0;                  ///< expected revolutions
   double predicted_seconds = 0.0;      ///< including every run of the certificate
   double rtol_scale = 1.0;             ///< its tolerance over that of the plan's method
+  /// The closed form or method that ran in its place, because the planned closed form did not hold at the piece's start.
+  std::string ran = {};
 };
 
 /// The model and the method of a run. They are decided before the run and do not change afterwards.
 struct Plan {
-  std::string model;      ///< a name of exact_models(), "euler", "lagrangian" or "pieces"
+  std::string model;      ///< a name of closed_forms(), "euler", "lagrangian" or "pieces"
   std::string method;     ///< "exact" or a name of methods(); for pieces, the costliest method
   std::string state;      ///< the variables that are integrated: "omega", "omega, attitude", ...
   double accuracy = std::numeric_limits<double>::quiet_NaN();   ///< of the plan; NaN if tolerances were given
@@ -59,6 +61,8 @@ struct Motion : Trajectory {
   std::vector<double> found_breaks = {};
   Vector3d end_jump = Vector3d::Zero();  ///< of omega, where rotors start or stop at the last time of the last piece
   double t_begin = 0.0;                  ///< start of the span of a closed form or a piece
+  /// Of a chain of pieces: what ran in each, in the order of the run; "" as planned.
+  std::vector<std::string> piece_runs = {};
 
   Motion() = default;
   explicit Motion(Trajectory trajectory) : Trajectory(std::move(trajectory)) {}

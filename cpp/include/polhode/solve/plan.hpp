@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,11 +30,34 @@ struct PlanReport {
   std::vector<std::string> left_out = {};   ///< what is not computed, and why that is safe
 };
 
-/// The simplest model and the cheapest method that reach the accuracy, as solve() would choose them.
-/// @throws InvalidInput for options that contradict each other, or a method that cannot integrate the scene
+struct Decision;
+
+/// A scene and what was decided for it: the simplest model and the cheapest method that reach the accuracy. It is
+/// decided once; run() carries out exactly this, and explain() describes it. Immutable, and cheap to copy.
+class PlannedScene {
+ public:
+  /// @throws InvalidInput for options that contradict each other, or a method that cannot integrate the scene
+  PlannedScene(const Scene& scene, const SolveOptions& options);
+
+  const Plan& plan() const;
+  /// The same plan with every candidate evaluated and the reasons in words.
+  PlanReport explain() const;
+  /// What planning took: the wall time, and the pilot run of a user's own torque.
+  const ode::Counts& cost() const { return cost_; }
+  /// Of these options only max_steps, dense, events and progress count.
+  Motion run(const SolveOptions& options = {}) const;
+
+ private:
+  SolveOptions options_;                              // without events and progress
+  std::shared_ptr<const CostFactors> cost_factors_;   // to which the options refer
+  std::shared_ptr<const Decision> decision_;
+  ode::Counts cost_;
+};
+
+/// The plan that solve() would make. @throws InvalidInput as PlannedScene
 Plan make_plan(const Scene& scene, const SolveOptions& options);
 
-/// The same plan with every candidate evaluated and the reasons in words.
+/// The same with every candidate and the reasons.
 PlanReport explain_plan(const Scene& scene, const SolveOptions& options);
 
 /// The reason why a method cannot integrate a scene, or "".

@@ -1,4 +1,4 @@
-#include "solve/proportional_damping.hpp"
+#include "solve/form/proportional_damping.hpp"
 
 #include <cmath>
 #include <limits>
