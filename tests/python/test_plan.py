@@ -1,6 +1,7 @@
 """Accuracy asked is accuracy got: the certificate against stored truth, plans in words, contradicting options."""
 
 import json
+import importlib
 import pickle
 
 import numpy as np
@@ -117,6 +118,38 @@ def test_a_plan_is_carried_out():
     assert ph.solve(scene("S5"), plan=ph.plan(scene("S5"), 1e-6, certify=False)).error_kind == "expected"
     assert pickle.loads(pickle.dumps(plan)) == plan and hash(plan) == hash(ph.plan(scene("S5"), 1e-8))
     assert plan != ph.plan(scene("S5"), 1e-7)
+
+
+@pytest.mark.parametrize("options", [{}, {"certify": False}])
+def test_a_plan_is_decided_once(options, monkeypatch):
+    """What a second decision would say is changed: the run, its plan and the facts are those of the first."""
+    plan = ph.plan(scene("S5"), 1e-8, **options)
+    facts = plan.facts
+    costs = importlib.import_module("polhode._solve.costs")
+    slow = ph._core.CostFactors({plan.method: 1e6})
+    for module in ("polhode._solve.costs", "polhode._solve.solve"):
+        monkeypatch.setattr(importlib.import_module(module), "factors", lambda: slow)
+    assert costs.factors() is slow and ph.plan(scene("S5"), 1e-8, **options).method != plan.method
+    motion = ph.solve(scene("S5"), plan=plan, **options)
+    assert motion.plan.method == plan.method and motion.plan.facts == facts and motion.plan.reasons == plan.reasons
+    assert [c.predicted_seconds for c in motion.plan.candidates] == [c.predicted_seconds for c in plan.candidates]
+
+
+def test_a_plan_belongs_to_its_scene():
+    with pytest.raises(ph.InvalidInput, match="plan: must be made for this scene"):
+        ph.solve(scene("S6"), plan=ph.plan(scene("S5")))
+
+
+def test_a_chain_says_what_ran_in_place_of_a_closed_form():
+    """A pendulum's piece that is reached out of its plane is no pendulum: steps run, and the plan says so."""
+    gravity, push = ph.torques.Gravity(2.0, (0.0, 0.0, -0.3)), ph.torques.Constant((0.0, 0.01, 0.02))
+    windows = [ph.torques.During(push, [(1.0, 2.0)]), gravity]
+    swing = ph.Scene(inertia=(1, 2, 2.5), omega=(0.3, 0, 0), torques=windows, times=np.linspace(0, 4, 9))
+    motion = ph.solve(swing, 1e-9)
+    first, _, last = motion.plan.pieces
+    assert (first.model, first.ran) == ("pendulum", None) and motion.success
+    planned = "pendulum" if last.method == "exact" else last.model
+    assert last.ran is None or last.ran != planned
 
 
 @pytest.mark.parametrize("options", [{"accuracy": 1e-6}, {"rtol": 1e-6}, {"atol": 1e-6}, {"step": 0.1},

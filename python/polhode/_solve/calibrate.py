@@ -66,15 +66,15 @@ def measure(progress: Callable[[int, int], object] | None = None) -> dict[str, f
     jobs: list[tuple[str, Any, float]] = []
     for scene in _scenes():
         for accuracy in (1e-5, 1e-9):
-            report = _core.plan(scene, {"accuracy": accuracy, "certify": False, "cost_factors": shipped})
-            able = [candidate["name"] for candidate in report["candidates"]
+            planned = _core.PlannedScene(scene, {"accuracy": accuracy, "certify": False, "cost_factors": shipped})
+            able = [candidate["name"] for candidate in planned.report["candidates"]
                     if not candidate["exact"] and not candidate["why_not"]]
-            names = ["exact"] if report["plan"]["method"] == "exact" else able
+            names = ["exact"] if planned.parts["method"] == "exact" else able
             jobs += [(name, scene, accuracy) for name in names]
     ratios: dict[str, list[float]] = {}
     for done, (name, scene, accuracy) in enumerate(jobs):
         options = {"accuracy": accuracy, "method": name, "certify": False, "cost_factors": shipped}
-        forecast = _core.plan(scene, options)["plan"]
+        forecast = _core.PlannedScene(scene, options).parts
         took = _seconds(lambda: solve(scene, accuracy, method=name, certify=False), MOST_SECONDS / len(jobs) / 4)
         key = forecast["model"] if name == "exact" else name
         ratios.setdefault(key, []).append(took / forecast["predicted_seconds"])

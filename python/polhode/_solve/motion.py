@@ -115,8 +115,9 @@ class Motion:
         # Each part is copied from the compiled core at first use.
         if name not in _PARTS or self.__dict__.get("_answer") is None:
             raise AttributeError(f"'Motion' object has no attribute {name!r}")
-        part = getattr(self._answer, name)
-        value = self.__dict__[name] = (Plan(self.scene, part, self._options, self._answer.planned) if name == "plan"
+        answer: _core.Answer = self.__dict__["_answer"]
+        part = getattr(answer, name)
+        value = self.__dict__[name] = (Plan(self.scene, part, self._options, answer.planned) if name == "plan"
                                        else _PARTS[name](part))
         return value
 
@@ -275,7 +276,7 @@ class Motion:
 
     def _about(self) -> dict[str, Any]:
         """Everything but the arrays, for JSON."""
-        plan = {key: value for key, value in vars(self.plan).items() if key not in ("scene", "_report")}
+        plan = {key: value for key, value in vars(self.plan).items() if key not in ("scene", "_report", "_made")}
         plan["pieces"] = [piece._asdict() for piece in self.plan.pieces]
         hits = [[hit.event, hit.t, list(hit.omega), list(hit.attitude)] for hit in self.events]
         # The drift of the energy needs the potential of an own torque, which no file holds.

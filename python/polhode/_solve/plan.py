@@ -335,7 +335,8 @@ def plan(scene: Scene, accuracy: float | None = None, *, method: str | None = No
     for name, value in (("method", method), ("certify", certify), ("formulation", formulation)):
         require_text(value, name)
     asked = {"method": method, "formulation": str(formulation)}
-    planned = _core.PlannedScene(scene, {**asked, "accuracy": accuracy,
-                                         "certify": certify if isinstance(certify, str) else require_bool(certify, "certify"),
+    if not isinstance(certify, str):
+        certify = require_bool(certify, "certify")
+    planned = _core.PlannedScene(scene, {**asked, "accuracy": accuracy, "certify": certify,
                                          "cost_factors": costs.factors()})
     return Plan(scene, planned.parts, asked, planned)

@@ -69,7 +69,7 @@ def _check_plan(plan: Plan, scene: Scene, given: dict[str, Any], certify: bool |
     if plan.certify == "proof" and not certify:
         raise _core.InvalidInput("certify: must be left out with a plan made with certify='proof', got False")
     if scene is not plan.scene and scene != plan.scene:
-        raise _core.InvalidInput("plan: must be made for this scene, got one for another; make it by polhode.plan(scene)")
+        raise _core.InvalidInput("plan: must be made for this scene, got that of another")
 
 
 def check_max_steps(max_steps: int) -> int:
