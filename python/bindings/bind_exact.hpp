@@ -6,12 +6,20 @@
 #include <string>
 #include <vector>
 
+#include "polhode/exact/closed_forms.hpp"
 #include "convert.hpp"
 #include "gil.hpp"
 #include "polhode/core/state.hpp"
 
 // What the closed forms share on their way to Python.
 namespace polhode::python {
+
+/// Binds the class of a closed form; each is defined in its own file.
+template <class Form>
+void bind_closed_form(py::module_& m);
+#define POLHODE_DECLARE(type) template <> void bind_closed_form<type>(py::module_& m);
+POLHODE_CLOSED_FORM_TYPES(POLHODE_DECLARE)
+#undef POLHODE_DECLARE
 
 /// A new array of shape t.shape + (width,).
 inline Array result_for(const Array& t, py::ssize_t width) {

@@ -18,7 +18,8 @@ DampedFree make_damped_free(py::handle inertia, py::handle damping, py::handle o
 
 }  // namespace
 
-void bind_exact_damped_free(py::module_& m) {
+template <>
+void bind_closed_form<DampedFree>(py::module_& m) {
   py::class_<DampedFree> cls(m, "DampedFree",
                              R"(A free body with damping proportional to its angular momentum, -c I omega.
 

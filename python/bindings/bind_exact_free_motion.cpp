@@ -43,7 +43,8 @@ py::typing::Tuple<Array, Array> states_at(const FreeMotion& motion, py::handle t
 
 }  // namespace
 
-void bind_exact_free_motion(py::module_& m) {
+template <>
+void bind_closed_form<FreeMotion>(py::module_& m) {
   py::class_<FreeMotion> cls(m, "FreeMotion", R"(Torque-free motion of any rigid body, in closed form at any time.
 
 One class for the sphere, symmetric and triaxial bodies, steady rotation, rest, needles and the separatrix, exactly and

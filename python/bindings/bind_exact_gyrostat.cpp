@@ -42,7 +42,8 @@ Gyrostat make_gyrostat(py::handle inertia, const py::object& rotors, const py::o
 
 }  // namespace
 
-void bind_exact_gyrostat(py::module_& m) {
+template <>
+void bind_closed_form<Gyrostat>(py::module_& m) {
   py::class_<Gyrostat> cls(m, "Gyrostat", R"(Torque-free motion of a rigid body with rotors, in closed form at any time.
 
 Euler's equations are J omega' = (J omega + h) x omega with the rotors' momentum h constant in the body. One class for

@@ -23,7 +23,8 @@ HeavyTop make_heavy_top(py::handle inertia, py::handle weight_arm, py::handle om
 
 }  // namespace
 
-void bind_exact_heavy_top(py::module_& m) {
+template <>
+void bind_closed_form<HeavyTop>(py::module_& m) {
   py::class_<HeavyTop> cls(m, "HeavyTop",
                            R"(Lagrange's top: a symmetric body held at a point of its axis, under gravity.
 

@@ -18,7 +18,8 @@ Pendulum make_pendulum(py::handle inertia, py::handle weight, py::handle arm, py
 
 }  // namespace
 
-void bind_exact_pendulum(py::module_& m) {
+template <>
+void bind_closed_form<Pendulum>(py::module_& m) {
   py::class_<Pendulum> cls(m, "Pendulum",
                            R"(The plane pendulum: any body on a pivot under gravity that swings about one body axis.
 

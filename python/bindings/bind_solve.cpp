@@ -13,7 +13,7 @@
 #include "polhode/method/lagrangian_problem.hpp"
 #include "polhode/method/euler_problem.hpp"
 #include "polhode/method/methods.hpp"
-#include "polhode/solve/reference.hpp"
+#include "polhode/reference/reference.hpp"
 #include "polhode/solve/solve.hpp"
 
 namespace polhode::python {

@@ -66,9 +66,9 @@ py::dict describe_piece(const PiecePlan& piece) {
 
 /// The closed form as the class that evaluates it.
 py::object to_python(const ClosedForm* form) {
-#define POLHODE_CAST(name, type) \
+#define POLHODE_CAST(type) \
   if (const auto* found = dynamic_cast<const ClosedFormOf<type>*>(form)) return py::cast(found->motion());
-  POLHODE_CLOSED_FORMS(POLHODE_CAST)
+  POLHODE_CLOSED_FORM_TYPES(POLHODE_CAST)
 #undef POLHODE_CAST
   return py::none();
 }

@@ -14,7 +14,7 @@ import polhode
 
 ROOT = pathlib.Path(__file__).parents[2]
 ORDER = ["core", "math", "attitude", "inertia", "torque", "exact", "ode", "formula", "scene", "method", "solve",
-         "batch"]
+         "derivative", "reference", "batch"]
 MAY_USE = {
     "core": [],
     "math": ["core"],
@@ -27,8 +27,13 @@ MAY_USE = {
     "scene": ["core", "math", "attitude", "inertia", "torque"],
     "method": ORDER[:9],
     "solve": ORDER[:10],
-    "batch": ORDER[:11],
+    "derivative": ORDER[:11],
+    "reference": ORDER[:11],
+    "batch": ORDER[:12],
 }
+# The rooms of `solve`, and what each may use; solve.cpp stands above them.
+SOLVE_ROOMS = {"ground": [], "form": ["ground"], "run": ["ground"], "proof": ["ground"],
+               "plan": ["ground", "form", "run"], "certify": ["ground", "form", "run", "proof", "plan"]}
 OLD_PLACES = {"euler_formulas", "euler_problem", "lagrangian_problem", "methods"}   # headers of one line until 0.3
 
 
@@ -45,6 +50,16 @@ def test_includes_only_run_along_the_arrows(word):
             if used in ORDER and used != word and used not in MAY_USE[word]:
                 wrong.append(f"{path.relative_to(ROOT)} uses {used}")
     assert not wrong
+
+
+@pytest.mark.parametrize("room", SOLVE_ROOMS)
+def test_rooms_of_solve_use_only_those_below(room):
+    wrong = [f"{path.relative_to(ROOT)} uses {used}" for path in sources(f"cpp/src/solve/{room}")
+             for used in re.findall(r'#include "solve/(\w+)/', path.read_text())
+             if used != room and used not in SOLVE_ROOMS[room]]
+    assert not wrong
+    folders = {path.name for path in (ROOT / "cpp/src/solve").iterdir() if path.is_dir()}
+    assert folders == set(SOLVE_ROOMS), "each folder has a line in the table"
 
 
 def rooms(word):

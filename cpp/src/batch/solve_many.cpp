@@ -13,8 +13,8 @@
 #include "batch/parallel.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/core/interrupt.hpp"
-#include "solve/options.hpp"
-#include "solve/pieces.hpp"
+#include "solve/ground/options.hpp"
+#include "solve/ground/pieces.hpp"
 
 namespace polhode {
 namespace {

@@ -5,15 +5,14 @@
 #include <cmath>
 #include <limits>
 
+#include "polhode/core/error.hpp"
 #include "polhode/solve/invariants.hpp"
 #include "polhode/solve/plan.hpp"
-#include "solve/custom_check.hpp"
-#include "solve/decide.hpp"
-#include "solve/execute.hpp"
-#include "solve/explain.hpp"
-#include "solve/options.hpp"
-#include "solve/pieces.hpp"
-#include "solve/prove.hpp"
+#include "solve/ground/custom_check.hpp"
+#include "solve/plan/plan.hpp"
+#include "solve/certify/certify.hpp"
+#include "solve/ground/options.hpp"
+#include "solve/ground/pieces.hpp"
 
 namespace polhode {
 

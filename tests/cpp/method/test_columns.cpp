@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "polhode/solve/sensitivity.hpp"
+#include "polhode/derivative/sensitivity.hpp"
 
 // Columns of driven bodies, which the Taylor series integrates beside the state, against formulas.
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "polhode/solve/reference.hpp"
+#include "polhode/reference/reference.hpp"
 #include "solve/proof/enclose.hpp"
 #include "solve/proof/error_set.hpp"
 

@@ -4,7 +4,7 @@
 
 #include "polhode/core/error.hpp"
 #include "polhode/exact/free_motion.hpp"
-#include "polhode/solve/reference.hpp"
+#include "polhode/reference/reference.hpp"
 
 using namespace polhode;
 

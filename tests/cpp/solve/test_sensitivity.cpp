@@ -1,4 +1,4 @@
-#include "polhode/solve/sensitivity.hpp"
+#include "polhode/derivative/sensitivity.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "polhode/core/error.hpp"
-#include "polhode/solve/reference.hpp"
+#include "polhode/reference/reference.hpp"
 
 using namespace polhode;
 

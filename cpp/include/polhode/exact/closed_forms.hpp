@@ -9,6 +9,8 @@
 #include "polhode/exact/heavy_top.hpp"
 #include "polhode/exact/pendulum.hpp"
 
+#define POLHODE_CLOSED_FORM_TYPES(TYPE) TYPE(FreeMotion) TYPE(Gyrostat) TYPE(DampedFree) TYPE(Pendulum) TYPE(HeavyTop)
+
 #define POLHODE_CLOSED_FORMS(FORM) \
   FORM(rest, FreeMotion)           \
   FORM(spherical, FreeMotion)      \

@@ -7,7 +7,7 @@
 #include "solve/form/forms.hpp"
 #include "solve/form/input_error.hpp"
 #include "solve/form/parts.hpp"
-#include "solve/form/proportional_damping.hpp"
+#include "solve/ground/proportional_damping.hpp"
 
 // A free body with damping proportional to its angular momentum.
 namespace polhode::form {

@@ -7,7 +7,7 @@
 
 #include "polhode/scene/scene.hpp"
 #include "polhode/solve/facts.hpp"
-#include "solve/form/distance.hpp"
+#include "solve/ground/distance.hpp"
 
 // How far a closed form moves when its inputs do: what its error bound is made of.
 namespace polhode::form {

@@ -117,12 +117,6 @@ Vector to_body(const std::array<Interval, 4>& q, const Vector& v) {
 
 }  // namespace
 
-bool has_custom(const Scene& scene) {
-  return std::any_of(scene.torques().begin(), scene.torques().end(), [](const AnyTorque& torque) {
-    return std::holds_alternative<torques::Custom>(drop_window(torque));
-  });
-}
-
 BodyEquations::BodyEquations(const Scene& scene) : scene_(scene), has_attitude_(scene.want().attitude) {
   for (const AnyTorque& torque : scene.torques()) torques_.push_back(drop_window(torque));
   choose_vectors();
@@ -312,7 +306,7 @@ class BodyEquations::Maker {
     add_gyroscopic(body_.orbit_index(to_index(orbit - orbits.begin())), Interval(3.0) * n * n);
   }
 
-  void add(const torques::Custom&) {}    // has_custom() tells of it
+  void add(const torques::Custom&) {}    // calls_custom() tells of it
   void add(const torques::During&) {}    // pieces have no windows
 
   /// v' = v x w of a vector fixed in space, as seen from the body

@@ -9,14 +9,11 @@
 // A body's motion as a quadratic system. Time runs in units of 1 / pace().
 namespace polhode::proof {
 
-/// Whether a torque is a function of the user's own, of which nothing can be proved.
-bool has_custom(const Scene& scene);
-
 /// The variables of a scene: w_B / rate, vectors fixed in space and the radial and tangential vectors of orbits as seen
 /// from the body, and the quaternion where it is wanted. They are the same in every piece of the span.
 class BodyEquations {
  public:
-  /// @param scene  one without has_custom()
+  /// @param scene  one without calls_custom()
   explicit BodyEquations(const Scene& scene);
 
   int size() const { return attitude_ + (has_attitude_ ? 4 : 0); }

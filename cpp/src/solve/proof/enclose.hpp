@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "solve/pieces.hpp"
+#include "solve/ground/pieces.hpp"
 #include "solve/proof/body_equations.hpp"
 #include "solve/proof/taylor_step.hpp"
 

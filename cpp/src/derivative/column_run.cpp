@@ -1,0 +1,291 @@
+#include "derivative/column_run.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "method/samples.hpp"
+#include "method/series/column_series.hpp"
+#include "polhode/core/error.hpp"
+#include "polhode/core/interrupt.hpp"
+
+namespace polhode {
+
+using Of = SceneParameter::Of;
+using torques::Window;
+
+/// A state with its columns: d omega and the small rotation, (6, columns) in body axes.
+struct ColumnRun::Moment {
+  State state;
+  std::vector<double> columns;
+
+  double& at(std::size_t row, std::size_t c) { return columns[row * (columns.size() / 6) + c]; }
+  void add(std::size_t first_row, std::size_t c, const Vector3d& v) {
+    for (int i = 0; i < 3; ++i) at(first_row + static_cast<std::size_t>(i), c) += v[i];
+  }
+};
+
+namespace {
+
+/// The axis of a parameter's component; zero for those of a matrix beyond the third, which have no axis.
+Vector3d unit_vector(const SceneParameter& parameter) {
+  return parameter.component < 3 ? Vector3d(Vector3d::Unit(parameter.component)) : Vector3d(Vector3d::Zero());
+}
+
+/// Ends of windows of torques that vanish, at which nothing else cuts the span.
+std::vector<double> find_further_ends(const Scene& scene) {
+  const auto [least, most] = std::minmax_element(scene.times().begin(), scene.times().end());
+  const double first = std::min(scene.t0(), *least), last = std::max(scene.t0(), *most);
+  std::vector<double> ends;
+  for (const AnyTorque& torque : scene.torques()) {
+    const auto* during = std::get_if<torques::During>(&torque);
+    if (during == nullptr || !during->traits().vanishes) continue;
+    for (const Window& window : during->windows())
+      for (const double t : {window.begin, window.end})
+        if (first < t && t < last) ends.push_back(t);
+  }
+  return ends;
+}
+
+AnyTorque to_any(const LastingTorque& torque) {
+  return std::visit([](const auto& one) { return AnyTorque(one); }, torque);
+}
+
+/// Where a run writes its samples.
+class SampleTarget {
+ public:
+  SampleTarget(ColumnSamples& out, std::size_t columns) : out_(out), columns_(columns) {}
+
+  /// @param rows  (6, columns)
+  void put(std::size_t sample, const double* omega, const double* attitude, const double* rows) const {
+    std::copy_n(omega, 3, out_.omega.data() + 3 * sample);
+    std::copy_n(attitude, 4, out_.attitude.data() + 4 * sample);
+    std::copy_n(rows, 3 * columns_, out_.d_omega.data() + 3 * columns_ * sample);
+    std::copy_n(rows + 3 * columns_, 3 * columns_, out_.turn.data() + 3 * columns_ * sample);
+  }
+
+  /// Samples within the last step.
+  void put(ColumnStepper& stepper, const ColumnSeries& series, const std::vector<double>& times,
+           const std::size_t* which, std::size_t count) {
+    times_.resize(count), states_.resize(15 * count), rows_.resize(6 * columns_ * count);
+    for (std::size_t i = 0; i < count; ++i) times_[i] = times[which[i]];
+    double *y = states_.data(), *omega = y + 8 * count, *attitude = y + 11 * count;
+    stepper.interpolate_many(times_.data(), count, y);
+    series.body().unpack(y, count, omega, attitude);
+    stepper.columns_at(times_.data(), count, rows_.data());
+    for (std::size_t i = 0; i < count; ++i)
+      put(which[i], omega + 3 * i, attitude + 4 * i, rows_.data() + 6 * columns_ * i);
+  }
+
+ private:
+  ColumnSamples& out_;
+  std::size_t columns_;
+  std::vector<double> times_, states_, rows_;
+};
+
+}  // namespace
+
+ColumnRun::ColumnRun(const Scene& scene, const std::vector<SceneParameter>& parameters, TurnSide side)
+    : scene_(scene), parameters_(parameters), side_(side), pieces_(cut(scene, find_further_ends(scene))) {
+  const Matrix3d& R_BP = scene.inertia_B().axes();
+  J_inverse_ = R_BP * Matrix3d(scene.inertia_B().moments().cwiseInverse().asDiagonal()) * R_BP.transpose();
+  if (scene.inertia_B().is_diagonal())
+    J_inverse_ = scene.inertia_B().matrix().diagonal().cwiseInverse().asDiagonal();
+  for (const Rotor& rotor : scene.rotors()) momenta_.push_back(rotor.compute_momentum(scene.omega()) * rotor.axis());
+  for (const SceneParameter& parameter : parameters) inertia_change_.push_back(find_inertia_change(parameter));
+}
+
+Matrix3d ColumnRun::find_inertia_change(const SceneParameter& parameter) const {
+  const InertiaTensor& given = scene_.given_inertia_B();
+  const Vector3d unit = unit_vector(parameter);
+  if (parameter.of == Of::inertia) {
+    const Vector3d axis = given.is_diagonal() ? unit : Vector3d(given.axes().col(parameter.component));
+    return axis * axis.transpose();
+  }
+  if (parameter.of == Of::axes) {   // E J E^T with E = 1 + [unit]x
+    Matrix3d turned;
+    for (int c = 0; c < 3; ++c) turned.col(c) = unit.cross(Vector3d(given.matrix().col(c)));
+    return turned + turned.transpose();
+  }
+  if (parameter.of == Of::rotor && parameter.field == SceneParameter::inertia &&
+      scene_.rotors()[parameter.index].free()) {
+    const Vector3d& axis = scene_.rotors()[parameter.index].axis();
+    return -axis * axis.transpose();
+  }
+  return Matrix3d::Zero();
+}
+
+Vector3d ColumnRun::find_momentum_change(const SceneParameter& parameter, const std::vector<bool>& rotating) const {
+  Vector3d change = Vector3d::Zero();
+  for (std::size_t k = 0; k < rotating.size(); ++k) {
+    if (!rotating[k]) continue;
+    const Rotor& rotor = scene_.rotors()[k];
+    const Vector3d& axis = rotor.axis();
+    const bool own = parameter.of == Of::rotor && parameter.index == k;
+    if (own && parameter.field == SceneParameter::momentum) change += axis;
+    if (rotor.momentum()) continue;   // inertia and speed do not change it
+    if (own && parameter.field == SceneParameter::speed) change += *rotor.inertia() * axis;
+    if (own && parameter.field == SceneParameter::inertia)
+      change += (rotor.compute_momentum(scene_.omega()) / *rotor.inertia()) * axis;
+    if (parameter.of == Of::omega && rotor.free()) change += *rotor.inertia() * axis[parameter.component] * axis;
+  }
+  return change;
+}
+
+std::vector<bool> ColumnRun::find_rotating(const Piece& piece) const {
+  const double from = std::min(piece.begin, piece.end), to = std::max(piece.begin, piece.end);
+  std::vector<bool> rotating;
+  for (const Rotor& rotor : scene_.rotors())
+    rotating.push_back(from < to ? rotor.rotates_throughout(from, to) : rotor.rotates_at(from));
+  return rotating;
+}
+
+std::vector<ColumnCause> ColumnRun::find_causes(const Piece& piece, const std::vector<bool>& rotating) const {
+  const double from = std::min(piece.begin, piece.end), to = std::max(piece.begin, piece.end);
+  std::vector<ColumnCause> causes(parameters_.size());
+  for (std::size_t c = 0; c < causes.size(); ++c) {
+    const SceneParameter& parameter = parameters_[c];
+    causes[c].inertia = inertia_change_[c];
+    causes[c].rotor_momentum = find_momentum_change(parameter, rotating);
+    if (parameter.of != Of::torque) continue;
+    const AnyTorque& torque = scene_.torques()[parameter.index];
+    const auto* during = std::get_if<torques::During>(&torque);
+    if (during != nullptr && !(from < to ? during->acts_throughout(from, to) : during->acts_at(from))) continue;
+    causes[c].torque = drop_windows(torque);
+    causes[c].field = parameter.field, causes[c].component = parameter.component;
+  }
+  return causes;
+}
+
+std::vector<double> ColumnRun::start_columns() const {
+  const std::size_t count = parameters_.size();
+  Moment start{scene_.start(), std::vector<double>(6 * count, 0.0)};
+  for (std::size_t c = 0; c < count; ++c) {
+    const Vector3d unit = unit_vector(parameters_[c]);
+    if (parameters_[c].of == Of::omega) start.add(0, c, unit);
+    if (parameters_[c].of == Of::attitude)
+      start.add(3, c, side_ == TurnSide::body ? unit : rotate(conjugate(scene_.attitude()), unit));
+  }
+  return std::move(start.columns);
+}
+
+Vector3d ColumnRun::accelerate(const Moment& at, const std::vector<AnyTorque>& torques, const Vector3d& h) const {
+  const Matrix3d& J = scene_.inertia_B().matrix();
+  const Vector3d& w = at.state.omega;
+  const Quat& q = at.state.attitude;
+  const double attitude[4] = {q.x, q.y, q.z, q.w};
+  Vector3d N = -w.cross(Vector3d(J * w + h));
+  const TorqueInput in{at.state.t, w.data(), attitude, J};
+  for (const AnyTorque& torque : torques) std::visit([&](const auto& one) { one.add(in, N.data()); }, torque);
+  return divide(N);
+}
+
+/// Carries a state and its columns over a time at which torques or rotors start or stop. With phi the jump of the
+/// state, f the derivative by time before it and g the one after, a column becomes phi' column + (phi' f - g) d(time).
+void ColumnRun::cross(const Piece& before, const std::vector<bool>& from, const std::vector<bool>& to, bool forward,
+                      Moment& at) const {
+  Vector3d h_from = Vector3d::Zero(), h_to = Vector3d::Zero();
+  for (std::size_t k = 0; k < momenta_.size(); ++k) {
+    if (from[k]) h_from += momenta_[k];
+    if (to[k]) h_to += momenta_[k];
+  }
+  Moment after{at.state, {}};
+  after.state.omega += compute_rate_jump(scene_.inertia_B(), h_to - h_from);
+  const double sign = forward ? 1.0 : -1.0, t = at.state.t;
+  for (std::size_t c = 0; c < parameters_.size(); ++c) {
+    const SceneParameter& parameter = parameters_[c];
+    const Vector3d dh = find_momentum_change(parameter, to) - find_momentum_change(parameter, from);
+    at.add(0, c, divide(inertia_change_[c] * divide(h_to - h_from) - dh));
+    if (parameter.of == Of::torque_windows) {
+      const auto& during = std::get<torques::During>(scene_.torques()[parameter.index]);
+      const Window& window = during.windows()[static_cast<std::size_t>(parameter.field)];
+      if ((parameter.component == 0 ? window.begin : window.end) != t) continue;
+      const Vector3d none = accelerate(at, {}, h_from);
+      const Vector3d own = accelerate(at, {to_any(during.torque())}, h_from) - none;
+      at.add(0, c, parameter.component == 0 ? -sign * own : sign * own);
+    } else if (parameter.of == Of::rotor_windows) {
+      const Window& window = scene_.rotors()[parameter.index].windows()[static_cast<std::size_t>(parameter.field)];
+      if ((parameter.component == 0 ? window.begin : window.end) != t) continue;
+      at.add(0, c, accelerate(at, before.torques, h_from) - accelerate(after, before.torques, h_to));
+      at.add(3, c, at.state.omega - after.state.omega);
+    }
+  }
+  at.state.omega = after.state.omega;
+}
+
+ColumnSamples ColumnRun::run(double rtol, long max_steps, std::size_t most) const {
+  const std::size_t samples = scene_.times().size(), columns = parameters_.size();
+  ColumnSamples out;
+  out.omega.resize(3 * samples), out.attitude.resize(4 * samples);
+  out.d_omega.resize(3 * columns * samples), out.turn.resize(3 * columns * samples);
+  SampleOrder order(scene_.times(), scene_.t0());
+  for (auto* direction : {&order.forward, &order.backward}) {
+    if (most == 0 || direction->size() <= most) continue;
+    std::vector<std::size_t> kept;
+    const std::size_t every = (direction->size() + most - 1) / most;
+    for (std::size_t i = direction->size() - 1; i < direction->size(); i -= every) kept.push_back((*direction)[i]);
+    std::reverse(kept.begin(), kept.end());
+    *direction = std::move(kept);
+  }
+  out.samples = order.backward;
+  out.samples.insert(out.samples.end(), order.forward.begin(), order.forward.end());
+  follow(pieces_.forward, order.forward, rtol, max_steps, out);
+  follow(pieces_.backward, order.backward, rtol, max_steps, out);
+  return out;
+}
+
+void ColumnRun::follow(const std::vector<Piece>& pieces, const std::vector<std::size_t>& order, double rtol,
+                       long max_steps, ColumnSamples& out) const {
+  if (order.empty()) return;
+  SampleTarget target(out, parameters_.size());
+  const bool forward = pieces.back().end >= scene_.t0();
+  Moment at{scene_.start(), start_columns()};
+  std::vector<bool> rotating;
+  for (const Rotor& rotor : scene_.rotors()) rotating.push_back(rotor.rotates_at(scene_.t0()));
+  std::size_t next = 0;
+  const auto put_now = [&] {   // samples at the very time that was reached
+    const Quat& q = at.state.attitude;
+    const double attitude[4] = {q.x, q.y, q.z, q.w};
+    for (; next < order.size() && scene_.times()[order[next]] == at.state.t; ++next)
+      target.put(order[next], at.state.omega.data(), attitude, at.columns.data());
+  };
+  put_now();
+  const Piece* before = &pieces.front();
+  for (const Piece& piece : pieces) {
+    const bool last = &piece == &pieces.back();
+    if (!forward) put_now();
+    const std::vector<bool> here = find_rotating(piece);
+    if (&piece != before || here != rotating) cross(*before, rotating, here, forward, at);
+    put_now();
+    rotating = here, before = &piece;
+    if (piece.end == at.state.t) continue;
+    const Scene part = make_piece_scene(scene_, piece, at.state, {piece.end}, {true, true});
+    ColumnSeries series(part, find_causes(piece, rotating), at.columns);
+    ColumnStepper stepper(series, at.state.t, piece.end, {.rtol = rtol});
+    while (stepper.t() != piece.end) {
+      check_interrupt();
+      if (out.steps++ >= max_steps)
+        throw IntegrationFailure(stepper.t(), "sensitivity: more than " + std::to_string(max_steps) + " steps");
+      if (stepper.advance(piece.end) != ode::StepResult::accepted)
+        throw IntegrationFailure(stepper.t(), "sensitivity: the motion or its derivatives leave the range of float64");
+      // Samples at the end of the piece come after what happens there.
+      std::size_t count = 0;
+      const auto within = [&](double t) { return (forward ? t <= stepper.t() : t >= stepper.t()) && t != piece.end; };
+      while (next + count < order.size() && within(scene_.times()[order[next + count]])) ++count;
+      if (count == 0) continue;
+      target.put(stepper, series, scene_.times(), order.data() + next, count);
+      next += count;
+    }
+    double attitude[4];
+    series.body().unpack(stepper.y(), 1, at.state.omega.data(), attitude);
+    at.state.attitude = {attitude[0], attitude[1], attitude[2], attitude[3]};
+    at.state.t = piece.end, at.columns = series.columns();
+    if (!last) continue;
+    std::vector<bool> then;
+    for (const Rotor& rotor : scene_.rotors()) then.push_back(rotor.rotates_at(at.state.t));
+    if (forward && then != rotating) cross(piece, rotating, then, forward, at);
+    put_now();
+  }
+}
+
+}  // namespace polhode

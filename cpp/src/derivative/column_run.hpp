@@ -1,0 +1,54 @@
+#pragma once
+
+#include <vector>
+
+#include "method/series/column_terms.hpp"
+#include "polhode/scene/parameter.hpp"
+#include "polhode/derivative/sensitivity.hpp"
+#include "solve/ground/pieces.hpp"
+
+namespace polhode {
+
+/// The motion of a scene and its columns at the scene's times, from one run.
+struct ColumnSamples {
+  std::vector<double> omega, attitude;   ///< (n, 3) and (n, 4)
+  std::vector<double> d_omega, turn;     ///< (n, 3, columns) in body axes
+  std::vector<std::size_t> samples;      ///< those that were computed
+  long steps = 0;
+};
+
+/// Integrates the columns of a scene through its pieces.
+class ColumnRun {
+ public:
+  /// @param side  of the small rotations of the start
+  ColumnRun(const Scene& scene, const std::vector<SceneParameter>& parameters, TurnSide side);
+
+  /// @param most  compute about so many samples in each direction of time, the last among them; 0: all
+  /// @throws IntegrationFailure if it does not reach its end
+  ColumnSamples run(double rtol, long max_steps, std::size_t most) const;
+
+ private:
+  struct Moment;   ///< a state with its columns
+
+  void follow(const std::vector<Piece>& pieces, const std::vector<std::size_t>& order, double rtol, long max_steps,
+              ColumnSamples& out) const;
+  std::vector<double> start_columns() const;
+  std::vector<bool> find_rotating(const Piece& piece) const;
+  std::vector<ColumnCause> find_causes(const Piece& piece, const std::vector<bool>& rotating) const;
+  Matrix3d find_inertia_change(const SceneParameter& parameter) const;
+  Vector3d find_momentum_change(const SceneParameter& parameter, const std::vector<bool>& rotating) const;
+  Vector3d accelerate(const Moment& at, const std::vector<AnyTorque>& torques, const Vector3d& h) const;
+  Vector3d divide(const Vector3d& L_B) const { return J_inverse_ * L_B; }
+  void cross(const Piece& before, const std::vector<bool>& from, const std::vector<bool>& to, bool forward,
+             Moment& at) const;
+
+  const Scene& scene_;
+  const std::vector<SceneParameter>& parameters_;
+  TurnSide side_;
+  Pieces pieces_;
+  Matrix3d J_inverse_;
+  std::vector<Vector3d> momenta_;        ///< of each rotor while it rotates, body axes
+  std::vector<Matrix3d> inertia_change_; ///< of each parameter
+};
+
+}  // namespace polhode

@@ -1,0 +1,129 @@
+#include "polhode/derivative/sensitivity.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "method/series/body_series.hpp"
+#include "polhode/core/error.hpp"
+#include "polhode/math/detail/functions.hpp"
+#include "polhode/solve/facts.hpp"
+#include "derivative/column_run.hpp"
+
+namespace polhode {
+namespace {
+
+constexpr double finer = 1.0 / 16.0;        // the tolerance of a run over that of the one before
+constexpr double least_tolerance = 1e-16;
+constexpr double rounding = 4e-15;          // in each turn, of what both runs round alike
+constexpr double margin = 4.0;              // of the difference of two runs, as the error of the second
+constexpr double unsure = 0.1;              // of the largest difference, that every column gets
+constexpr int most_runs = 5;
+constexpr std::size_t samples_compared = 64;   // samples of the first run
+
+/// The larger of |d omega| / scale and the angle of one column, whose components are `stride` apart.
+double measure(const double* d_omega, const double* turn, std::size_t stride, double scale) {
+  const double rate = math::hypot(d_omega[0], d_omega[stride], d_omega[2 * stride]) / scale;
+  return std::max(rate, math::hypot(turn[0], turn[stride], turn[2 * stride]));
+}
+
+double find_rate_scale(const Scene& scene, const std::vector<double>& omega) {
+  double scale = math::hypot(scene.omega()[0], scene.omega()[1], scene.omega()[2]);
+  for (std::size_t i = 0; i + 2 < omega.size(); i += 3)
+    scale = std::max(scale, math::hypot(omega[i], omega[i + 1], omega[i + 2]));
+  return scale > 0.0 ? scale : 1.0;
+}
+
+/// The largest difference of each column over its size, in the samples of the first run.
+std::vector<double> compare(const ColumnSamples& a, const ColumnSamples& b, std::size_t columns, double scale) {
+  std::vector<double> error(columns, 0.0);
+  for (const std::size_t i : a.samples) {
+    for (std::size_t c = 0; c < columns; ++c) {
+      const std::size_t at = 3 * columns * i + c;
+      double d_omega[3], turn[3];
+      for (std::size_t k = 0; k < 3; ++k) {
+        d_omega[k] = a.d_omega[at + k * columns] - b.d_omega[at + k * columns];
+        turn[k] = a.turn[at + k * columns] - b.turn[at + k * columns];
+      }
+      const double size = measure(&b.d_omega[at], &b.turn[at], columns, scale);
+      const double apart = measure(d_omega, turn, 1, scale);
+      if (!(apart <= size * error[c])) error[c] = apart / size;
+    }
+  }
+  return error;
+}
+
+/// Small rotations in space axes from those in body axes.
+void turn_to_space(const std::vector<double>& attitude, std::size_t columns, std::vector<double>& turn) {
+  for (std::size_t i = 0; 4 * i < attitude.size(); ++i) {
+    const double* q = &attitude[4 * i];
+    const Quat q_WB{q[0], q[1], q[2], q[3]};
+    for (std::size_t c = 0; c < columns; ++c) {
+      double* first = &turn[3 * columns * i + c];
+      const Vector3d turned = rotate(q_WB, {first[0], first[columns], first[2 * columns]});
+      for (std::size_t k = 0; k < 3; ++k) first[k * columns] = turned[static_cast<Eigen::Index>(k)];
+    }
+  }
+}
+
+std::vector<SceneParameter> find_all(const Scene& scene, const std::vector<std::string>& groups) {
+  std::vector<SceneParameter> all;
+  for (const std::string& group : groups) {
+    for (SceneParameter& parameter : find_parameters(scene, group)) {
+      for (const SceneParameter& other : all)
+        if (other.column == parameter.column)
+          throw InvalidInput("sensitivity", "of each number once", "'" + group + "'");
+      all.push_back(std::move(parameter));
+    }
+  }
+  return all;
+}
+
+void require_formulas(const Scene& scene) {
+  SceneParts parts = scene.parts();
+  for (AnyTorque& torque : parts.torques)
+    torque = std::visit([](const auto& one) { return AnyTorque(one); }, drop_windows(torque));
+  if (const std::string why = compute_series_refusal(Scene(std::move(parts))); !why.empty())
+    throw InvalidInput("sensitivity", "left out for a torque without a formula that can be differentiated", why);
+}
+
+}  // namespace
+
+MotionSensitivity compute_sensitivity(const Scene& scene, const std::vector<std::string>& groups,
+                                      const SensitivityOptions& options) {
+  if (!(options.accuracy > 0.0 && options.accuracy <= 1.0))
+    throw InvalidInput("accuracy", "above 0 and at most 1", to_text(options.accuracy));
+  require_formulas(scene);
+  const std::vector<SceneParameter> parameters = find_all(scene, groups);
+  const ColumnRun columns(scene, parameters, options.side);
+  // The error of a column grows with the turns, as that of a state does.
+  const double turns = std::min(std::max(1.0, compute_facts(scene).turns), 1e6);
+  double rtol = std::max(0.25 * options.accuracy / turns, least_tolerance / finer);
+  MotionSensitivity found;
+  if (!options.certify) rtol = std::max(rtol * finer, least_tolerance);
+  ColumnSamples last = columns.run(rtol, options.max_steps, options.certify ? samples_compared : 0), now;
+  found.runs = 1, found.steps = last.steps;
+  double worst = options.certify ? std::numeric_limits<double>::infinity() : 0.0;
+  double part = finer;
+  for (; found.runs < most_runs && worst > options.accuracy && rtol > least_tolerance; ++found.runs) {
+    rtol = std::max(rtol * part, least_tolerance);
+    now = columns.run(rtol, options.max_steps, 0);
+    found.steps += now.steps;
+    found.error = compare(last, now, parameters.size(), find_rate_scale(scene, now.omega));
+    worst = 0.0;
+    for (const double error : found.error) worst = error <= worst ? worst : error;   // NaN stays
+    // The difference of one column may be small by chance.
+    for (double& error : found.error) error = margin * std::max(error, unsure * worst);
+    worst *= margin;
+    part = worst > 0.0 ? std::min(finer, 0.25 * options.accuracy / worst) : finer;
+    last = std::move(now);
+  }
+  for (double& error : found.error) error += rounding * turns;
+  for (const SceneParameter& parameter : parameters) found.columns.push_back(parameter.column);
+  found.omega = std::move(last.omega), found.attitude = std::move(last.attitude);
+  found.d_omega = std::move(last.d_omega), found.d_attitude = std::move(last.turn);
+  if (options.side == TurnSide::space) turn_to_space(found.attitude, parameters.size(), found.d_attitude);
+  return found;
+}
+
+}  // namespace polhode

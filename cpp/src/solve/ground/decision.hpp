@@ -1,0 +1,28 @@
+#pragma once
+
+#include <memory>
+
+#include "polhode/ode/problem.hpp"
+#include "polhode/solve/closed_form.hpp"
+#include "polhode/solve/plan.hpp"
+#include "solve/ground/custom_looks.hpp"
+#include "solve/ground/pieces.hpp"
+
+namespace polhode {
+
+/// How a scene is solved. decide() makes it once; execute() carries it out, and explain() describes it.
+struct Decision {
+  Scene scene;                             ///< as given; without windows if none begins or ends within the span
+  Facts facts = {};                        ///< of pieces: `turns` gives the forecast of all pieces together
+  Plan plan = {};
+  Pieces pieces = {};                      ///< empty if the span is not cut
+  std::shared_ptr<const ClosedForm> form = {};   ///< of the whole span
+  std::size_t slow_forms = 0;              ///< pieces whose closed form holds, but takes longer than steps
+  double turns = 0.0;                      ///< revolutions of all pieces together
+  bool looked = false;                     ///< the pilot run looked at the user's own torques over the whole span
+  Looks looks = {};                        ///< what it found; the span is divided at its breaks
+  bool may_cut = true;                     ///< a run may end early where a torque of the user's own is found to jump
+  ode::Counts pilot = {};                  ///< what the pilot run of a user's own torque took
+};
+
+}  // namespace polhode

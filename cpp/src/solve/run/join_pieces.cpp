@@ -1,0 +1,183 @@
+#include "solve/run/join_pieces.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <span>
+
+#include "method/samples.hpp"
+#include "polhode/core/error.hpp"
+#include "solve/ground/custom_check.hpp"
+#include "solve/run/perturb.hpp"
+
+namespace polhode {
+namespace {
+
+bool is_exact(const Motion& motion) { return motion.plan.method == "exact"; }
+
+/// Runs the pieces of each direction and joins their rows.
+class PieceRunner {
+ public:
+  PieceRunner(const Scene& scene, const SolveOptions& options, const RunPiece& run, bool perturb_joins)
+      : scene_(scene), options_(options), run_(run), perturb_joins_(perturb_joins), reached_(scene.times().size(), 0) {
+    const Wanted want = scene.want();
+    if (want.omega) motion_.omega.resize(3 * reached_.size());
+    if (want.attitude) motion_.attitude.resize(4 * reached_.size());
+    motion_.start = scene.start();
+    motion_.t_reached = scene.t0();
+    motion_.has_dense = options.dense;
+  }
+
+  /// Returns false if a piece did not reach its end.
+  bool run_direction(const std::vector<Piece>& pieces, const std::vector<std::size_t>& order, const Wanted& want) {
+    State start = scene_.start();
+    Vector3d h = scene_.rotor_momentum();
+    std::size_t next = 0;
+    // The zeros of a start that a closed form needs are kept through the pieces before it too.
+    const bool keep_zeros = std::any_of(pieces.begin(), pieces.end(), [](const Piece& piece) {
+      return piece.form != nullptr && piece.form->needs_zeros;
+    });
+    for (const Piece& piece : pieces) {
+      const bool forward = piece.end >= piece.begin, last = &piece == &pieces.back();
+      std::vector<double> times;
+      const std::size_t first = next;
+      for (; next < order.size(); ++next) {
+        const double t = scene_.times()[order[next]];
+        if (forward ? t > piece.end : t < piece.end) break;
+        times.push_back(t);
+      }
+      if (!last || times.empty()) times.push_back(piece.end);
+      if (const Vector3d h_piece = sum_momenta(piece.rotors, scene_.omega()); h_piece != h) {
+        start.omega += compute_rate_jump(scene_.inertia_B(), h_piece - h);
+        h = h_piece;
+      }
+      const Scene part = make_piece_scene(scene_, piece, start, std::move(times), want);
+      if (part.torque_sum().acting > 0) require_true_claims(part);
+      Motion motion = run_(part, piece, make_options(pieces.back().end));
+      add(motion);
+      place(part, motion, std::span(order).subspan(first, next - first), piece.end);
+      const bool finished = motion.status == Status::finished;
+      motion_.t_reached = finished ? piece.end : find_reached(motion, piece);
+      if (finished && !last) start = get_end(motion, piece.end, want, keep_zeros);
+      motion_.status = motion.status;
+      motion_.message = finished ? "" : motion.message;
+      if (motion.status == Status::max_steps) motion_.message = describe_max_steps();
+      if (last && finished && forward) motion.end_jump = find_jump(part, piece.end);
+      if (options_.dense) keep_dense(std::move(motion), piece);
+      if (!finished) return motion_.status == Status::event;
+      if (!last && wants_to_stop(pieces.back().end)) return false;
+    }
+    return true;
+  }
+
+  Motion finish() {
+    drop_unreached(scene_.times(), reached_, motion_);
+    return std::move(motion_);
+  }
+
+ private:
+  SolveOptions make_options(double last) const {
+    SolveOptions options = options_;
+    options.max_steps = options_.max_steps - motion_.stats.steps;
+    if (options_.progress)
+      options.progress = [this, last](double reached, double) { return options_.progress(reached, last); };
+    return options;
+  }
+
+  void add(const Motion& part) {
+    motion_.stats += part.stats;
+    motion_.events.insert(motion_.events.end(), part.events.begin(), part.events.end());
+    if (!std::isnan(part.error))
+      motion_.error = std::isnan(motion_.error) ? part.error : std::max(part.error, motion_.error);
+  }
+
+  /// Copies the rows of a piece into the rows of the motion. A sample at the end of a forward piece has the rates after
+  /// the jump there, because a window includes its begin.
+  void place(const Scene& part, const Motion& motion, std::span<const std::size_t> order, double end) {
+    std::size_t row = 0;
+    const Vector3d jump = find_jump(part, end);
+    for (std::size_t i = 0; i < order.size() && row < motion.t.size(); ++i) {
+      if (motion.t[row] != part.times()[i]) continue;
+      if (!motion_.omega.empty()) std::copy_n(motion.omega.data() + 3 * row, 3, motion_.omega.data() + 3 * order[i]);
+      if (!motion_.omega.empty() && motion.t[row] == end)
+        for (int k = 0; k < 3; ++k) motion_.omega[3 * order[i] + static_cast<std::size_t>(k)] += jump[k];
+      if (!motion_.attitude.empty())
+        std::copy_n(motion.attitude.data() + 4 * row, 4, motion_.attitude.data() + 4 * order[i]);
+      reached_[order[i]] = 1;
+      ++row;
+    }
+  }
+
+  /// The change of omega at the end of a piece.
+  Vector3d find_jump(const Scene& part, double end) const {
+    const Vector3d dh = scene_.rotor_momentum(end) - part.rotor_momentum();
+    return dh.isZero(0.0) ? dh : compute_rate_jump(scene_.inertia_B(), dh);
+  }
+
+  static double find_reached(const Motion& motion, const Piece& piece) {
+    if (!is_exact(motion) || motion.status != Status::stopped) return motion.t_reached;
+    return motion.t.empty() ? piece.begin : motion.t.back();
+  }
+
+  State get_end(const Motion& motion, double t, const Wanted& want, bool keep_zeros) {
+    const double* w = motion.omega.data() + motion.omega.size() - 3;
+    State end{t, {w[0], w[1], w[2]}, scene_.attitude()};
+    if (want.attitude) {
+      const double* q = motion.attitude.data() + motion.attitude.size() - 4;
+      end.attitude = {q[0], q[1], q[2], q[3]};
+    }
+    ++joins_;
+    return perturb_joins_ ? perturb_state(end, is_exact(motion) ? 8.0 : 2.0, joins_, keep_zeros) : end;
+  }
+
+  std::string describe_max_steps() const {
+    return "gave up after max_steps = " + std::to_string(options_.max_steps) + " steps at t = " +
+           polhode::to_text(motion_.t_reached) + " s";
+  }
+
+  void keep_dense(Motion motion, const Piece& piece) {
+    motion.t_begin = std::min(piece.begin, motion_.t_reached);
+    motion.t_reached = std::max(piece.begin, motion_.t_reached);
+    motion.t.clear(), motion.omega.clear(), motion.attitude.clear(), motion.events.clear();
+    motion_.pieces.push_back(std::make_shared<const Motion>(std::move(motion)));
+  }
+
+  /// Calls `progress` between pieces, because closed forms have no steps.
+  bool wants_to_stop(double last) {
+    if (!options_.progress || (++calls_ & 15) != 0) return false;
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_call_ < std::chrono::milliseconds(50)) return false;
+    last_call_ = now;
+    if (options_.progress(motion_.t_reached, last)) return false;
+    motion_.status = Status::stopped;
+    motion_.message = "stopped by the progress callback at t = " + polhode::to_text(motion_.t_reached) + " s";
+    return true;
+  }
+
+  const Scene& scene_;
+  const SolveOptions& options_;
+  const RunPiece& run_;
+  bool perturb_joins_;
+  std::vector<unsigned char> reached_;
+  Motion motion_;
+  int joins_ = 0;
+  unsigned calls_ = 0;
+  std::chrono::steady_clock::time_point last_call_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+Motion run_pieces(const Scene& scene, const Pieces& pieces, const SolveOptions& options, const RunPiece& run,
+                  bool perturb_joins) {
+  const Wanted want{true, carries_attitude(scene, pieces, options)};
+  PieceRunner runner(scene, options, run, perturb_joins);
+  const SampleOrder order(scene.times(), scene.t0());
+  if (runner.run_direction(pieces.backward, order.backward, want))
+    runner.run_direction(pieces.forward, order.forward, want);
+  Motion motion = runner.finish();
+  motion.model = "pieces", motion.state = want.attitude ? "omega, attitude" : "omega";
+  return motion;
+}
+
+}  // namespace polhode
