@@ -73,3 +73,19 @@ def test_column_of_the_axes_of_a_slender_body():
     true = np.array([-1.2295713581500079956e-6, 0.0013457811368072596413, 4.5685066716705201011e-7])
     column = body.sensitivity(0.0021743565836000725, ("axes",)).column("axes_y")[0].reshape(-1)
     assert np.linalg.norm(column - true) <= 20 * 2.2e-16 * np.linalg.norm(true)
+
+
+@pytest.mark.parametrize("accuracy", [1e-6, 1e-9, 1e-12])
+@pytest.mark.parametrize("sign", [-1, 1])
+@pytest.mark.parametrize("speed", [0.0, 1e-17, 1e-12])
+def test_limits_of_a_body_that_stands_upright(speed, sign, accuracy):
+    """Truth: exactly at rest for ever; with a spin about the vertical, that spin alone."""
+    half = 0.5 ** 0.5
+    scene = ph.Scene(
+        inertia=(0.06652143, 0.18703833, 0.24235623), omega=(0, speed, 0), attitude=(-half, 0, 0, half),
+        torques=[ph.torques.Gravity(0.01861226794656813, (0, 0.2113714947937306, 0))],
+        times=sign * np.linspace(0, 160.0, 4))
+    motion = ph.solve(scene, accuracy, method="taylor")
+    error = np.abs(motion.omega - (0, speed, 0)).max()
+    assert motion.error_kind == "limit" and error > 0
+    assert error <= motion.error * speed or motion.error == np.inf

@@ -159,8 +159,28 @@ class Certifier {
     return finish();
   }
 
+  /// What float64 drops of torques and of products of rates below its range, over the whole span.
+  double compute_underflow() const {
+    constexpr double dropped = 0x1p-1072;   // of an acceleration, and of a torque
+    const double least = std::min(1.0, decision_.scene.inertia_B().moments().minCoeff());
+    const double span = decision_.facts.span(), rate = best_.motion.omega_scale();
+    const double change = dropped / least * span;   // of a rate
+    return std::max(rate > 0.0 ? change / rate : 0.0, best_.motion.attitude.empty() ? 0.0 : change * span);
+  }
+
+  /// Rates w of a motion whose own rates v are unknown have an error |w - v| / max |v| up to 1 + max |w| / |v(t0)|.
+  double compute_worst_rate() const {
+    if (best_.motion.omega.empty()) return 0.0;
+    const Vector3d& start = decision_.scene.omega();
+    return 1.0 + best_.motion.omega_scale() / math::hypot(start[0], start[1], start[2]);
+  }
+
   Motion conclude() {
     Motion& motion = best_.motion;
+    if (best_.finished() && !motion.t.empty()) {
+      underflow_ = compute_underflow();
+      if (underflow_ > 1e-17) best_.error = std::min(best_.error + underflow_, std::numeric_limits<double>::max());
+    }
     motion.error = best_.error;
     if (!best_.finished() || motion.t.empty() || !(best_.error < unknown_error)) {
       motion.error = std::numeric_limits<double>::quiet_NaN();
@@ -185,8 +205,8 @@ class Certifier {
     } else {
       motion.error_kind = "limit";
       best_.error *= limit_safety;
-      // So large an error grows by no linear rule any more: it is no bound below the largest angle.
-      if (best_.error > 0.5) best_.error = std::max(best_.error, std::numbers::pi);
+      // So large an error grows by no linear rule any more: it is no bound below the largest angle and rate.
+      if (best_.error > 0.5) best_.error = std::max({best_.error, std::numbers::pi, compute_worst_rate()});
       motion.error = best_.error;
       note(describe_limit());
     }
@@ -206,7 +226,12 @@ class Certifier {
   std::string describe_limit() const {
     char text[320];
     int n = 0;
-    if (best_.error > 0.5) {
+    if (underflow_ > 0.1 * accuracy_) {
+      n = std::snprintf(text, sizeof text,
+                        "the accuracy of %.3g was not reached: torques or products of rates are below float64's range "
+                        "over so long a span; another unit of time helps",
+                        accuracy_);
+    } else if (best_.error > 0.5) {
       n = std::snprintf(text, sizeof text,
                         "the accuracy of %.3g was not reached: rounding errors, including those of the inputs, grow "
                         "over this span until no digit is certain",
@@ -244,6 +269,7 @@ class Certifier {
   CountedRuns runs_;
   const double accuracy_;
   double safety_ = 1.5, ratio_ = pair_ratio;
+  double underflow_ = 0.0;   ///< a part of the error
   Attempt best_;
   Looks looks_;
 };

@@ -120,17 +120,18 @@ class Expansion {
 
   POLHODE_INLINE Expansion(const SeriesTerms& c, const SeriesStart& start, Rows& products, double* rows)
       : rows_(rows), damped_(c.damped) {
-    const Quad H = all4(start.unit), HH = H * H;
+    // Never H * H, which leaves the range of float64 for units below 1e-162 s and above 1e154 s.
+    const Quad H = all4(start.unit);
     unscale_ = join(all4(1.0 / start.unit), all4(1.0));   // rates are returned in their own unit
     product_ = load4(c.product), product_low_ = load4(c.product_low), to_rates_ = load4(c.to_rates);
     orbit_ = all4(c.orbit_rate) * H;
     for (int j = 0; j < 3; ++j) damping_[j] = load4(c.damping[j]) * H;
     for (int i = 0; i < fixed; ++i)
-      for (int j = 0; j < 3; ++j) pull_[i][j] = load4(c.pull[i][j]) * HH;
-    for (int i = 0; i < 2; ++i) tidal_[i] = load4(c.tidal[i]) * HH;
+      for (int j = 0; j < 3; ++j) pull_[i][j] = load4(c.pull[i][j]) * H * H;
+    for (int i = 0; i < 2; ++i) tidal_[i] = load4(c.tidal[i]) * H * H;
     r_ = load4(start.y) * H, q_ = load4(start.y + 4);
     for (int i = 0; i < vectors; ++i) v_[i] = load4(start.vectors + 4 * i);
-    torque_ = load4(c.torque) * HH;
+    torque_ = load4(c.torque) * H * H;
     put(0, products);
     minus_front_w_ = negative(front(w_)), back_w_ = back(w_);
     for (int i = 0; i < vectors; ++i) front_v_[i] = front(v_[i]), minus_back_v_[i] = negative(back(v_[i]));
