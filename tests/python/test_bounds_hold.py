@@ -89,3 +89,20 @@ def test_limits_of_a_body_that_stands_upright(speed, sign, accuracy):
     error = np.abs(motion.omega - (0, speed, 0)).max()
     assert motion.error_kind == "limit" and error > 0
     assert error <= motion.error * speed or motion.error == np.inf
+
+
+@pytest.mark.parametrize("scale", [1e-12, 1.0, 1e12])
+@pytest.mark.parametrize("sign", [-1, 1])
+@pytest.mark.parametrize("want", [("omega",), ("attitude",), ("omega", "attitude")])
+def test_columns_and_events_next_to_an_upright_rest(want, sign, scale):
+    half, slow, growth = 0.5 ** 0.5, 1e-12 / scale, np.sqrt(1.7 * 13 / 0.6)
+    scene = ph.Scene(inertia=(0.4, 0.46, 0.6), omega=(0, 0, slow), attitude=(half, 0, half, 0), times=[sign * scale],
+                     torques=[ph.torques.Gravity(1.7 / scale ** 2, (13, 0, 0))], want=want)
+    found = ph.solve(scene, 1e-9, sensitivity=("omega",)).sensitivity
+    column = np.asarray(found.column("omega_z")[0]).reshape(-1)
+    true = np.array((0, 0, np.cosh(growth)))
+    assert np.linalg.norm(column - true) <= found.error.max() * true[2] < 1e-11 * true[2]
+    motion = ph.solve(scene, 1e-9, events=[lambda t, omega, attitude: t - sign * scale / 2])
+    if "omega" in want:
+        assert np.linalg.norm(motion.omega[0] - slow * true) <= motion.error * slow * true[2]
+    assert motion.error_kind in ("bounded", "limit")
