@@ -81,7 +81,7 @@ def draw_racket(times, folder):
         axes.set_xlabel("time [s]")
         axes.set_ylabel("flips so far")
         style.heading(figure, "A racket's flips at 60 steps a second",
-                      f"moments (0.2, 0.4, 0.52) kg m^2, start (0.1, 5, 0.1) rad/s; the closed form is dashed", 0.03)
+                      "moments (0.2, 0.4, 0.52) kg m^2, start (0.1, 5, 0.1) rad/s; the closed form is dashed", 0.03)
         style.save(figure, folder, "step_racket")
         plt.close(figure)
 

@@ -10,6 +10,7 @@ import argparse
 import time
 
 import numpy as np
+
 import polhode as ph
 from polhode import _core
 

@@ -63,9 +63,11 @@ def inline(page):
     """The page as one file, which runs from a folder without a server."""
     scripts = [(page / name).read_text() for name in ("core.js", "draw.js", "app.js")]
     code = "\n".join(re.sub(r"^import .*\n|^export ", "", script, flags=re.MULTILINE) for script in scripts)
-    packed = {name: base64.b64encode(gzip.compress((page / name).read_bytes(), 9, mtime=0)).decode() for name in MODULES}
+    packed = {name: base64.b64encode(gzip.compress((page / name).read_bytes(), 9, mtime=0)).decode()
+              for name in MODULES}
     text = (page / "index.html").read_text()
-    text = text.replace('<link rel="stylesheet" href="style.css">', f"<style>\n{(page / 'style.css').read_text()}</style>")
+    style = (page / "style.css").read_text()
+    text = text.replace('<link rel="stylesheet" href="style.css">', f"<style>\n{style}</style>")
     return text.replace('<script type="module" src="app.js"></script>',
                         f"<script>globalThis.polhodeModules = {packed};</script>\n"
                         f'<script type="module">\n{code}</script>')

@@ -16,7 +16,8 @@ exact = ph.FreeMotion(block.inertia, omega)
 scene = ph.Scene(inertia=block.inertia, omega=omega, times=np.arange(1.0, 16.0))
 motion = ph.solve(scene, method="rk45", rtol=rtol)
 
-print("moments %.4f %.4f %.4f kg m^2," % tuple(block.inertia.moments), "omega %g %g %g rad/s" % omega)
+print("moments {:.4f} {:.4f} {:.4f} kg m^2,".format(*block.inertia.moments),
+      "omega {:g} {:g} {:g} rad/s".format(*omega))
 flips = " ".join(f"{t:.6f}" for t in exact.flip_times(0.0, 15.0))
 print(f"closed form: motion {exact.kind}, period {exact.period:.9f} s, flips at {flips} s")
 print(f"rk45: rtol {rtol:.0e}, {motion.stats['steps']} steps\n")

@@ -4,7 +4,7 @@ import importlib as _importlib
 from typing import TYPE_CHECKING as _TYPE_CHECKING
 from typing import Any as _Any
 
-from . import _process   # first: it refuses subinterpreters and second copies
+from . import _process  # first: it refuses subinterpreters and second copies
 
 _process.require_one_copy(__file__)
 
@@ -54,14 +54,14 @@ from .inertia import MassProperties as MassProperties
 from .inertia import PrincipalAxes as PrincipalAxes
 
 if _TYPE_CHECKING:
-    from ._ensemble.ensemble import Ensemble as Ensemble
-    from ._ensemble.run import ensemble as ensemble
-    from ._saved import load as load
     from . import atlas as atlas
     from . import charts as charts
     from . import recipe as recipe
     from . import report as report
     from . import schema as schema
+    from ._ensemble.ensemble import Ensemble as Ensemble
+    from ._ensemble.run import ensemble as ensemble
+    from ._saved import load as load
 
 _attach()   # the methods of compiled classes that are written in Python
 

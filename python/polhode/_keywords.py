@@ -29,7 +29,7 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
 
 def wrong(owner: str, key: str, names: tuple[str, ...]) -> str:
     """Return the message about a keyword that is not among the names."""
-    import difflib   # for the error alone
+    import difflib  # for the error alone
 
     names = tuple(name for name in names if name != "self")
     near = difflib.get_close_matches(key, names, 1, 0.5)

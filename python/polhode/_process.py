@@ -6,7 +6,7 @@ import os
 import sys
 from importlib import import_module
 
-from . import _core   # refuses a subinterpreter
+from . import _core  # refuses a subinterpreter
 
 # What calls import when they first need it. Its locks are looked at before a fork.
 LATE = frozenset({"polhode", "numpy", "pydantic", "pydantic_core", "difflib", "pathlib", "ctypes", "rich"})

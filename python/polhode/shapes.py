@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import inspect
 import textwrap
-from typing import Any, Callable
+from collections.abc import Callable
+from typing import Any
 
 import numpy.typing as npt  # noqa: F401  the annotations name it
 

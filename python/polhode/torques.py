@@ -7,7 +7,7 @@ from typing import Any
 from . import _core
 from ._core.torques import *  # noqa: F403  the list is the compiled one
 
-__all__ = [record["name"] for record in _core.torque_records()] + ["During", "records"]
+__all__ = [record["name"] for record in _core.torque_records()] + ["During", "records"]  # noqa: F405
 
 for _name in __all__[:-1]:
     globals()[_name].__module__ = "polhode.torques"

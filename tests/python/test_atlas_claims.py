@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 import polhode as ph
+from polhode._harness.truth import Truth, attitude_errors
 from polhode.atlas import FAMILIES, claims, scenes
 from polhode.atlas.case import stored
 from polhode.atlas.entrants import entrants
 from polhode.atlas.family import LEVELS
 from polhode.atlas.results import FamilyResult
-from polhode._harness.truth import Truth, attitude_errors
 
 WHO = {entrant.name: entrant for entrant in entrants()}
 BY_NAME = {family.name: family for family in FAMILIES}

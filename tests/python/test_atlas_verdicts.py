@@ -8,13 +8,13 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import polhode as ph
+from polhode._harness.truth import attitude_errors, compute_errors
 from polhode.atlas import FAMILIES, claims, scenes
 from polhode.atlas.case import Case, key, stored, truth_of
 from polhode.atlas.entrants import entrants
 from polhode.atlas.families import damping, racket, scales, sleeping, step
 from polhode.atlas.family import Point, to_short
 from polhode.atlas.results import FamilyResult
-from polhode._harness.truth import attitude_errors, compute_errors
 
 WHO = {entrant.name: entrant for entrant in entrants()}
 BY_NAME = {family.name: family for family in FAMILIES}

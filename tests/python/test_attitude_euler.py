@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.spatial.transform import Rotation as SciPy
+from test_attitude import SEQUENCES
 
 import polhode as ph
-from test_attitude import SEQUENCES
 
 LIMIT = 2e-15
 PROPER = {seq: seq[0] == seq[2] for seq in SEQUENCES}

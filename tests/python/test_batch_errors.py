@@ -1,8 +1,9 @@
 """`errors="nan"` and `progress=` of batches: impossible bodies fail alone, and long calls tell how far they are."""
 
 import numpy as np
-import polhode as ph
 import pytest
+
+import polhode as ph
 
 TIMES = np.linspace(0.0, 5.0, 7)
 N = 200

@@ -11,13 +11,12 @@ import pytest
 
 import polhode as ph
 from polhode._harness.truth import Truth, compute_errors, find_truth
-from polhode.charts import chart
-from polhode.charts import runners
+from polhode.charts import chart, runners
 from polhode.charts.candidate import Answer, Candidate, Failure, tolerances
 from polhode.charts.candidates import candidates
-from polhode.charts.findings import (
+from polhode.charts.findings import (  # isort: skip
     dominated, front, headline, held_by_stability, stalls, time_ratios, time_to_reach, under_headline, without_answer,
-)  # fmt: skip
+)
 from polhode.charts.measure import Point, SceneResult, measure
 from polhode.charts.results import document
 from polhode.charts.runners import InProcess
@@ -337,7 +336,7 @@ def test_results_json(charted):
     assert content["scenes"][1]["reference"]["kind"] == "made"
     points = {p["setting"]: p for p in scene["points"] if p["candidate"] == "rk45"}
     assert list(points) == [f"1e-{k:02d}" for k in range(3, 15)]
-    for setting, point in points.items():
+    for point in points.values():
         assert point["status"] == "answered" and point["seconds"] > 0 and point["repeats"] >= 1
         assert point["error"] == max(point["error_omega"], point["error_attitude"]) and point["counts"]["steps"] > 0
         assert set(point["drift"]) == {"energy", "vertical_momentum"}

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 import polhode as ph
+from polhode._harness.truth import Truth
 from polhode._plot.text import to_time
 from polhode.charts import chart, choice
 from polhode.charts.candidates import candidates
 from polhode.charts.measure import SceneResult
-from polhode._harness.truth import Truth
 
 pytest.importorskip("matplotlib")
 

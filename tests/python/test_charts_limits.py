@@ -5,9 +5,9 @@ import numpy as np
 from matplotlib.text import Text
 
 import polhode as ph
+from polhode._harness.truth import Truth
 from polhode.charts import choice, pictures
 from polhode.charts.measure import Point, SceneResult
-from polhode._harness.truth import Truth
 
 SCENE = ph.Scene(inertia=(1.0, 2.0, 2.5), omega=(1.0, 2.0, 3.0), times=np.linspace(0, 1, 5), name="tiny")
 TRUTH = Truth(np.ones((1, 3)), np.ones((1, 4)), "stored", "", 3e-16, 1e-13)

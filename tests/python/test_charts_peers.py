@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 import polhode as ph
+from polhode._harness.truth import compute_errors, find_truth
 from polhode.charts import equations, peers
 from polhode.charts.candidate import Answer, Candidate, Failure, refuses_times, tolerances
 from polhode.charts.candidates import candidates
 from polhode.charts.measure import measure
 from polhode.charts.runners import InProcess, Subprocess, make_runner
-from polhode._harness.truth import compute_errors, find_truth
 
 TINY = ph.Scene(inertia=(1.0, 2.0, 2.5), omega=(1.0, 2.0, 3.0), times=np.linspace(0, 1, 5), name="tiny")
 TORQUES = {

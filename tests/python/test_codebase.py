@@ -88,11 +88,6 @@ def test_kernels_are_not_shown_as_api():
     assert not [p for p in pages if re.search(r"polhode/\w+/detail/", p.read_text())]
 
 
-def test_old_headers_name_the_new_place():
-    for name in OLD_PLACES:
-        assert f'#include "polhode/method/{name}.hpp"' in (ROOT / f"cpp/include/polhode/solve/{name}.hpp").read_text()
-
-
 def test_no_python_under_cpp():
     assert not [p for p in sources("cpp") if re.search(r"Python\.h|pybind11", p.read_text())]
 
@@ -257,6 +252,18 @@ def test_lines_of_python_have_120_columns():
             for path in sorted((ROOT / folder).rglob("*.py"))
             for number, line in enumerate(path.read_text().splitlines(), 1) if len(line) > 120]
     assert not long
+
+
+def test_python_passes_ruff():
+    pytest.importorskip("ruff")
+    command = [sys.executable, "-m", "ruff", "check", "--no-cache", "--output-format=concise", "."]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_every_target_of_make_says_what_it_does():
+    rules = re.findall(r"^([a-z][a-z0-9-]*):(.*)$", (ROOT / "Makefile").read_text(), flags=re.M)
+    assert len(rules) > 20 and not [name for name, rest in rules if " ## " not in rest]
 
 
 def test_one_version():

@@ -7,8 +7,9 @@ import sys
 
 import mpmath
 import numpy as np
-import polhode as ph
 import pytest
+
+import polhode as ph
 from polhode import _core
 
 EMPTY = np.empty((0, 0))

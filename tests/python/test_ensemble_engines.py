@@ -6,8 +6,6 @@ import multiprocessing
 import os
 import pathlib
 import signal
-import subprocess
-import sys
 import threading
 
 import ensembles

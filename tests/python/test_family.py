@@ -174,7 +174,7 @@ def test_truth_of_a_free_body_is_what_mpmath_finds(kind):
     """Euler's equations with 25 digits, by mpmath's own series."""
     pytest.importorskip("heyoka")
     mpmath = pytest.importorskip("mpmath")
-    index, known = 0, None
+    index, known, scene = 0, None, None
     while known is None or not 3 < known.steps < 40 or scene.torques:
         scene = family.draw(7, kind, index).scene.replace(torques=[], rotors=[])
         span = scene.times[-1] - scene.t0

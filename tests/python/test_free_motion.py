@@ -102,7 +102,7 @@ def test_scipys_integrator_agrees_where_it_can():
     moments = np.array(BLOCK)
 
     def rates(t, y):
-        w, (x, q, z, s) = y[:3], y[3:]
+        w = y[:3]
         quaternion = 0.5 * quaternion_product(y[3:], np.append(w, 0.0))
         return np.concatenate([-np.cross(w, moments * w) / moments, quaternion])
 

@@ -7,10 +7,10 @@ import tempfile
 import threading
 import time
 
+import doors
 import numpy as np
 import pytest
 
-import doors
 import polhode as ph
 
 BLOCK, OMEGA, HERE = (1, 2, 2.5), (1, 2, 3), (0, 0, 0, 1)

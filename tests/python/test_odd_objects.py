@@ -5,10 +5,10 @@ import fractions
 import pathlib
 import warnings
 
+import doors
 import numpy as np
 import pytest
 
-import doors
 import polhode as ph
 
 T = ph.torques

@@ -187,7 +187,8 @@ def test_a_notebook_shows_a_picture_without_magic():
 
 
 def test_an_executed_notebook_holds_the_picture(tmp_path):
-    nbclient, nbformat = pytest.importorskip("nbclient"), pytest.importorskip("nbformat")
+    nbformat = pytest.importorskip("nbformat")
+    pytest.importorskip("nbclient")
     pytest.importorskip("ipykernel")
     cells = ["import polhode as ph", "ph.FreeMotion((1, 2, 2.5), (1, 2, 3)).plot('polhode')"]
     book = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(text) for text in cells])

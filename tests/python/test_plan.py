@@ -1,7 +1,7 @@
 """Accuracy asked is accuracy got: the certificate against stored truth, plans in words, contradicting options."""
 
-import json
 import importlib
+import json
 import pickle
 
 import numpy as np

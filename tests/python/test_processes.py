@@ -8,7 +8,6 @@ import subprocess
 import sys
 import weakref
 
-import numpy as np
 import pytest
 
 import polhode as ph

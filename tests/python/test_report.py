@@ -13,9 +13,9 @@ import pytest
 import polhode as ph
 from polhode.charts.candidates import candidates
 from polhode.report import report, tables
-from polhode.report.curves import GROUPS, figure
 from polhode.report.atlas_part import part
 from polhode.report.atlas_part import write as write_atlas
+from polhode.report.curves import GROUPS, figure
 from polhode.report.page import _in_script, picture, render
 
 pytest.importorskip("matplotlib")

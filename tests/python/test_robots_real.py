@@ -5,7 +5,7 @@ import time
 
 import numpy as np
 import pytest
-from test_robots import CORNERS, SIDES, call, judged, sdf, stl, tensor, urdf
+from test_robots import CORNERS, SIDES, call, judged, sdf, stl, tensor
 
 import polhode as ph
 from polhode.inertia import robots

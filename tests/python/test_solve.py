@@ -12,7 +12,6 @@ from measures import attitude_error, error, rates_error, truth
 
 import polhode as ph
 
-
 # ---- accuracy
 
 # The error that rk45 reaches at rtol 1e-6 and 1e-10 on each scene, with a factor 2 above and 5 below what was measured:

@@ -7,8 +7,9 @@ import subprocess
 import sys
 
 import numpy as np
-import polhode as ph
 import pytest
+
+import polhode as ph
 from polhode import _core
 
 AXIS = (0.6, 0.0, 0.8)

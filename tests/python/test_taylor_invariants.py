@@ -1,8 +1,9 @@
 """taylor brings driven bodies back to what they keep: no drift over long spans, and no harm where it could do some."""
 
 import numpy as np
-import polhode as ph
 import pytest
+
+import polhode as ph
 
 TILTED = (np.sin(0.25), 0.0, 0.0, np.cos(0.25))
 N = 1e-3

@@ -251,7 +251,7 @@ def families(random):
     for i in range(60):           # scales
         scale, mass = 10.0 ** (-150 + 300 * i / 59), log(-30, 30)
         yield "scales", *shuffled([mass * v for v in box()], [scale * v for v in normal()])
-    for i in range(30):           # planar bodies, I3 = I1 + I2
+    for _ in range(30):           # planar bodies, I3 = I1 + I2
         a, b = log(-3, 0), 1.0
         yield "planar", *shuffled([a, b, a + b], normal())
     exact = [

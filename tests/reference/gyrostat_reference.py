@@ -31,9 +31,9 @@ def families(rng):
     box = lambda: rng.choice(([1.0, 2.0, 2.5], [rng.uniform(0.5, 1) for _ in range(3)]))
     some = lambda v, keep: [c if k in keep else 0.0 for k, c in enumerate(v)]
 
-    for i in range(12):
+    for _ in range(12):
         yield "random", box(), normal(log(-1, 1)), normal()
-    for i in range(4):
+    for _ in range(4):
         yield "no rotor", box(), [0.0, 0.0, 0.0], normal()
     for i, e in enumerate((-18, -16, -12, -8, -5, -3, 1, 2, 4)):
         keep = ((2,), (0, 1), (0, 1, 2))[i % 3]
@@ -76,7 +76,7 @@ def families(rng):
     # With M = (3, 6, 6) and the saddle M = (0, 9, 0) the energies are equal.
     yield "separatrix", [3.0, 4.0, 6.0], [0.0, 1.5, 0.0], [1.0, 1.125, 1.0]
     yield "separatrix", [3.0, 4.0, 6.0], [0.0, 1.5, 0.0], [-1.0, 1.125, 1.0]
-    for i in range(6):
+    for _ in range(6):
         scale, mass = 10.0 ** rng.uniform(-100, 100), log(-20, 20)
         yield "scales", [mass * c for c in box()], [mass * scale * c for c in normal()], [scale * c for c in normal()]
 

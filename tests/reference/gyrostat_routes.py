@@ -117,7 +117,7 @@ class Theta:
             self.set_up(A, g, M, omega)
 
     def set_up(self, A, g, M, omega):
-        h, L = self.h, self.L
+        L = self.L
         m = [c / L for c in M]
         sg = dot(omega, m) / L
         u, a = [(omega[i] - sg * M[i]) / L for i in range(3)], [c - sg for c in A]
@@ -178,7 +178,6 @@ class Theta:
         for attempt in (0, 1):
             SW = (abs(Sm) + mp.sqrt(Sm * Sm - Df2)) / 2
             mm = Df2 / (4 * SW * SW)
-            kc = mp.sqrt(1 - mm)
             nome = self.nome = mp.qfrom(m=mm) if mm else mpf(0)
             if abs(nome) < mpf("0.0433") or attempt:
                 break
@@ -242,7 +241,6 @@ class Theta:
 
     @staticmethod
     def solve_phase(nome, xE, ao, psi0, slope, target):
-        best = None
         R = mp.sqrt(xE * xE - 4 * nome * (1 - 2 * nome) * ao * ao)
         R = R if abs(xE + R) >= abs(xE - R) else -R
         w = mp.acos(mpc(ao * (1 - 2 * nome) / (xE + R)))

@@ -122,7 +122,7 @@ class Taylor:
 
     def at(self, times, bounded=True):
         """Rows (w1, w2, w3, x, y, z, w) at each time; `bounded=False`: no period is sought (steady, homoclinic)."""
-        rows, jump = [], None
+        rows = []
         T, turned = None, None
         for t in map(mp.mpf, times):
             if T is None and bounded:
@@ -381,7 +381,7 @@ def main():
     cases = [*regimes(), *random_tops(80, random.Random(20))]
     table, worst = [], 0.0
     with multiprocessing.Pool(2) as pool:
-        for case, (row, check) in zip(cases, pool.imap(make_row, cases)):
+        for row, check in pool.imap(make_row, cases):
             cond = max(map(max, row["cond"]), default=0)
             print(f"{row['name']:30s} routes differ by {check}, cond {cond:.1e}", flush=True)
             worst = max(worst, check or 0.0)

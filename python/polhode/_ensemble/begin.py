@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .. import _files, _folders
+from .. import _folders
 from .._core import InvalidInput, __version__
 from . import states, store
 from .recipe import from_message

@@ -23,7 +23,6 @@ from .recipe import EnsembleRecipe
 from .states import States
 from .task import Task
 
-
 KIND = "ensemble"   # of a saved file
 
 

@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 
 from .._core import InvalidInput
-from . import begin
+from . import begin, store
 from . import layout as layouts
 from . import recipe as recipes
-from . import store
 from .ensemble import Ensemble
 from .layout import Layout
 from .task import Task, fields

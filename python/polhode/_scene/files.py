@@ -17,7 +17,6 @@ from .bodies import attitude_of, body_inertia, body_model, place_meshes
 from .scene import Scene, scene_folder
 from .validation import euler_model, kinds, model, one_of, validate
 
-
 MOST_SAMPLES = 10_000_000   # of a span, so that a file of a few bytes does not claim the machine's memory
 
 
@@ -43,7 +42,7 @@ def scene_model() -> Any:
                    attitude=(kind.quaternion | None, None), euler=(euler_model() | None, None), t0=(kind.number, 0.0))
     times = model("Times", _check_times, span=(kind.number | None, None), values=(kind.numbers | None, None),
                    samples=(Annotated[int, Field(ge=1, le=MOST_SAMPLES)] | None, None))
-    any_torque: Any = Union[tuple(_torque_models())]
+    any_torque: Any = Union[tuple(_torque_models())]  # noqa: UP007  as many as the list has
     torque: Any = Annotated[any_torque, Field(discriminator="kind")]
     rotor: Any = model("Rotor", axis=(kind.vector, ...), momentum=(kind.number | None, None),
                        inertia=(kind.number | None, None), speed=(kind.number | None, None), free=(bool, False),

@@ -150,6 +150,6 @@ def _restore(cls: type[Scene], parts: dict[str, Any], kept: bool = True) -> Scen
 
 def scene_folder() -> pathlib.Path:
     """Return the folder of the scenes that are installed with polhode."""
-    import pathlib   # not needed by those who only compute, and slow to import
+    import pathlib  # not needed by those who only compute, and slow to import
 
     return pathlib.Path(_core.__file__).parent / "scenes"

@@ -13,7 +13,6 @@ import time
 from .. import _core, _files
 from .._build import processor
 
-
 LONGEST = 1_000_000   # bytes of the file, which takes a few hundred
 
 

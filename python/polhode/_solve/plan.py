@@ -170,9 +170,8 @@ class Plan:
 
 
 def _duration(seconds: float) -> str:
-    for unit, scale in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)):
-        if seconds >= 0.95 * scale:
-            break
+    units = (("s", 1.0), ("ms", 1e-3), ("us", 1e-6))
+    unit, scale = next((pair for pair in units if seconds >= 0.95 * pair[1]), units[-1])
     value = seconds / scale
     return f"{value:.2g} {unit}" if value < 10 else f"{value:.0f} {unit}"
 

@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from .._harness.truth import Truth, find_truth, start_rate
-from .._solve.motion import Floats
 from .._scene.scene import Scene
+from .._solve.motion import Floats
 
 S1_MOMENTS = (0.2, 0.4, 0.52)
 STORE = pathlib.Path(__file__).with_name("truth.npz")

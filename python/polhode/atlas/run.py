@@ -10,8 +10,8 @@ import numpy as np
 
 from .._core import IntegrationFailure, InvalidInput
 from .._harness.truth import Truth, compute_errors
-from .._solve.motion import Motion
 from .._scene.scene import Scene
+from .._solve.motion import Motion
 from .._solve.solve import solve
 from .entrants import Entrant
 

@@ -16,7 +16,15 @@ from .._plot.text import to_error, to_time
 from .._solve.motion import Floats
 from .engines import engine_line
 from .findings import (
-    adaptive, dominated, headline, held_by_stability, program_ratios, stalls, to_ratio, under_headline, without_answer,
+    adaptive,
+    dominated,
+    headline,
+    held_by_stability,
+    program_ratios,
+    stalls,
+    to_ratio,
+    under_headline,
+    without_answer,
 )  # fmt: skip
 from .measure import SceneResult
 

@@ -19,8 +19,8 @@ from .._solve.costs import cache_file
 from .._solve.plan import plan as make_plan
 from .._solve.solve import methods as method_records
 from .._solve.solve import solve
+from . import ensemble as ensembles  # after `show`, which imports rich itself
 from . import files, show
-from . import ensemble as ensembles   # after `show`, which imports rich itself
 from .streams import PipeClosed, say, write_json
 
 app = typer.Typer(name="polhode", add_completion=False, no_args_is_help=True, rich_markup_mode=None,

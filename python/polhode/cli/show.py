@@ -16,8 +16,8 @@ from rich.table import Table
 from rich.text import Text
 
 if TYPE_CHECKING:
-    from ..charts.measure import Point, SceneResult
     from .._solve.motion import Motion
+    from ..charts.measure import Point, SceneResult
 
 UNCUT = 100_000
 

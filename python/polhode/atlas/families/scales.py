@@ -8,8 +8,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..._harness.truth import Truth, compute_errors
-from ..._solve.motion import Motion
 from ..._scene.scene import Scene
+from ..._solve.motion import Motion
 from ...torques import Gravity
 from ..case import turn_of
 from ..entrants import PER_TURN, Entrant

@@ -14,7 +14,6 @@ from ..case import Case, truth_of
 from ..entrants import PER_TURN, Entrant
 from ..family import LOST, Family, Point, Verdict, answered, measure_cases, nobody, to_short
 
-
 BRIEF = 1e-3   # seconds: less says nothing about a forecast
 
 

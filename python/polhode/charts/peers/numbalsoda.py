@@ -20,9 +20,10 @@ def found() -> str:
 
 
 def _start(scene: Scene, method: str) -> Run:
+    from math import cos, sin
+
     import numba
     import numbalsoda as nb  # type: ignore[import-not-found,import-untyped,unused-ignore]
-    from math import cos, sin
 
     steps, names = source(scene)
     lines = [f"{name} = u[{i}]" for i, name in enumerate(STATE)] + [f"{name} = {text}" for name, text in steps]
