@@ -30,20 +30,21 @@ def code(text: object) -> str:
 
 def methods() -> str:
     """Return the records of the methods, those of engines apart."""
-    def rows(cheap: bool) -> Any:
+    def rows(comparison: bool) -> Any:
         for r in ph.methods():
-            if r["cheap"] == cheap:
+            if r["comparison"] == comparison:
                 yield (code(r["name"]), r["order"], r["driven_order"], r["dense_order"],
                        "tolerance" if r["adaptive"] else "`step=`", "yes" if r["implicit"] else "no", r["keeps"])
 
-    def about(cheap: bool) -> str:
+    def about(comparison: bool) -> str:
         return "\n\n".join(
             f"{code(r['name'])}\n: {r['doc']}" + (f" Needs: {r['needs']}." if r["needs"] else "") + f" *{r['source']}.*"
-            for r in ph.methods() if r["cheap"] == cheap)
+            for r in ph.methods() if r["comparison"] == comparison)
 
     head = ("method", "order", "with a torque", "between steps", "steps by", "implicit", "keeps")
-    return (f"{table(head, rows(False))}\n\n{about(False)}\n\n"
-            f"## Steps of engines\n\nA plan never chooses them.\n\n{table(head, rows(True))}\n\n{about(True)}")
+    return (f"{table(head, rows(False))}\n\n{about(False)}\n\n## Steps for comparison\n\n"
+            "Steps of game and robot engines. Charts and the atlas run them. A plan never chooses them.\n\n"
+            f"{table(head, rows(True))}\n\n{about(True)}")
 
 
 def models() -> str:

@@ -14,7 +14,7 @@ void bind_ode(py::module_& m) {
       one["dense_order"] = record.dense_order;
       one["adaptive"] = record.adaptive;
       one["implicit"] = record.implicit;
-      one["cheap"] = record.cheap;
+      one["comparison"] = record.comparison;
       one["keeps"] = std::string(record.keeps);
       one["needs"] = std::string(record.needs);
       one["doc"] = std::string(record.doc);

@@ -95,7 +95,7 @@ def read_json(path: pathlib.Path, most: int) -> Any:
 
 
 def draft_of(name: str) -> str:
-    """Return a name that nobody else uses, thread or process, with the file's suffix."""
+    """Return a name that no other thread or process uses, with the file's suffix."""
     return f".{uuid.uuid4().hex}.draft{pathlib.PurePath(name).suffix}"
 
 

@@ -21,7 +21,7 @@ def require_one_copy(home: str) -> None:
 
 
 def finish_imports() -> None:
-    """Wait for modules that other threads import: in a forked child nobody would ever open their locks."""
+    """Wait for modules that other threads import: in a forked child their locks would stay shut."""
     for name, module in list(sys.modules.items()):
         if name.partition(".")[0] in LATE and getattr(getattr(module, "__spec__", None), "_initializing", False):
             import_module(name)

@@ -14,8 +14,16 @@ from polhode._harness.truth import Truth, compute_errors, find_truth
 from polhode.charts import chart, runners
 from polhode.charts.candidate import Answer, Candidate, Failure, tolerances
 from polhode.charts.candidates import candidates
-from polhode.charts.findings import (  # isort: skip
-    dominated, front, headline, held_by_stability, stalls, time_ratios, time_to_reach, under_headline, without_answer,
+from polhode.charts.findings import (
+    dominated,
+    front,
+    headline,
+    held_by_stability,
+    stalls,
+    time_ratios,
+    time_to_reach,
+    under_headline,
+    without_answer,
 )
 from polhode.charts.measure import Point, SceneResult, measure
 from polhode.charts.results import document

@@ -323,5 +323,15 @@ def test_every_record_says_what_it_is():
         assert record["doc"].endswith(".") and record["source"]
         assert set(record["keeps"].split(", ")) <= {"nothing", "energy", "|L|", "L", "L_z"}
         assert 0 <= record["driven_order"] <= record["order"] and record["dense_order"] >= 1
-    assert sum(record["cheap"] for record in METHODS.values()) == 13
-    assert not any(record["cheap"] and record["adaptive"] for record in METHODS.values())
+    assert sum(record["comparison"] for record in METHODS.values()) == 13
+    assert not any(record["comparison"] and record["adaptive"] for record in METHODS.values())
+
+
+def test_steps_for_comparison_are_run_but_not_offered():
+    offered = [name for name, record in METHODS.items() if not record["comparison"]]
+    with pytest.raises(ph.InvalidInput) as refused:
+        ph.solve(ph.Scene.load("S5"), method="runge")
+    assert f"one of {', '.join(offered)}, got 'runge'" in str(refused.value)
+    parameter = re.search(r"method : str.*?certify :", ph.solve.__doc__, flags=re.S)[0]
+    assert set(re.findall(r'"(\w+)"', parameter)) == {*offered, "exact"}
+    assert ph.solve(ph.Scene.load("S5"), method="dmv8", step=1e-3).status == "finished"

@@ -36,10 +36,10 @@ def worker():
 
 
 def everything(worker, patience=30.0):
-    heard, end = [], time.monotonic() + patience
-    while not (heard and heard[-1][0] == "end") and time.monotonic() < end:
-        heard += worker.hear(1.0)
-    return heard
+    messages, end = [], time.monotonic() + patience
+    while not (messages and messages[-1][0] == "end") and time.monotonic() < end:
+        messages += worker.receive(1.0)
+    return messages
 
 
 def test_answers_come_whole_and_in_order(worker):
@@ -50,8 +50,8 @@ def test_answers_come_whole_and_in_order(worker):
 
 def test_what_is_raised_costs_the_rest_of_one_answer(worker):
     worker.tell(3)
-    heard = everything(worker)
-    assert len(heard) == 4 and heard[-1] == ("end", "ValueError: three, of all")
+    messages = everything(worker)
+    assert len(messages) == 4 and messages[-1] == ("end", "ValueError: three, of all")
     worker.tell(1)
     assert len(everything(worker)) == 2
 
@@ -60,18 +60,18 @@ def test_it_says_how_it_ended(worker):
     worker.tell(0)
     everything(worker)
     os.kill(worker.pid, signal.SIGSEGV)
-    assert worker.hear(10.0) is None
+    assert worker.receive(10.0) is None
     assert worker.end(kill=False) == "ended its process by signal 11 (SIGSEGV)"
 
 
 def test_a_sleep_without_end_is_no_progress(worker):
     worker.tell(4)
-    heard = []
-    while len(heard) < 4:
-        heard += worker.hear(5.0)
+    messages = []
+    while len(messages) < 4:
+        messages += worker.receive(5.0)
     then, end = worker.alive, time.monotonic() + 2.5
     while time.monotonic() < end:   # a beat or two, the first of which tells what the start took
-        worker.hear(0.5)
+        worker.receive(0.5)
     assert time.monotonic() - worker.alive > 0.9 and worker.alive - then < 1.6
 
 
@@ -81,7 +81,7 @@ import os, sys, time
 from polhode._harness.workers import Worker
 worker = Worker(sys.executable, "-c", {ANSWERS!r})
 worker.tell(4)
-while not worker.hear(1.0): pass
+while not worker.receive(1.0): pass
 print(worker.pid, os.getsid(worker.pid), flush=True)
 os._exit(0)   # as one that is killed: nothing is tidied up
 """
@@ -91,5 +91,5 @@ os._exit(0)   # as one that is killed: nothing is tidied up
     state, end = Path(f"/proc/{pid}/stat"), time.monotonic() + 20
     with contextlib.suppress(OSError):   # it has gone between the look and the reading
         while state.exists() and state.read_text().split()[2] != "Z":
-            assert time.monotonic() < end, "it works on for nobody"
+            assert time.monotonic() < end, "it works on for no reader"
             time.sleep(0.1)

@@ -3,6 +3,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/choose_level.hpp"
 #include "batch/lane_method.hpp"
 #include "batch/lanes/rk45_block.hpp"
 #include "polhode/core/simd.hpp"
@@ -17,11 +18,7 @@ namespace {
 using Row = LaneState::Row;
 
 Rk45Kernels find_kernels(bool diagonal, bool attitude) {
-  Rk45Kernels found = {nullptr, nullptr};
-  const SimdLevel level = simd_level();
-  if (level == SimdLevel::avx512) found = avx512_rk45_lanes(diagonal, attitude);
-  if (found.advance == nullptr && level != SimdLevel::baseline) found = avx2_rk45_lanes(diagonal, attitude);
-  return found.advance != nullptr ? found : baseline_rk45_lanes(diagonal, attitude);
+  return choose_level(simd_level(), baseline_rk45_lanes, avx2_rk45_lanes, avx512_rk45_lanes, diagonal, attitude);
 }
 
 void put(Row* rows, int lane, const double* values, int n) {

@@ -9,6 +9,7 @@
 #include "batch/lanes/step_kernels.hpp"
 #include "batch/parallel.hpp"
 #include "batch/rows.hpp"
+#include "core/choose_level.hpp"
 #include "core/choose_once.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/core/simd.hpp"
@@ -23,10 +24,7 @@ constexpr std::size_t round_work = 65536;   // steps of bodies between two looks
 const StepKernels& choose_kernels() {
   static constinit std::atomic<const StepKernels*> chosen{nullptr};
   return choose_once(chosen, []() -> const StepKernels& {
-    const StepKernels* found = nullptr;
-    if (simd_level() == SimdLevel::avx512) found = avx512_step_lanes();
-    if (found == nullptr && simd_level() != SimdLevel::baseline) found = avx2_step_lanes();
-    return found != nullptr ? *found : *baseline_step_lanes();
+    return *choose_level(simd_level(), baseline_step_lanes, avx2_step_lanes, avx512_step_lanes);
   });
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/choose_level.hpp"
 #include "batch/lane_method.hpp"
 #include "batch/lanes/taylor_block.hpp"
 #include "method/series/body_series.hpp"
@@ -14,11 +15,7 @@ namespace {
 using Row = LaneState::Row;
 
 TaylorKernels find_kernels(const SeriesTerms& terms, bool attitude) {
-  TaylorKernels found = {nullptr, nullptr};
-  const SimdLevel level = simd_level();
-  if (level == SimdLevel::avx512) found = avx512_taylor_lanes(terms, attitude);
-  if (found.step == nullptr && level != SimdLevel::baseline) found = avx2_taylor_lanes(terms, attitude);
-  return found.step != nullptr ? found : baseline_taylor_lanes(terms, attitude);
+  return choose_level(simd_level(), baseline_taylor_lanes, avx2_taylor_lanes, avx512_taylor_lanes, terms, attitude);
 }
 
 /// One order for all lanes, fitted to measured times: in lanes the cost of a step grows as about its order squared.

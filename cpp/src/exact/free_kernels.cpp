@@ -1,43 +1,29 @@
 #include "polhode/exact/detail/free_kernels.hpp"
 
+#include "core/choose_level.hpp"
 #include "core/choose_once.hpp"
 #include "exact/lanes/levels.hpp"
 
 namespace polhode::exact {
-namespace {
-
-template <class Kernels>
-using Level = const Kernels* (*)();
-
-template <class Kernels>
-const Kernels& choose_level(Level<Kernels> baseline, Level<Kernels> avx2, Level<Kernels> avx512) {
-  const SimdLevel level = simd_level();
-  const Kernels* found = nullptr;
-  if (level == SimdLevel::avx512) found = avx512();
-  if (found == nullptr && level != SimdLevel::baseline) found = avx2();
-  return found != nullptr ? *found : *baseline();
-}
-
-}  // namespace
 
 const FreeKernels& free_kernels() {
   static constinit std::atomic<const FreeKernels*> chosen{nullptr};
   return choose_once(chosen, []() -> const FreeKernels& {
-    return choose_level(baseline_free_kernels, avx2_free_kernels, avx512_free_kernels);
+    return *choose_level(simd_level(), baseline_free_kernels, avx2_free_kernels, avx512_free_kernels);
   });
 }
 
 const FreeBatchKernels& free_batch_kernels() {
   static constinit std::atomic<const FreeBatchKernels*> chosen{nullptr};
   return choose_once(chosen, []() -> const FreeBatchKernels& {
-    return choose_level(baseline_free_batch_kernels, avx2_free_batch_kernels, avx512_free_batch_kernels);
+    return *choose_level(simd_level(), baseline_free_batch_kernels, avx2_free_batch_kernels, avx512_free_batch_kernels);
   });
 }
 
 const DampedKernels& damped_kernels() {
   static constinit std::atomic<const DampedKernels*> chosen{nullptr};
   return choose_once(chosen, []() -> const DampedKernels& {
-    return choose_level(baseline_damped_kernels, avx2_damped_kernels, avx512_damped_kernels);
+    return *choose_level(simd_level(), baseline_damped_kernels, avx2_damped_kernels, avx512_damped_kernels);
   });
 }
 

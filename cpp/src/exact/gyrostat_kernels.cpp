@@ -1,15 +1,13 @@
 #include "polhode/exact/detail/gyrostat_kernels.hpp"
 
+#include "core/choose_level.hpp"
 #include "core/choose_once.hpp"
 #include "exact/lanes/levels.hpp"
 
 namespace polhode::exact {
 
 const GyrostatKernels& gyrostat_kernels(SimdLevel level) {
-  const GyrostatKernels* found = nullptr;
-  if (level == SimdLevel::avx512) found = avx512_gyrostat_kernels();
-  if (found == nullptr && level != SimdLevel::baseline) found = avx2_gyrostat_kernels();
-  return found != nullptr ? *found : *baseline_gyrostat_kernels();
+  return *choose_level(level, baseline_gyrostat_kernels, avx2_gyrostat_kernels, avx512_gyrostat_kernels);
 }
 
 const GyrostatKernels& gyrostat_kernels() {

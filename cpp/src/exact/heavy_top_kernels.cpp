@@ -1,15 +1,13 @@
 #include "polhode/exact/detail/heavy_top_kernels.hpp"
 
+#include "core/choose_level.hpp"
 #include "core/choose_once.hpp"
 #include "exact/lanes/levels.hpp"
 
 namespace polhode::exact {
 
 const HeavyTopKernels& heavy_top_kernels(SimdLevel level) {
-  const HeavyTopKernels* found = nullptr;
-  if (level == SimdLevel::avx512) found = avx512_heavy_top_kernels();
-  if (found == nullptr && level != SimdLevel::baseline) found = avx2_heavy_top_kernels();
-  return found != nullptr ? *found : *baseline_heavy_top_kernels();
+  return *choose_level(level, baseline_heavy_top_kernels, avx2_heavy_top_kernels, avx512_heavy_top_kernels);
 }
 
 const HeavyTopKernels& heavy_top_kernels() {

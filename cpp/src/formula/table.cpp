@@ -4,6 +4,7 @@
 #include <iterator>
 #include <utility>
 
+#include "core/choose_level.hpp"
 #include "formula/lanes/levels.hpp"
 #include "formula/packing.hpp"
 
@@ -11,10 +12,7 @@ namespace polhode::formula {
 namespace {
 
 TableKernel find_kernel(SimdLevel level) {
-  TableKernel found = nullptr;
-  if (level == SimdLevel::avx512) found = avx512_table_kernel();
-  if (found == nullptr && level != SimdLevel::baseline) found = avx2_table_kernel();
-  return found != nullptr ? found : baseline_table_kernel();
+  return choose_level(level, baseline_table_kernel, avx2_table_kernel, avx512_table_kernel);
 }
 
 /// Writes stages and picks of a packing, and orders the terms of the forms.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "core/choose_level.hpp"
 #include "core/parallel.hpp"
 #include "inertia/lanes/levels.hpp"
 #include "inertia/mesh_faces.hpp"
@@ -27,10 +28,7 @@ constexpr std::size_t few_triangles = 1024;
 constexpr double noise_limit = 0.25, magnification_limit = 8;
 
 const MeshKernels& mesh_kernels(SimdLevel level) {
-  const MeshKernels* found = nullptr;
-  if (level == SimdLevel::avx512) found = inertia::avx512_mesh_kernels();
-  if (found == nullptr && level != SimdLevel::baseline) found = inertia::avx2_mesh_kernels();
-  return found != nullptr ? *found : *inertia::baseline_mesh_kernels();
+  return *choose_level(level, inertia::baseline_mesh_kernels, inertia::avx2_mesh_kernels, inertia::avx512_mesh_kernels);
 }
 
 /// The mean of some vertices spread over the faces: a point near the body, mostly inside.

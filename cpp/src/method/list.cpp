@@ -28,7 +28,7 @@ const BodyMethod& find_body_method(std::string_view name) {
   }
   std::string names;
   for (const BodyMethod& method : all()) {
-    names.append(names.empty() ? "" : ", ").append(method.record.name);
+    if (!method.record.comparison) names.append(names.empty() ? "" : ", ").append(method.record.name);
   }
   throw InvalidInput("method", "one of " + names, "'" + std::string(name) + "'");
 }

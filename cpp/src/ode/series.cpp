@@ -1,15 +1,13 @@
 #include "polhode/ode/series.hpp"
 
+#include "core/choose_level.hpp"
 #include "core/choose_once.hpp"
 #include "ode/lanes/levels.hpp"
 
 namespace polhode::ode {
 
 const SeriesKernels& series_kernels(SimdLevel level) {
-  const SeriesKernels* found = nullptr;
-  if (level == SimdLevel::avx512) found = avx512_series_kernels();
-  if (found == nullptr && level != SimdLevel::baseline) found = avx2_series_kernels();
-  return found != nullptr ? *found : *baseline_series_kernels();
+  return *choose_level(level, baseline_series_kernels, avx2_series_kernels, avx512_series_kernels);
 }
 
 const SeriesKernels& series_kernels() {

@@ -4,6 +4,7 @@
 
 #include "polhode/core/error.hpp"
 #include "polhode/core/float_state.hpp"
+#include "polhode/scene/parameter.hpp"
 
 namespace polhode {
 namespace {
@@ -39,10 +40,7 @@ std::shared_ptr<const InertiaTensor> make_carrier(const InertiaTensor& all, cons
 /// The gradient of gravity sees the mass of free rotors, which their carrier lacks.
 void require_no_gradient(const std::vector<AnyTorque>& torques) {
   for (const AnyTorque& torque : torques) {
-    const auto* during = std::get_if<torques::During>(&torque);
-    const bool gradient = during != nullptr ? std::holds_alternative<torques::GravityGradient>(during->torque())
-                                            : std::holds_alternative<torques::GravityGradient>(torque);
-    if (!gradient) continue;
+    if (!std::holds_alternative<torques::GravityGradient>(drop_windows(torque))) continue;
     throw InvalidInput("scene.torques", "without GravityGradient beside free rotors with an inertia", "GravityGradient",
                        "it acts on the inertia of all, and omega moves the inertia without these rotors");
   }

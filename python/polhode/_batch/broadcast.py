@@ -86,7 +86,7 @@ def require_apart(arrays: Sequence[Any]) -> None:
                 continue
             try:
                 shared = np.shares_memory(one, other, 100_000)  # type: ignore[arg-type]
-            except Exception:   # TooHardError, whose place differs between versions of NumPy: nobody knows
+            except Exception:   # TooHardError, whose place differs between versions of NumPy: no shape is known
                 shared = True
             if shared:
                 raise InvalidInput("out: must be arrays apart, got two that share memory")

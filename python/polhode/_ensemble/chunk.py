@@ -25,7 +25,7 @@ class Outcome(NamedTuple):
     """What became of a chunk."""
 
     chunk: int
-    kind: str                # "done", "found", "full" (the disk), "failed", "died" (worth another try)
+    kind: str                # "done", "found", "full" (the disk), "failed", "died" (it may be tried again)
     why: str = ""
     record: Floats | None = None
     host: str = ""

@@ -26,7 +26,7 @@ class Result(NamedTuple):
     stopped: bool = False           # by the caller's progress
 
 
-class Crew(NamedTuple):
+class Workers(NamedTuple):
     """An executor, and how many chunks it is given at once."""
 
     executor: Any                   # None: the chunks are computed in this process
@@ -35,16 +35,16 @@ class Crew(NamedTuple):
     is_alive: Callable[[], bool] = lambda: True
 
 
-def _dask(client: Any, name: str) -> Crew:
+def _dask(client: Any, name: str) -> Workers:
     """A client's executor. Two chunks a thread are on their way, so that no worker waits for the next one."""
     threads = sum(client.nthreads().values())
     # Calls are never answered once the scheduler is gone.
-    return Crew(client.get_executor(pure=False), 2 * max(threads, 1), name, lambda: client.status != "closed")
+    return Workers(client.get_executor(pure=False), 2 * max(threads, 1), name, lambda: client.status != "closed")
 
 
 @contextlib.contextmanager
-def crew(executor: Any) -> Iterator[Crew]:
-    """Give the crew of the argument `executor`; what was started here is ended here.
+def open_workers(executor: Any) -> Iterator[Workers]:
+    """Give the workers of the argument `executor`; what was started here is ended here.
 
     Raises
     ------
@@ -56,11 +56,11 @@ def crew(executor: Any) -> Iterator[Crew]:
         if not 0 <= count <= MOST_WORKERS:
             raise InvalidInput(f"executor: must be 0 to {MOST_WORKERS} worker processes, got {count}")
         if count == 0:
-            yield Crew(None, 1, "this process")
+            yield Workers(None, 1, "this process")
             return
         own = Processes(count)
         try:
-            yield Crew(own, count, f"{count} processes")
+            yield Workers(own, count, f"{count} processes")
         finally:
             own.shutdown()
     elif isinstance(executor, str):
@@ -77,44 +77,44 @@ def crew(executor: Any) -> Iterator[Crew]:
     elif hasattr(executor, "get_executor") and hasattr(executor, "nthreads"):
         yield _dask(executor, "dask")
     elif hasattr(executor, "submit"):
-        yield Crew(executor, getattr(executor, "_max_workers", 0) or default_count(), type(executor).__name__)
+        yield Workers(executor, getattr(executor, "_max_workers", 0) or default_count(), type(executor).__name__)
     else:
         raise InvalidInput(f"executor: must be None, a number, an Executor, a Client or an address, got "
                            f"{type(executor).__name__}")
 
 
-class _Flight:
-    """The chunks on their way."""
+class _InFlight:
+    """The chunks in flight, and those that wait."""
 
-    def __init__(self, task: Task, chunks: Sequence[int], crew: Crew) -> None:
-        self.task, self.crew = task, crew
+    def __init__(self, task: Task, chunks: Sequence[int], workers: Workers) -> None:
+        self.task, self.workers = task, workers
         self.waiting = collections.deque(chunks)
-        self.flying: dict[Any, int] = {}
+        self.futures: dict[Any, int] = {}
         self.tries: collections.Counter[int] = collections.Counter()
         self.failed: dict[int, str] = {}
         self.stopping = False
 
-    def launch(self) -> None:
-        """Submit as many chunks as the crew takes."""
-        while self.waiting and len(self.flying) < self.crew.width:
+    def submit(self) -> None:
+        """Submit as many chunks as the workers take."""
+        while self.waiting and len(self.futures) < self.workers.width:
             chunk = self.waiting.popleft()
             try:
-                self.flying[self.crew.executor.submit(chunks_of.run, self.task, chunk)] = chunk
+                self.futures[self.workers.executor.submit(chunks_of.run, self.task, chunk)] = chunk
             except Exception as error:   # a broken or closed executor takes no more
                 why = f"{type(error).__name__}: {error}".splitlines()[0]
                 self.failed |= dict.fromkeys([chunk, *self.waiting], why)
                 self.waiting.clear()
 
-    def land(self) -> list[Outcome]:
+    def collect(self) -> list[Outcome]:
         """Return what has come back; chunks whose worker died wait again."""
-        done, _ = concurrent.futures.wait(self.flying, timeout=0.2, return_when=concurrent.futures.FIRST_COMPLETED)
-        if not done and not self.crew.is_alive():
-            self.failed |= dict.fromkeys([*self.flying.values(), *self.waiting], "the scheduler is gone")
-            self.flying.clear()
+        done, _ = concurrent.futures.wait(self.futures, timeout=0.2, return_when=concurrent.futures.FIRST_COMPLETED)
+        if not done and not self.workers.is_alive():
+            self.failed |= dict.fromkeys([*self.futures.values(), *self.waiting], "the scheduler is gone")
+            self.futures.clear()
             self.waiting.clear()
-        landed = []
+        outcomes = []
         for future in done:
-            chunk = self.flying.pop(future)
+            chunk = self.futures.pop(future)
             if future.cancelled() and self.stopping:
                 continue
             error = concurrent.futures.CancelledError("cancelled") if future.cancelled() else future.exception()
@@ -123,38 +123,38 @@ class _Flight:
                 self.tries[chunk] += 1
                 if self.tries[chunk] < TRIES:
                     self.waiting.append(chunk)
-            landed.append(outcome)
-        return landed
+            outcomes.append(outcome)
+        return outcomes
 
     def stop(self) -> None:
         """Start no more chunks."""
         self.waiting.clear()
         self.stopping = True
-        for future in self.flying:
+        for future in self.futures:
             future.cancel()
 
 
-def run(task: Task, chunks: Sequence[int], crew: Crew, heard: Callable[[Outcome], bool]) -> Result:
-    """Compute chunks; `heard` gets each outcome and returns False to stop."""
-    flight = _Flight(task, chunks, crew)
+def run(task: Task, chunks: Sequence[int], workers: Workers, on_outcome: Callable[[Outcome], bool]) -> Result:
+    """Compute chunks; `on_outcome` gets each outcome and returns False to stop."""
+    in_flight = _InFlight(task, chunks, workers)
     full: Outcome | None = None
     stopped = False
     try:
-        while flight.waiting or flight.flying:
-            if crew.executor is None:
-                landed = [chunks_of.run(task, flight.waiting.popleft())]
+        while in_flight.waiting or in_flight.futures:
+            if workers.executor is None:
+                outcomes = [chunks_of.run(task, in_flight.waiting.popleft())]
             else:
-                flight.launch()
-                landed = flight.land() if flight.flying else []
-            for outcome in landed:
-                if outcome.kind == "failed" or outcome.kind == "died" and flight.tries[outcome.chunk] >= TRIES:
-                    flight.failed[outcome.chunk] = outcome.why
-                go_on = heard(outcome)
+                in_flight.submit()
+                outcomes = in_flight.collect() if in_flight.futures else []
+            for outcome in outcomes:
+                if outcome.kind == "failed" or outcome.kind == "died" and in_flight.tries[outcome.chunk] >= TRIES:
+                    in_flight.failed[outcome.chunk] = outcome.why
+                go_on = on_outcome(outcome)
                 if outcome.kind == "full" or not go_on:
                     full = full or (outcome if outcome.kind == "full" else None)
                     stopped = stopped or not go_on
-                    flight.stop()
+                    in_flight.stop()
     except BaseException:
-        flight.stop()
+        in_flight.stop()
         raise
-    return Result(dict(sorted(flight.failed.items())), full, stopped)
+    return Result(dict(sorted(in_flight.failed.items())), full, stopped)

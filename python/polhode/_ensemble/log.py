@@ -1,4 +1,4 @@
-"""The log of a store's runs, in a file beside it: the store itself tells neither time nor machine."""
+"""The log of a store's runs, in a file beside it: the store itself has neither time nor machine."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ KEPT = 2**30
 
 @cache
 def keep() -> bool:
-    """Let glibc keep freed memory where Dask's nanny told it to return it. Return True if that was needed.
+    """Let glibc keep freed memory which Dask's nanny sets to return it. Return True if that was needed.
 
     Nannies start workers with MALLOC_TRIM_THRESHOLD_=65536. Every array is then mapped anew, page by page, which
     doubles the time of a chunk. Both thresholds must be raised: setting one stops glibc from adapting the other.

@@ -55,7 +55,7 @@ class Processes(concurrent.futures.Executor):
             if found is None:
                 found = self._living[index] = workers.Worker(*workers.command(MODULE))
                 found.tell((worker.extend_path, (sys.path,)))
-                while (heard := found.hear(1.0)) is not None and "end" not in [kind for kind, _ in heard]:
+                while (messages := found.receive(1.0)) is not None and "end" not in [kind for kind, _ in messages]:
                     pass
             return found
 
@@ -74,12 +74,12 @@ class Processes(concurrent.futures.Executor):
         process.tell((function, arguments))
         answers = []
         while True:
-            heard = process.hear(1.0)
-            if heard is None:
+            messages = process.receive(1.0)
+            if messages is None:
                 with self._lock:
                     self._living.pop(index, None)
                 raise WorkerDied(f"the worker {process.end(kill=False)}")
-            for kind, content in heard:
+            for kind, content in messages:
                 if kind == "answer":
                     answers.append(content)
                 elif content:

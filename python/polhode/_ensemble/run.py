@@ -117,10 +117,10 @@ def ensemble(
     """
     task = prepare(recipe, out=out, count=count, functions=functions, executor=executor)
     rows: dict[int, Floats] = {}
-    told = Progress(progress, task.layout)
-    with engine.crew(executor) as crew:
+    shown = Progress(progress, task.layout)
+    with engine.open_workers(executor) as workers:
         chunks = list(range(task.layout.chunks)) if task.out is None else open_store(task, resume)
-        result = _drive(task, chunks, crew, rows, told)
+        result = _drive(task, chunks, workers, rows, shown)
     if task.out is not None and not result.failed and not result.stopped:
         finish(task)
     return Ensemble(task, rows if task.out is None else None, result.failed)
@@ -135,13 +135,13 @@ def finish(task: Task) -> None:
     store.clean(task.out)
 
 
-def _drive(task: Task, chunks: list[int], crew: engine.Crew, rows: dict[int, Floats],
+def _drive(task: Task, chunks: list[int], workers: engine.Workers, rows: dict[int, Floats],
            progress: Progress) -> engine.Result:
     log = Log(task.out)
-    log.write("begin", chunks=len(chunks), workers=crew.width, executor=crew.name, pid=os.getpid())
+    log.write("begin", chunks=len(chunks), workers=workers.width, executor=workers.name, pid=os.getpid())
     progress.begin(task.layout.chunks - len(chunks))
 
-    def heard(outcome: Outcome) -> bool:
+    def on_outcome(outcome: Outcome) -> bool:
         log.write(outcome.kind, chunk=outcome.chunk, why=outcome.why, host=outcome.host, pid=outcome.pid,
                   seconds=round(outcome.seconds, 6), cpu=round(outcome.cpu, 6))
         if outcome.record is not None:
@@ -149,7 +149,7 @@ def _drive(task: Task, chunks: list[int], crew: engine.Crew, rows: dict[int, Flo
         return progress.step(outcome.chunk) if outcome.kind in ("done", "found") else True
 
     try:
-        result = engine.run(task, chunks, crew, heard)
+        result = engine.run(task, chunks, workers, on_outcome)
         log.write("end", failed=len(result.failed))
     except KeyboardInterrupt:
         log.write("interrupted")

@@ -16,7 +16,7 @@ QUIET = 30.0   # seconds: a run that is silent for longer than this and three of
 
 
 def status(run: Ensemble) -> dict[str, Any]:
-    """Return what `polhode ensemble status` tells, for JSON."""
+    """Return the status as `polhode ensemble status` prints it, for JSON."""
     assert run.out is not None
     chunks = run.chunks
     events = log.read(run.out)

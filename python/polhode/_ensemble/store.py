@@ -32,7 +32,7 @@ from .task import Task, fields
 
 FORMAT = 1
 MARKS = "record"
-STAMPS = {   # what a store must share with the run that goes on, and how a difference is told
+STAMPS = {   # what a store must share with the run that goes on, and the words for a difference
     "format": "the store has format {0}, and this polhode writes {1}",
     "version": "the store was made by polhode {0}, and this is {1}",
     "simd": "the store was made with {0} arithmetic, and this machine uses {1}; POLHODE_SIMD chooses",

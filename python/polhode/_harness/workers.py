@@ -52,26 +52,26 @@ class Worker(subprocess.Popen[bytes]):
         """Send a message."""
         self.alive = time.monotonic()
         assert self.stdin is not None
-        with contextlib.suppress(BrokenPipeError):   # one that is gone says so when it is heard
+        with contextlib.suppress(BrokenPipeError):   # one that is gone says so when it is read
             _write(self.stdin, message)
 
-    def hear(self, patience: float = 0.0) -> list[tuple[str, Any]] | None:
+    def receive(self, patience: float = 0.0) -> list[tuple[str, Any]] | None:
         """What has come in so many seconds at most, which may be nothing; None when the process has ended."""
         if not select.select([self], [], [], patience)[0]:
             return []
         chunk = os.read(self.fileno(), 1 << 20)
         self._rest += chunk
-        heard = []
+        messages = []
         while (end := _end(self._rest)) <= len(self._rest):
             kind, content = pickle.loads(self._rest[8:end])
             self._rest = self._rest[end:]
             if kind != "beat":
-                heard.append((kind, content))
+                messages.append((kind, content))
                 self._mark = self._cpu
             if kind != "beat" or content > self._cpu + PROGRESS:
                 self.alive = time.monotonic()
             self._cpu = content if kind == "beat" else self._cpu
-        return heard if chunk else None
+        return messages if chunk else None
 
     def end(self, kill: bool = True) -> str:
         """End it, or wait for its own end, and say how it went."""

@@ -114,7 +114,7 @@ def _start_driven(problem: Problem, state: State, loss: str, scale: float) -> St
         for windows in (spans, spans[2:], spans[-1:]):
             try:
                 found = _grown(problem, begin, windows, loss, scale)
-            except IntegrationFailure:   # numbers that a short window hardly tells may be wild in a longer one
+            except IntegrationFailure:   # numbers that a short window hardly fixes may be far off in a longer one
                 continue
             if best is None or found.cost < best.cost:
                 best = found
@@ -201,7 +201,7 @@ def fit(
         Of :mod:`polhode.measured`, in any mixture.
     scene : Scene, optional
         It gives what is not fitted, the start of the fit with start='scene', and the scale of the inertia, which no
-        free motion tells. With torques or rotors it starts at t0 = 0, and the fit starts from its numbers.
+        free motion fixes. With torques or rotors it starts at t0 = 0, and the fit starts from its numbers.
     fit : str or sequence of str
         Some of 'omega', 'attitude', 'inertia' (two ratios of second moments) and 'axes' (the principal axes in the
         body; without it the given axes are principal). With torques or rotors 'inertia' are three second moments about

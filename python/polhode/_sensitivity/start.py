@@ -73,7 +73,7 @@ def grow(problem: Problem, state: State, spans: Sequence[float] | Array, loss: s
 def wahba(pairs: list[tuple[Array, Array, float]]) -> tuple[Array, Array]:
     """Return (cost, quaternion) of the best turn Q of each body: Q x = y for pairs (x (B, k, 3), y (k, 3), weight).
 
-    Davenport's quadratic form: the largest eigenvalue tells the cost (Davenport 1968; Wahba 1965).
+    Davenport's quadratic form: the largest eigenvalue gives the cost (Davenport 1968; Wahba 1965).
     """
     B = sum(weight * np.einsum("ki,bkj->bij", y, x) for x, y, weight in pairs)
     total = sum(weight * (0.5 * (y**2).sum() + 0.5 * (x**2).sum(axis=(1, 2))) for x, y, weight in pairs)

@@ -313,7 +313,7 @@ def plan(scene: Scene, accuracy: float | None = None, *, method: str | None = No
     accuracy : float, optional
         The largest error of any sample, as in `solve`; 1e-9 if left out.
     method : str, optional
-        "exact" or a name of `methods()`, to use instead of the cheapest method.
+        "exact" or a name as of `solve`, to use instead of the cheapest method.
     certify : bool or "proof"
         Bound the error; otherwise it is only expected. "proof": as in `solve`.
     formulation : {"euler", "lagrangian"}

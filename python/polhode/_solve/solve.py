@@ -110,7 +110,8 @@ def solve(
     plan : Plan, optional
         A result of `plan()`. It sets accuracy, method and certificate. An additional `method` replaces its method.
     method : str, optional
-        A name of `methods()`, or "exact" for a closed form. The planner chooses if it is left out.
+        "taylor", "dop853", "rk45", "radau", or with `step` "symplectic", "midpoint", "rk4"; "exact" for a closed form.
+        The planner chooses if it is left out. `methods()` has the records, and the steps for comparison.
     certify : bool or "proof"
         Bound the error of an integrated motion. The run itself propagates its error, or a second, coarser run measures
         it. With False one run aims at a tenth of the accuracy. `motion.error` is then the median error of such scenes,
@@ -201,8 +202,8 @@ def methods() -> list[dict[str, Any]]:
     """Return the records of all methods, one dict for each.
 
     Keys: "name"; "order", and "driven_order" with a torque; "dense_order" between the steps; "adaptive" (with rtol and
-    atol, otherwise with `step=`); "implicit"; "cheap" (a step of game engines); "keeps" (invariants of a free body that
-    it conserves); "needs" (of a scene); "doc"; "source".
+    atol, otherwise with `step=`); "implicit"; "comparison" (a step of game engines, which charts run); "keeps"
+    (invariants of a free body that it conserves); "needs" (of a scene); "doc"; "source".
     """
     return list(_core.method_records())
 

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from .case import Case, stored, turn_of
 from .entrants import PER_TURN, Entrant
-from .family import Point, Verdict, answered, nobody, to_short
+from .family import Point, Verdict, judge_no_answer, to_short, tried_points
 from .run import run
 
 SURE = 1e-3      # beyond this excess, either way, there is no doubt
@@ -39,9 +39,9 @@ def measure(entrant: Entrant, name: str, excesses: Sequence[float], make: Callab
 
 def judge(points: list[Point]) -> Verdict:
     """By the greatest tilt against the true one, and by the side of the critical speed."""
-    if (none := nobody(points)) is not None:
+    if (none := judge_no_answer(points)) is not None:
         return none
-    tried = answered(points)
+    tried = tried_points(points)
     off = max(p.get("off") for p in tried)
     if off <= 1e-3:
         return Verdict("holds", to_short(off), off)

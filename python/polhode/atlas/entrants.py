@@ -44,7 +44,7 @@ def entrants() -> list[Entrant]:
     found = [Entrant("solve", "solve", {}, {}), Entrant("exact", "exact", {}, {"method": "exact"})]
     for cheap in (False, True):
         found += [Entrant(r["name"], "cheap" if cheap else "method", r, {"method": r["name"]})
-                  for r in records if r["cheap"] == cheap]
+                  for r in records if r["comparison"] == cheap]
     # Lagrange's equations in the textbook's angles, by the general method of the highest order that is not implicit.
     general = max((r for r in records if r["adaptive"] and not r["implicit"] and r["name"] in ANGLES),
                   key=lambda r: int(r["order"]))

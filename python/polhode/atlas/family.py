@@ -168,14 +168,14 @@ def measure_cases(
         yield point
 
 
-def answered(points: list[Point]) -> list[Point]:
+def tried_points(points: list[Point]) -> list[Point]:
     """Those that were tried and not refused: answers and failures."""
     return [p for p in points if p.status in ("answered", "failed")]
 
 
-def nobody(points: list[Point]) -> Verdict | None:
+def judge_no_answer(points: list[Point]) -> Verdict | None:
     """The verdict where nothing was tried."""
-    if answered(points):
+    if tried_points(points):
         return None
     if points and all(p.status == "refused" for p in points):
         return Verdict("none", "", why=points[0].why)

@@ -23,7 +23,7 @@ def _matrix(content: dict[str, Any]) -> list[str]:
 
 def _listed(content: dict[str, Any], family: str, level: str) -> str:
     names = [name for name, row in content["matrix"].items() if row[family]["level"] == level]
-    return ", ".join(names) if names else "nobody"
+    return ", ".join(names) if names else "none"
 
 
 def costs(seconds: dict[str, float]) -> str:

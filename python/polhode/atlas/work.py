@@ -48,13 +48,13 @@ class _JobWorker(Worker):
 
     def take(self) -> bool | None:
         """Take what has come; whether the job is done, None when the process has ended."""
-        heard = self.hear()
-        for kind, content in heard or ():
+        messages = self.receive()
+        for kind, content in messages or ():
             if kind == "answer":
                 self.points.append(from_json(content))
             else:
                 self.fail(content)
-        return None if heard is None else bool(heard) and heard[-1][0] == "end"
+        return None if messages is None else bool(messages) and messages[-1][0] == "end"
 
 
 def work(jobs: Sequence[Job], done: Done, *, processes: int = 2,
@@ -74,7 +74,7 @@ def work(jobs: Sequence[Job], done: Done, *, processes: int = 2,
         a run without an answer.
     """
     waiting = list(reversed(jobs))
-    crew: list[_JobWorker] = []
+    pool: list[_JobWorker] = []
 
     def hand_in(worker: _JobWorker) -> None:
         job, worker.job = worker.job, None
@@ -83,28 +83,28 @@ def work(jobs: Sequence[Job], done: Done, *, processes: int = 2,
 
     def dismiss(worker: _JobWorker, why: str = "") -> None:
         """Take a process out, with the job it had."""
-        crew.remove(worker)
+        pool.remove(worker)
         ended = worker.end(kill=bool(why))
         if worker.job:
             worker.fail(why or ended)
         hand_in(worker)
 
     try:
-        while waiting or any(worker.job for worker in crew):
-            crew += [_JobWorker(*command) for _ in range(min(len(waiting), processes - len(crew)))]
-            for worker in crew:
+        while waiting or any(worker.job for worker in pool):
+            pool += [_JobWorker(*command) for _ in range(min(len(waiting), processes - len(pool)))]
+            for worker in pool:
                 if waiting and not worker.job:
                     worker.start(waiting.pop())
-            for worker in select.select(crew, [], [], 0.5)[0]:
+            for worker in select.select(pool, [], [], 0.5)[0]:
                 complete = worker.take()
                 if complete is None:
                     dismiss(worker)
                 elif complete:
                     hand_in(worker)
-            for worker in [worker for worker in crew if worker.job]:
+            for worker in [worker for worker in pool if worker.job]:
                 quiet = time.monotonic() - worker.alive
                 if quiet > silence or worker.spent > PATIENCE * worker.limit:
                     dismiss(worker, f"hung: no answer for {max(quiet, worker.spent):.0f} s")
     finally:
-        for worker in crew:
+        for worker in pool:
             worker.end()

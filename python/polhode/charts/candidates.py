@@ -53,7 +53,7 @@ def _method(record: dict[str, Any]) -> Candidate:
         refusal = str(_core.method_refusal(name, scene))
         return f"needs {record['needs']}" if refusal and record["needs"] else refusal
 
-    return Candidate(name, "cheap" if record["cheap"] else "method", record["source"], settings,
+    return Candidate(name, "cheap" if record["comparison"] else "method", record["source"], settings,
                      lambda scene: _solving(scene, "rtol" if adaptive else "step", method=name), refuses,
                      "rtol" if adaptive else "step")
 

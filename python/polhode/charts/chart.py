@@ -67,8 +67,8 @@ def chart(
     peers : bool
         Also run other programs that are installed. Missing programs are listed.
     entrants : iterable of Entrant, callables or peers
-        Solvers of your own. A function ``f(scene, rtol)`` returns omega and attitude; `Entrant` tells more of it. A
-        module of `polhode.charts.peers` adds that program alone. Functions run in this process.
+        Solvers of your own. A function ``f(scene, rtol)`` returns omega and attitude; `Entrant` has its other properties.
+        A module of `polhode.charts.peers` adds that program alone. Functions run in this process.
     progress : callable
         ``progress(finished scenes, present task)``.
     show : callable

@@ -126,11 +126,11 @@ class Subprocess:
         end = time.monotonic() + patience
         while not replies or replies[-1][0] != "end":
             left = end - time.monotonic()
-            heard = process.hear(max(0.0, left))
-            if heard is None or left <= 0:
-                how = self.close(kill=heard is not None)
-                raise Failure(how if heard is None else f"hung: not back after {patience:.0f} s")
-            replies += heard
+            messages = process.receive(max(0.0, left))
+            if messages is None or left <= 0:
+                how = self.close(kill=messages is not None)
+                raise Failure(how if messages is None else f"hung: not back after {patience:.0f} s")
+            replies += messages
         content = replies[0][1]   # or, at the end, why there is none
         if len(replies) < 2 or isinstance(content, Failure):
             raise Failure(str(content))

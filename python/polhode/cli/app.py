@@ -207,7 +207,7 @@ def calibrate(as_json: Json = False) -> int:
 
 @_command
 def methods(as_json: Json = False) -> int:
-    """List all methods."""
+    """List all methods; last, the steps of game engines for comparison."""
     records = method_records()
     if as_json:
         write_json(records)

@@ -35,7 +35,7 @@ def ensemble(
 ) -> int:
     """Compute many bodies that a recipe draws.
 
-    A run that ended early goes on with --resume. `polhode ensemble status STORE` tells what is done, also during a run.
+    A run that ended early goes on with --resume. `polhode ensemble status STORE` shows what is done, also during a run.
     `polhode ensemble report STORE` writes a page with the spread against time.
     """
     if what[0] in WORDS:

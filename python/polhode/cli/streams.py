@@ -57,7 +57,7 @@ def drop_stdout() -> None:
 
 
 def say(text: str) -> None:
-    """Print a line on stderr; nobody hears it where that is full."""
+    """Print a line on stderr; it is lost where that is full."""
     with contextlib.suppress(OSError):
         print(f"polhode: {text}", file=sys.stderr)
 

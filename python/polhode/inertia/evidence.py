@@ -211,8 +211,8 @@ def _informative(matrix: Array, mass: Array, geometry: Geometry) -> float:
     """How many of six numbers say something: products that vanish in data and geometry alike agree for nothing."""
     count = 3.0 - (not np.isfinite(mass[0]))
     rows, columns = np.triu_indices(3, 1)
-    told = np.zeros(3, dtype=bool)
+    off_axis = np.zeros(3, dtype=bool)
     for m in [matrix[0], *(r.matrix for r in geometry.references)]:
         scale = np.sqrt(np.abs(m[rows, rows] * m[columns, columns]))
-        told |= np.abs(m[rows, columns]) > 1e-3 * scale
-    return count + float(told.sum())
+        off_axis |= np.abs(m[rows, columns]) > 1e-3 * scale
+    return count + float(off_axis.sum())

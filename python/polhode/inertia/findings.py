@@ -38,7 +38,7 @@ class Finding:
     mass, com
         The corrected mass [kg] and centre of mass [m], if they were given.
     level : str
-        "error": no body can have this. "warning": unlikely for this body. "remark": worth knowing, and no fault.
+        "error": no body can have this. "warning": unlikely for this body. "remark": useful to know, and no fault.
     code : str
         "PI001" and so on. It stays the same in all versions; `docs/codes/` has a page for each.
     """

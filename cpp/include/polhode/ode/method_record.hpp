@@ -17,7 +17,7 @@ struct MethodRecord {
   bool adaptive_order = false;      ///< also chooses its order by the tolerance, up to `order`
   double least_rtol = 4 * std::numeric_limits<double>::epsilon();   ///< a finer tolerance gains nothing in float64
   bool implicit = false;            ///< solves equations within a step: stable where rates are stiff
-  bool cheap = false;               ///< a game engine's step, for comparison; a plan never chooses it
+  bool comparison = false;          ///< a game engine's step, for comparison: charts run it, and no plan chooses it
   std::string_view keeps;           ///< without torques, to rounding: "nothing" or some of "energy, |L|, L, L_z"
   std::string_view needs = "";      ///< what it requires of a scene; "" if nothing
   std::string_view doc;

@@ -30,6 +30,8 @@ struct Rk45Block : LaneState {
 };
 
 struct Rk45Kernels {
+  explicit operator bool() const { return advance != nullptr; }
+
   /// As LaneIntegrator::advance.
   unsigned (*advance)(Rk45Block& block, int rounds);
   /// y at the fractions s of the last step, for the lanes that needed the host.

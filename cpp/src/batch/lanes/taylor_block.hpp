@@ -28,6 +28,8 @@ struct TaylorBlock : LaneState {
 };
 
 struct TaylorKernels {
+  explicit operator bool() const { return step != nullptr; }
+
   void (*step)(TaylorBlock& block);
   /// y within the last step, s units of time after its start.
   void (*sample)(const TaylorBlock& block, const double* s, double (*y)[LaneState::width]);

@@ -1,14 +1,12 @@
 #include "exact/sensitivity/kernels.hpp"
 
+#include "core/choose_level.hpp"
 #include "core/choose_once.hpp"
 
 namespace polhode::exact {
 
 const FreeColumnsKernels& free_columns_kernels(SimdLevel level) {
-  const FreeColumnsKernels* found = nullptr;
-  if (level == SimdLevel::avx512) found = avx512_free_columns_kernels();
-  if (found == nullptr && level != SimdLevel::baseline) found = avx2_free_columns_kernels();
-  return found != nullptr ? *found : *baseline_free_columns_kernels();
+  return *choose_level(level, baseline_free_columns_kernels, avx2_free_columns_kernels, avx512_free_columns_kernels);
 }
 
 const FreeColumnsKernels& free_columns_kernels() {

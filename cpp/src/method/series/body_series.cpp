@@ -1,3 +1,4 @@
+#include "core/choose_level.hpp"
 #include "method/series/body_series.hpp"
 
 #include <Eigen/Geometry>
@@ -364,19 +365,11 @@ void BodySeries::keep_unit(double* y, double* carry) {
 }
 
 SeriesKernel find_series_kernel(const SeriesTerms& terms, bool attitude) {
-  SeriesKernel found = nullptr;
-  const SimdLevel level = simd_level();
-  if (level == SimdLevel::avx512) found = avx512_series_kernel(terms, attitude);
-  if (found == nullptr && level != SimdLevel::baseline) found = avx2_series_kernel(terms, attitude);
-  return found != nullptr ? found : baseline_series_kernel(terms, attitude);
+  return choose_level(simd_level(), baseline_series_kernel, avx2_series_kernel, avx512_series_kernel, terms, attitude);
 }
 
 const ColumnKernels& find_column_kernels() {
-  const ColumnKernels* found = nullptr;
-  const SimdLevel level = simd_level();
-  if (level == SimdLevel::avx512) found = avx512_column_kernels();
-  if (found == nullptr && level != SimdLevel::baseline) found = avx2_column_kernels();
-  return found != nullptr ? *found : *baseline_column_kernels();
+  return *choose_level(simd_level(), baseline_column_kernels, avx2_column_kernels, avx512_column_kernels);
 }
 
 }  // namespace polhode

@@ -37,7 +37,7 @@ const BodyMethod buss_method{
         .order = 2,
         .dense_order = 3,
         .adaptive = false,
-        .cheap = true,
+        .comparison = true,
         .keeps = "|L|, L",
         .doc =
             "Buss's augmented second-order step, with L constant in space. The energy grows until the body rotates "

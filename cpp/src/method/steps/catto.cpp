@@ -42,7 +42,7 @@ const BodyMethod catto_method{
         .dense_order = 3,
         .adaptive = false,
         .implicit = true,
-        .cheap = true,
+        .comparison = true,
         .keeps = "nothing",
         .doc = "Catto's implicit gyroscopic step, one Newton step of implicit Euler. It never diverges, but loses "
                "energy and |L|.",

@@ -90,7 +90,7 @@ class Dmv {
 
 constexpr ode::MethodRecord record_of(std::string_view name, int order, std::string_view doc, std::string_view source) {
   return {.name = name, .order = order, .driven_order = 2, .dense_order = order == 2 ? 3 : order, .adaptive = false,
-          .implicit = true, .cheap = true, .keeps = "energy, |L|, L", .doc = doc, .source = source};
+          .implicit = true, .comparison = true, .keeps = "energy, |L|, L", .doc = doc, .source = source};
 }
 
 constexpr std::string_view moser = "Moser & Veselov 1991, Commun. Math. Phys. 139, 217";

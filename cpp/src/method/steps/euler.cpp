@@ -32,7 +32,7 @@ const BodyMethod euler_method{
         .order = 1,
         .dense_order = 3,
         .adaptive = false,
-        .cheap = true,
+        .comparison = true,
         .keeps = "nothing",
         .doc = "Explicit Euler, with the attitude rotated by the old rates. The energy grows until the run diverges.",
         .source = "Euler 1768, Institutionum calculi integralis 1, cap. VII",

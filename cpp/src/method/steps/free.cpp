@@ -35,7 +35,7 @@ const BodyMethod free_method{
         .driven_order = 2,
         .dense_order = 12,
         .adaptive = false,
-        .cheap = true,
+        .comparison = true,
         .keeps = "energy, |L|, L",
         .doc = "The free motion in closed form, with series of five terms. It conserves energy and L of a free body at "
                "any step.",

@@ -30,7 +30,7 @@ const BodyMethod ignore_method{
         .order = 0,
         .dense_order = 3,
         .adaptive = false,
-        .cheap = true,
+        .comparison = true,
         .keeps = "energy, |L|",
         .doc = "No gyroscopic term, as in many engines by default. It solves the wrong equations at any step size.",
         .source = "Bullet, Box2D, Jolt and others with the term switched off; Catto 2015, GDC, Numerical Methods",

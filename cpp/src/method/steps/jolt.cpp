@@ -36,7 +36,7 @@ const BodyMethod jolt_method{
         .order = 1,
         .dense_order = 3,
         .adaptive = false,
-        .cheap = true,
+        .comparison = true,
         .keeps = "|L|",
         .doc = "The explicit gyroscopic step with |L| restored. The body ends up rotating about its intermediate axis.",
         .source = "Jolt Physics, MotionProperties::ApplyGyroscopicForceInternal; avian, pull request 738",

@@ -94,7 +94,7 @@ const BodyMethod leapfrog_method{
         .order = 2,
         .dense_order = 3,
         .adaptive = false,
-        .cheap = true,
+        .comparison = true,
         .keeps = "L_z",
         .needs = "I1 = I2 about body z, gravity along body z as the only torque, no rotors, and theta away from 0 and "
                  "pi",

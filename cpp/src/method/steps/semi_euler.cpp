@@ -32,7 +32,7 @@ const BodyMethod semi_euler_method{
         .order = 1,
         .dense_order = 3,
         .adaptive = false,
-        .cheap = true,
+        .comparison = true,
         .keeps = "nothing",
         .doc = "Semi-implicit Euler: the rates first, then the attitude with the new rates. The energy grows until "
                "the run diverges.",

@@ -46,7 +46,7 @@ const BodyMethod split_method{
         .order = 2,
         .dense_order = 3,
         .adaptive = false,
-        .cheap = true,
+        .comparison = true,
         .keeps = "|L|, L",
         .doc = "Three-rotation splitting. It is symplectic, L in space is conserved, and the energy error stays "
                "bounded.",

@@ -12,7 +12,7 @@ from ..._harness.truth import Truth, attitude_errors
 from .. import scenes
 from ..case import stored
 from ..entrants import Entrant
-from ..family import LOST, Family, Point, Verdict, answered, nobody, to_short, too_long
+from ..family import LOST, Family, Point, Verdict, judge_no_answer, to_short, too_long, tried_points
 from ..run import run
 
 TOLERANCES = tuple(10.0**-k for k in range(4, 17))
@@ -53,11 +53,11 @@ def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
 
 def judge(points: list[Point]) -> Verdict:
     """By the longest horizon any setting reaches."""
-    if (none := nobody(points)) is not None:
+    if (none := judge_no_answer(points)) is not None:
         return none
     horizons = [p.get("horizon") for p in points if p.status == "answered"]
     if not horizons:
-        return Verdict("fails", "burst", 0.0, answered(points)[0].why)
+        return Verdict("fails", "burst", 0.0, tried_points(points)[0].why)
     best = max(horizons)
     for p in points:
         if p.values.get("lost") and p.values["claims"] and p.values["stated"] <= LOST:

@@ -9,7 +9,7 @@ from ..._scene.scene import Scene
 from .. import scenes
 from ..case import Case, truth_of
 from ..entrants import Entrant
-from ..family import Family, Point, Verdict, answered, nobody
+from ..family import Family, Point, Verdict, judge_no_answer, tried_points
 from ..run import Failed, Refused, run, values_of
 
 GOAL = 1e-6
@@ -82,9 +82,9 @@ def to_few(count: int) -> str:
 
 def judge(points: list[Point]) -> Verdict:
     """By whether 1e-6 is reached, and by the steps it takes."""
-    if (none := nobody(points)) is not None:
+    if (none := judge_no_answer(points)) is not None:
         return none
-    tried = answered(points)
+    tried = tried_points(points)
     failed = [p for p in tried if p.status == "failed"]
     if failed:
         first = min(failed, key=lambda p: p.x)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from .. import scenes
 from ..entrants import Entrant
-from ..family import LOST, Family, Point, Verdict, answered, measure_cases, nobody, to_short
+from ..family import LOST, Family, Point, Verdict, judge_no_answer, measure_cases, to_short, tried_points
 
 STEP = 1e-3    # s, a 1500th of a turn: what is left is the angles' doing
 NOISE = 1e-10  # rad: below this a ratio says nothing
@@ -21,11 +21,11 @@ def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
 
 def judge(points: list[Point]) -> Verdict:
     """By how much worse it gets towards the vertical."""
-    if (none := nobody(points)) is not None:
+    if (none := judge_no_answer(points)) is not None:
         return none
     worst, error = 0.0, 0.0
-    for series in {p.series for p in answered(points)}:
-        sweep = [p for p in answered(points) if p.series == series]
+    for series in {p.series for p in tried_points(points)}:
+        sweep = [p for p in tried_points(points) if p.series == series]
         far = max(sweep, key=lambda p: p.x).get("error")
         near = max(p.get("error") for p in sweep)
         error = max(error, near)

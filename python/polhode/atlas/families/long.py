@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from .. import scenes
 from ..entrants import Entrant
-from ..family import LOST, Family, Point, Verdict, answered, measure_cases, nobody, to_short
+from ..family import LOST, Family, Point, Verdict, judge_no_answer, measure_cases, to_short, tried_points
 
 KEPT = 1e-3   # relative
 
@@ -19,9 +19,9 @@ def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
 
 def judge(points: list[Point]) -> Verdict:
     """By the attitude after as many turns as were reached, then by what is conserved."""
-    if (none := nobody(points)) is not None:
+    if (none := judge_no_answer(points)) is not None:
         return none
-    last = max(answered(points), key=lambda p: p.x)
+    last = max(tried_points(points), key=lambda p: p.x)
     error = last.get("error")
     moved = max(last.get("energy"), last.get("angular_momentum"))
     turns = f"after {to_short(last.x)} turns"

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from .. import scenes
 from ..entrants import Entrant
-from ..family import LOST, Family, Point, Verdict, answered, measure_cases, nobody, to_short
+from ..family import LOST, Family, Point, Verdict, judge_no_answer, measure_cases, to_short, tried_points
 
 
 def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
@@ -18,9 +18,9 @@ def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
 
 def judge(points: list[Point]) -> Verdict:
     """By the largest error over all differences."""
-    if (none := nobody(points)) is not None:
+    if (none := judge_no_answer(points)) is not None:
         return none
-    worst = max(p.get("error") for p in answered(points))
+    worst = max(p.get("error") for p in tried_points(points))
     level = "holds" if worst <= 1e-9 else "degrades" if worst <= LOST else "fails"
     return Verdict(level, to_short(worst) if worst <= LOST else "lost", worst)
 

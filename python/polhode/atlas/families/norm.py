@@ -10,7 +10,7 @@ import numpy as np
 from ..._scene.scene import Scene
 from ..case import S1_MOMENTS
 from ..entrants import Entrant
-from ..family import Family, Point, Verdict, answered, nobody, to_short
+from ..family import Family, Point, Verdict, judge_no_answer, to_short, tried_points
 from ..run import run
 
 SPAN = 100.0
@@ -61,9 +61,9 @@ def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
 
 def judge(points: list[Point]) -> Verdict:
     """By the largest distance from 1 of what was returned."""
-    if (none := nobody(points)) is not None:
+    if (none := judge_no_answer(points)) is not None:
         return none
-    tried = [p for p in answered(points) if p.status == "answered"]
+    tried = [p for p in tried_points(points) if p.status == "answered"]
     worst = max((p.get("norm") for p in tried), default=math.inf)
     level = "holds" if worst <= 1e-15 else "degrades" if worst <= 1e-6 else "fails"
     return Verdict(level, to_short(worst), worst)

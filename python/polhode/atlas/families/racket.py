@@ -12,7 +12,7 @@ from ..._solve.motion import Motion
 from .. import scenes
 from ..case import Case, stored, turn_of
 from ..entrants import PER_TURN, Entrant
-from ..family import LOST, Family, Point, Verdict, answered, measure_cases, nobody, to_short
+from ..family import LOST, Family, Point, Verdict, judge_no_answer, measure_cases, to_short, tried_points
 from ..run import Failed, Refused, run
 
 
@@ -63,9 +63,9 @@ def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
 
 def judge(points: list[Point]) -> Verdict:
     """By the attitude for every closeness, then by the first flip."""
-    if (none := nobody(points)) is not None:
+    if (none := judge_no_answer(points)) is not None:
         return none
-    tried = answered(points)
+    tried = tried_points(points)
     worst = max(p.get("error") for p in tried)
     if worst <= 1e-9:
         return Verdict("holds", to_short(worst), worst)

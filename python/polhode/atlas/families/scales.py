@@ -13,7 +13,7 @@ from ..._solve.motion import Motion
 from ...torques import Gravity
 from ..case import turn_of
 from ..entrants import PER_TURN, Entrant
-from ..family import Family, Point, Verdict, answered, nobody, to_short
+from ..family import Family, Point, Verdict, judge_no_answer, to_short, tried_points
 from ..run import Failed, Refused, run
 
 POWERS = (-150, -120, -100, -60, -30, -12, 12, 30, 60, 100, 120, 150)
@@ -78,9 +78,9 @@ def _difference(entrant: Entrant, name: str, what: str, power: int, plain: Motio
 
 def judge(points: list[Point]) -> Verdict:
     """By the largest difference; a refusal with a reason is not a wrong answer, but not one that holds."""
-    if (none := nobody(points)) is not None:
+    if (none := judge_no_answer(points)) is not None:
         return none
-    tried = answered(points)
+    tried = tried_points(points)
     wrong = max((p.get("error") for p in tried if p.status == "answered"), default=math.inf)
     refused = [p for p in tried if p.status == "failed"]
     silent = [p for p in refused if not p.values.get("named")]

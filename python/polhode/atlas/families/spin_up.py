@@ -12,7 +12,7 @@ from ..._solve.motion import Motion
 from .. import scenes
 from ..case import Case, truth_of
 from ..entrants import PER_TURN, Entrant
-from ..family import LOST, Family, Point, Verdict, answered, measure_cases, nobody, to_short
+from ..family import LOST, Family, Point, Verdict, judge_no_answer, measure_cases, to_short, tried_points
 
 BRIEF = 1e-3   # seconds: less says nothing about a forecast
 
@@ -35,13 +35,13 @@ def foreseen(motion: Motion, truth: Truth) -> dict[str, float]:
 
 def judge(points: list[Point]) -> Verdict:
     """By the error over the longest time reached."""
-    if (none := nobody(points)) is not None:
+    if (none := judge_no_answer(points)) is not None:
         return none
-    worst = max(p.get("error") for p in answered(points))
+    worst = max(p.get("error") for p in tried_points(points))
     level = "holds" if worst <= 1e-6 else "degrades" if worst <= LOST else "fails"
-    longest = max(p.x for p in answered(points))
+    longest = max(p.x for p in tried_points(points))
     why = f"up to {to_short(longest)} s" if any(p.status == "left out" for p in points) else ""
-    times = [p.get("foreseen") / p.get("took") for p in answered(points) if p.values.get("took", 0.0) > BRIEF]
+    times = [p.get("foreseen") / p.get("took") for p in tried_points(points) if p.values.get("took", 0.0) > BRIEF]
     if times and not math.isnan(min(times)):
         why = f"its plan foresaw {min(times):.1f} to {max(times):.1f} times the time it took"
     return Verdict(level, to_short(worst) if worst <= LOST else "lost", worst, why)

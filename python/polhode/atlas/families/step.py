@@ -14,7 +14,7 @@ from ..._harness.truth import Truth, attitude_errors
 from ..._scene.scene import Scene
 from ..case import S1_MOMENTS
 from ..entrants import Entrant
-from ..family import LOST, Family, Point, Verdict, answered, fixed_only, nobody, to_short
+from ..family import LOST, Family, Point, Verdict, fixed_only, judge_no_answer, to_short, tried_points
 from ..run import Failed, run
 
 STARTS = ((1.0, 1.0, 1.0), (1.0, 0.1, 0.1), (0.1, 1.0, 0.1), (0.1, 0.1, 1.0))
@@ -106,9 +106,9 @@ def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
 
 def judge(points: list[Point]) -> Verdict:
     """By the longest step that keeps the attitude, for the worst body."""
-    if (none := nobody(points)) is not None:
+    if (none := judge_no_answer(points)) is not None:
         return none
-    right, kept = (min(p.get(name) for p in answered(points)) for name in ("right", "kept"))
+    right, kept = (min(p.get(name) for p in tried_points(points)) for name in ("right", "kept"))
     level = "holds" if right >= GOOD else "degrades" if right >= FAIR else "fails"
     text = to_short(right) if right > 0 else "never"
     return Verdict(level, text, right, f"energy and |L| within 10 % to {to_short(kept)}")

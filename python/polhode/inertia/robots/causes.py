@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 BEATEN = 3.0        # nats by which a cause must beat the next of another kind: 20 to one
 SUPPORT = 2.0       # nats for each factor e of links that the same cause explains
-# The largest difference from the uniform body that may be left after the repair, by what the geometry is worth.
+# The largest difference from the uniform body that may be left after the repair, by the quality of the geometry.
 LEFT = {"body": 0.4, "hull": 0.5, "collision": 0.15, "part": 0.15}
 SIZE = 0.3          # of a cause that is one factor: the logarithm of the size that may be left
 EQUAL = 1e-3        # of an entry that becomes that of another moment
@@ -43,10 +43,10 @@ class Candidate(NamedTuple):
 
 @dataclasses.dataclass
 class Known:
-    """The geometry of a link, what it is worth, and what the rest of the file tells."""
+    """The geometry of a link, its quality, and what is known from the rest of the file."""
 
     geometry: ev.Geometry
-    worth: str
+    quality: str
     small: bool = False        # no matter is dense enough to hold the mass in it
     copies: int = 0
     identified: bool = False
@@ -54,7 +54,7 @@ class Known:
 
 def candidates(given: ev.Bodies, alone: ev.Evidence, known: Known, link: Link, broken: set[str]) -> list[Candidate]:
     """Return the causes that leave a sound body, agree with what is known, and gain enough."""
-    geometry = known.geometry if known.worth in LEFT else ev.Geometry()
+    geometry = known.geometry if known.quality in LEFT else ev.Geometry()
     if geometry is not known.geometry:
         alone = ev.weigh(given, geometry)
     causes = [*link.rotation_causes(), *undo(given, geometry), *_floors(given, geometry), *_turned_centre(given),
@@ -68,13 +68,13 @@ def candidates(given: ev.Bodies, alone: ev.Evidence, known: Known, link: Link, b
             gain = float(weighed.score[0]) - total
             if sound[i] and gain > CONVINCED and _explains(cause, given, known, geometry, broken):
                 found.append(Candidate(cause.kind, cause.text, total, gain, cause.body))
-    if known.worth in ("body", "hull") and broken and np.ptp(given.matrix[0].diagonal()) > 0:
+    if known.quality in ("body", "hull") and broken and np.ptp(given.matrix[0].diagonal()) > 0:
         for factor, text in GEOMETRY_UNITS:   # the body is right, what it is compared with is not
             scaled = geometry.scaled(factor)
             other = ev.weigh(given, scaled)
             total = float(other.score[0]) + 2.0
             if geometry.references and other.sound()[0] and float(alone.score[0]) - total > CONVINCED \
-                    and ev.apart(given, scaled) < LEFT[known.worth]:
+                    and ev.apart(given, scaled) < LEFT[known.quality]:
                 found.append(Candidate("units", text, total, float(alone.score[0]) - total, given, factor))
     return found
 
@@ -146,7 +146,7 @@ def _explains(cause: Cause, given: ev.Bodies, known: Known, geometry: ev.Geometr
     if broken & {"triangle", "positive"} and cause.kind == "decimal" and _alone(cause, before, after):
         return True
     left, was = _left(body, geometry), _left(given, geometry)
-    limit = LEFT[known.worth] if broken else LEFT_SLIP
+    limit = LEFT[known.quality] if broken else LEFT_SLIP
     if left > min(limit, 0.5 * was) or (cause.kind == "formula" and left > FORMULA):
         return False
     if geometry.volume is not None and not 20 < float(body.mass[0]) / geometry.volume < 25_000:

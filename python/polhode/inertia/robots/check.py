@@ -1,4 +1,4 @@
-"""All links of one file together: what one link tells about the others."""
+"""All links of one file together: what one link shows about the others."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ def judge(robot: Robot) -> list[tuple[Link, Diagnosis | None]]:
     studied = [case for case in cases if case is not None]
     _count_copies(studied)
     support = tally([case.possible for case in studied])
-    unlike = [case for case in studied if case.broken and not case.settled and case.known.worth in ("body", "hull")
+    unlike = [case for case in studied if case.broken and not case.settled and case.known.quality in ("body", "hull")
               and _has_products(case) and conclude(case, support).findings
               and all(f.cause == "unknown" for f in conclude(case, support).findings)]
-    comparable = [case for case in studied if case.known.worth in ("body", "hull")]
+    comparable = [case for case in studied if case.known.quality in ("body", "hull")]
     if len(unlike) >= FEWEST and len(unlike) >= IDENTIFIED * len(comparable):
         for case in unlike:
             case.known.identified = True

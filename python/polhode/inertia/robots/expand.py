@@ -50,7 +50,7 @@ def _within(xacro: Any, search: Search, file: pathlib.Path) -> Iterator[None]:
     def find(package: str) -> str:
         found = search.folder(package, file)
         if found is None:
-            raise InvalidInput(f"package {package!r} not found: --package {package}=FOLDER tells where it is")
+            raise InvalidInput(f"package {package!r} not found: --package {package}=FOLDER gives the place")
         return str(found.absolute())
 
     def opened(name: Any, mode: str = "r", *more: Any, **options: Any) -> Any:

@@ -1,4 +1,4 @@
-"""The verdict on a link: what its geometry is worth, what is broken, and at which level."""
+"""The verdict on a link: the quality of its geometry, what is broken, and at which level."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Case:
 def study(link: Link) -> Case | None:
     """Find what is broken in a link, and each cause that may explain it."""
     if link.trouble is not None:
-        # The file's name is told beside; the message is about the rest.
+        # The file's name stands beside the message, which is about the rest.
         text = str(link.trouble).removeprefix(link.file).strip()
         return _settled(link, "unreadable", "text", text, "other programs refuse the whole file for it")
     if link.matrix is None or link.mass is None:
@@ -101,7 +101,7 @@ def _study(link: Link, mass: float, com: Array, matrix: Array) -> Case:
 
 
 def _known(link: Link, mass: float, matrix: Array) -> Known:
-    """What the geometry is worth.
+    """The quality of the geometry as evidence.
 
     "body": what is seen, all of it. "hull": the same, with convex hulls of open meshes. "collision": the shapes that
     collide alone. "part": some of it was not read. "marker": too small to hold the mass. "none": there is nothing.
@@ -113,17 +113,17 @@ def _known(link: Link, mass: float, matrix: Array) -> Known:
     if (link_box := geometry.box) is None:
         return Known(geometry, "none")
     seen = bool(link.visual.parts) and link.visual.whole
-    worth = "body" if seen and not link.visual.bound else "hull" if seen else "collision"
+    quality = "body" if seen and not link.visual.bound else "hull" if seen else "collision"
     if not (link.visual.whole and link.collision.whole):
-        worth = "part" if not seen else worth
-    geometry = dataclasses.replace(geometry, slack=1.0 if worth in ("collision", "part") else SLACK)
+        quality = "part" if not seen else quality
+    geometry = dataclasses.replace(geometry, slack=1.0 if quality in ("collision", "part") else SLACK)
     side = float(np.ptp(link_box, axis=0).max())
     volume = geometry.volume
     small = volume is not None and mass > OSMIUM * volume and not _agrees(link, geometry, mass, matrix)
     if side <= MARKER and not _agrees(link, geometry, mass, matrix) and (
             volume is None or not 50 < mass / volume < 12_000):
         return Known(geometry, "marker")
-    return Known(geometry, worth, small=small)
+    return Known(geometry, quality, small=small)
 
 
 def _agrees(link: Link, geometry: ev.Geometry, mass: float, matrix: Array) -> bool:
@@ -149,7 +149,7 @@ def conclude(case: Case, support: dict[str, int]) -> Diagnosis:
             breach = Breach("geometry", 100 * case.misfit, "differs from a uniform body of its geometry by "
                             f"{100 * case.misfit:.3g} % of the largest moment, by {100 * left:.2g} % once repaired")
             findings.append(_with_cause(breach, cause, case))
-    if not case.broken and case.known.worth == "none":
+    if not case.broken and case.known.quality == "none":
         # Without a geometry nothing else would tell.
         reason = is_placeholder(link.matrix, link.mass, case.known.copies)
         if reason:
@@ -176,7 +176,7 @@ def _plain(breach: Breach, case: Case, cause: str, advice: str, code: str = "", 
 
 def _finding(breach: Breach, cause: Candidate | None, case: Case) -> Finding | None:
     """One broken condition as a finding, at the level that its evidence carries; None where it carries none."""
-    link, worth = case.link, case.known.worth
+    link, quality = case.link, case.known.quality
     matrix, mass = link.matrix, link.mass
     assert matrix is not None and mass is not None
     if breach.what in ("triangle", "positive"):
@@ -197,7 +197,7 @@ def _finding(breach: Breach, cause: Candidate | None, case: Case) -> Finding | N
         return _plain(breach, case, "placeholder", placeholder, "PI203")
     if mass < 1e-5:
         return _plain(breach, case, "placeholder", "a mass of almost nothing: a placeholder?", "PI203")
-    if worth == "marker" or (case.known.small and cause is None):
+    if quality == "marker" or (case.known.small and cause is None):
         return _plain(breach, case, "marker", "the geometry is too small to hold the mass: it marks the link, or shows "
                       "a part of it", "PI205")
     if breach.what == "density":
@@ -205,13 +205,13 @@ def _finding(breach: Breach, cause: Candidate | None, case: Case) -> Finding | N
     if cause is not None:
         return _with_cause(breach, cause, case, code)
     amount = breach.per_cent / 100
-    if outside and (worth not in ("body", "hull") or _distance(case) < OUTSIDE):
+    if outside and (quality not in ("body", "hull") or _distance(case) < OUTSIDE):
         return None
     if breach.what == "extent" and not outside:
-        limit = EXTENT if worth in ("body", "hull") else EXTENT_COLLISION
+        limit = EXTENT if quality in ("body", "hull") else EXTENT_COLLISION
         if amount + 1 < limit:
             return None
-    if breach.what == "size" and worth not in ("body", "hull"):
+    if breach.what == "size" and quality not in ("body", "hull"):
         return None
     if case.known.identified:
         return _plain(breach, case, "identified", "many links of this file are unlike their geometry, each in a way of "
@@ -248,7 +248,7 @@ def _density(breach: Breach, cause: Candidate | None, case: Case) -> Finding | N
         steps = [k for k in (10.0, 100.0) if 600 < density / k < 9_000]
     advice = f"mass over volume is {density:.3g} kg/m^3, and the tensor goes with it: the unit of the density?"
     # The shape agrees, so mass and tensor are one factor too large together.
-    error = case.known.worth == "body" and density > ev.DENSEST
+    error = case.known.quality == "body" and density > ev.DENSEST
     level = "PI006" if error else "PI105"
     if steps:
         body = ev.single(mass / steps[0], link.pose.turn.T @ link.pose.place, link.matrix / steps[0])

@@ -177,35 +177,36 @@ def _from_geoms(link: Link, solids: Solids) -> None:
 
 def _geom(node: Node, style: str, frame: Pose, model: Model, link: Link, from_geoms: bool) -> Solids:
     """Add a geom; returns it with its mass as MuJoCo computes it, or nothing when it has none or was not read."""
-    told = {**model.defaults.get(node.get("class") or style, {}).get("geom", {}), **node.attrib}
-    kind = told.get("type", "sphere")
+    attributes = {**model.defaults.get(node.get("class") or style, {}).get("geom", {}), **node.attrib}
+    kind = attributes.get("type", "sphere")
     if kind in ("plane", "hfield"):
         return []
     # What nothing can touch is there to be seen.
-    into = link.visual if told.get("contype") == told.get("conaffinity") == "0" else link.collision
-    size = node.convert(told.get("size", ""), None, "size")
-    if "fromto" in told:
-        ends = node.convert(told["fromto"], 6, "fromto")
+    into = link.visual if attributes.get("contype") == attributes.get("conaffinity") == "0" else link.collision
+    size = node.convert(attributes.get("size", ""), None, "size")
+    if "fromto" in attributes:
+        ends = node.convert(attributes["fromto"], 6, "fromto")
         along = ends[3:] - ends[:3]
         size = np.concatenate([size[:1] if kind in ("capsule", "cylinder") else np.repeat(size[:1], 2),
                                [float(np.linalg.norm(along)) / 2]])
         place = frame @ Pose(onto(unit(along, node)), (ends[:3] + ends[3:]) / 2)
     else:
-        place = frame @ pose(node, model.compiler, told)
+        place = frame @ pose(node, model.compiler, attributes)
     before = len(into.parts)
-    if "mesh" in told:
-        _mesh(node, told, kind, model, link, into, place, from_geoms)
+    if "mesh" in attributes:
+        _mesh(node, attributes, kind, model, link, into, place, from_geoms)
     else:
         _primitive(node, kind, size, place, link, into)
     if len(into.parts) == before:
         return []
     part = into.parts[-1]
     low, high = model.compiler.groups
-    if not low <= float(node.convert(told.get("group", "0"), 1, "group")[0]) <= high:
+    if not low <= float(node.convert(attributes.get("group", "0"), 1, "group")[0]) <= high:
         return [(part, 0.0)]
-    mass = told.get("mass")
-    density = float(node.convert(told.get("density", "1000"), 1, "density")[0])
-    if from_geoms and (told.get("shellinertia") == "true" or part.bound) and (density if mass is None else mass != "0"):
+    mass = attributes.get("mass")
+    density = float(node.convert(attributes.get("density", "1000"), 1, "density")[0])
+    shell = attributes.get("shellinertia") == "true" or part.bound
+    if from_geoms and shell and (density if mass is None else mass != "0"):
         link.leave_out(into, "shell", "mass of a shell or an open mesh is not read")
     if mass is not None:
         return [(part, float(node.convert(mass, 1, "mass")[0]))]
@@ -229,9 +230,9 @@ def _primitive(node: Node, kind: str, size: Array, place: Pose, link: Link, into
     link.add(into, f"geom {kind}", make)
 
 
-def _mesh(node: Node, told: dict[str, str], kind: str, model: Model, link: Link, into: Assembly, place: Pose,
+def _mesh(node: Node, attributes: dict[str, str], kind: str, model: Model, link: Link, into: Assembly, place: Pose,
           from_geoms: bool) -> None:
-    name = told["mesh"]
+    name = attributes["mesh"]
     asset = model.meshes.get(name)
     if asset is None or asset.get("builtin") or asset.child("plugin") is not None:
         why = "no such asset" if asset is None else "made by MuJoCo"

@@ -90,25 +90,25 @@ def _include(node: Node, main: pathlib.Path, search: Search, notes: list[str], c
 
 
 def _compiler(root: Node) -> tuple[Compiler, list[str]]:
-    told: dict[str, str] = {}
+    attributes: dict[str, str] = {}
     for node in root.children("compiler"):
-        told |= node.attrib
+        attributes |= node.attrib
     notes = []
 
     def numbers(name: str, count: int, default: str) -> Array:
-        return root.convert(told.get(name, default), count, f"<compiler>: {name}")
+        return root.convert(attributes.get(name, default), count, f"<compiler>: {name}")
 
     if numbers("settotalmass", 1, "-1")[0] > 0:
-        notes.append(f"settotalmass={told['settotalmass']}: MuJoCo scales masses and tensors; judged as written")
-    if told.get("coordinate", "local") != "local":
+        notes.append(f"settotalmass={attributes['settotalmass']}: MuJoCo scales masses and tensors; judged as written")
+    if attributes.get("coordinate", "local") != "local":
         raise root.wrong("coordinate='global' is not read (nor by MuJoCo since 2.3.4)")
-    if sorted(told.get("eulerseq", "xyz").lower()) != list("xyz") and len(told["eulerseq"]) != 3:
-        raise root.wrong(f"<compiler>: eulerseq: must be three letters, got {told['eulerseq'][:20]!r}")
+    if sorted(attributes.get("eulerseq", "xyz").lower()) != list("xyz") and len(attributes["eulerseq"]) != 3:
+        raise root.wrong(f"<compiler>: eulerseq: must be three letters, got {attributes['eulerseq'][:20]!r}")
     low, high = numbers("inertiagrouprange", 2, "0 5")
-    return Compiler(told.get("angle", "degree") == "degree", told.get("eulerseq", "xyz"),
-                    told.get("inertiafromgeom", "auto"), told.get("balanceinertia") == "true",
+    return Compiler(attributes.get("angle", "degree") == "degree", attributes.get("eulerseq", "xyz"),
+                    attributes.get("inertiafromgeom", "auto"), attributes.get("balanceinertia") == "true",
                     float(numbers("boundmass", 1, "0")[0]), float(numbers("boundinertia", 1, "0")[0]),
-                    told.get("meshdir", told.get("assetdir", "")), told.get("strippath") == "true",
+                    attributes.get("meshdir", attributes.get("assetdir", "")), attributes.get("strippath") == "true",
                     (float(low), float(high))), notes
 
 
@@ -123,19 +123,19 @@ def _defaults(node: Node, name: str, inherited: dict[str, dict[str, str]], into:
 
 def orientation(node: Node, compiler: Compiler, attributes: dict[str, str] | None = None) -> Array:
     """The rotation that an element gives in one of MuJoCo's five ways."""
-    told = node.attrib if attributes is None else attributes
+    attributes = node.attrib if attributes is None else attributes
 
     def numbers(name: str, count: int) -> Array:
-        return node.convert(told[name], count, name)
+        return node.convert(attributes[name], count, name)
 
     radians = np.pi / 180 if compiler.degrees else 1.0
-    if "quat" in told:
+    if "quat" in attributes:
         w, x, y, z = unit(numbers("quat", 4), node)   # MuJoCo's scalar comes first
         turn = Rotation.from_quat((x, y, z, w))
-    elif "axisangle" in told:
+    elif "axisangle" in attributes:
         axis, angle = numbers("axisangle", 4)[:3], numbers("axisangle", 4)[3]
         turn = Rotation.from_rotvec(unit(axis, node) * angle * radians)
-    elif "euler" in told:   # MuJoCo's lower case turns with the body, as SciPy's upper case does
+    elif "euler" in attributes:   # MuJoCo's lower case turns with the body, as SciPy's upper case does
         angles = numbers("euler", 3) * radians
         if compiler.euler.islower() or compiler.euler.isupper():
             turn = Rotation.from_euler(compiler.euler.swapcase(), angles)
@@ -144,12 +144,12 @@ def orientation(node: Node, compiler: Compiler, attributes: dict[str, str] | Non
             for letter, angle in zip(compiler.euler, angles):
                 single = Rotation.from_rotvec(np.eye(3)["xyz".index(letter.lower())] * angle)
                 turn = turn * single if letter.islower() else single * turn
-    elif "xyaxes" in told:
+    elif "xyaxes" in attributes:
         x, y = np.split(numbers("xyaxes", 6), 2)
         x = unit(x, node)
         y = unit(y - x * (x @ y), node)
         return np.column_stack([x, y, np.cross(x, y)])
-    elif "zaxis" in told:
+    elif "zaxis" in attributes:
         return onto(unit(numbers("zaxis", 3), node))
     else:
         return np.eye(3)
@@ -158,8 +158,8 @@ def orientation(node: Node, compiler: Compiler, attributes: dict[str, str] | Non
 
 def pose(node: Node, compiler: Compiler, attributes: dict[str, str] | None = None) -> Pose:
     """The pose that an element gives in its parent's frame."""
-    told = node.attrib if attributes is None else attributes
-    return Pose(orientation(node, compiler, told), node.convert(told.get("pos", "0 0 0"), 3, "pos"))
+    attributes = node.attrib if attributes is None else attributes
+    return Pose(orientation(node, compiler, attributes), node.convert(attributes.get("pos", "0 0 0"), 3, "pos"))
 
 
 def unit(v: Array, node: Node) -> Array:

@@ -81,7 +81,7 @@ class Search:
         rest = urllib.parse.unquote(rest) if scheme else rest.replace("\\", "/")
         if "\0" in rest or scheme not in SCHEMES:
             return
-        if scheme == "file" and rest.startswith("$(find "):   # a macro that nobody expanded
+        if scheme == "file" and rest.startswith("$(find "):   # a macro that was not expanded
             package, _, inside = rest[len("$(find "):].partition(")")
             scheme, rest = "package", package + inside
         if scheme in ("", "file"):

@@ -1,4 +1,4 @@
-"""Numbers that nobody computed."""
+"""Numbers that were not computed."""
 
 from __future__ import annotations
 

@@ -75,7 +75,7 @@ class Report:
     line : int or None
         Where that error stands.
     expanded : bool
-        True for a xacro file: line numbers are those of the expanded text, and are not told.
+        True for a xacro file: line numbers are those of the expanded text, and are left out.
     """
 
     file: str

@@ -147,10 +147,10 @@ def _fill(link: Link, node: Node, place: _Place, search: Search) -> None:
     link.mass = 1.0 if weight is None else float(inertial.convert(weight, 1, "mass")[0])
     values, assumed = {}, []
     for name, default in (("ixx", 1), ("iyy", 1), ("izz", 1), ("ixy", 0), ("ixz", 0), ("iyz", 0)):
-        told = None if tensor is None else entry(tensor, name)
-        if told is None and default:
+        given = None if tensor is None else entry(tensor, name)
+        if given is None and default:
             assumed.append(name)
-        values[name] = float(default) if told is None else float((tensor or node).convert(told, 1, name, False)[0])
+        values[name] = float(default) if given is None else float((tensor or node).convert(given, 1, name, False)[0])
     if assumed:
         link.notes.append(f"no <{'>, <'.join(assumed)}>: SDF takes 1 kg m^2")
     xx, yy, zz, xy, xz, yz = values.values()
