@@ -1,6 +1,6 @@
 """The free gyrostat in closed form: what it costs beside `taylor` and heyoka, and its error.
 
-    python benchmarks/gyrostat.py            # the tables of docs/results/gyrostat.md
+    python benchmarks/gyrostat.py            # the tables of docs/results/exact.md
 
 Times are the smallest of many repeats of the CPU time of this thread. POLHODE_SIMD=avx2 or baseline measures the other
 instruction sets. Errors are against tests/reference/gyrostat.json, in units of what the page of the gyrostat promises.

@@ -1,6 +1,6 @@
 """How cost and memory grow: with the times, the bodies, the turns, the accuracy and the threads.
 
-    python benchmarks/scaling.py        # docs/pictures/scaling.svg, and the tables of docs/results/scaling.md on stdout
+    python benchmarks/scaling.py        # docs/pictures/scaling.svg, and the tables of docs/results/batch.md on stdout
 
 Times are the smallest CPU time of repeats (threads: the clock on the wall, and CPU time of both). A slope is that of
 log cost over log size in the last two decades: 1 is linear. Memory is the peak that one call adds to the process.

@@ -56,9 +56,9 @@ std::size_t run(Batch& batch, const MotionOutput& out, int threads, bool refuse,
                 std::size_t (*motion)(const Batch&, const MotionOutput&, int)) {
   ReportedWork work(progress, batch.bodies * batch.times);
   batch.refuse = refuse, batch.done = work.done();
-  const std::size_t poisoned = motion(batch, out, threads);
+  const std::size_t failed = motion(batch, out, threads);
   work.finish();
-  return poisoned;
+  return failed;
 }
 
 std::size_t batch_free_motion(const py::object& inertia, const Array& omega, const Array& attitude, const Array& t,

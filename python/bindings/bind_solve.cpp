@@ -27,7 +27,7 @@ py::object view(const py::object& answer, const std::vector<double>& values, py:
   return Array({size / columns, columns}, values.data(), answer);
 }
 
-/// What a solve gave; Python looks at its parts when they are asked for.
+/// What a solve gave; Python reads its parts when they are needed.
 struct Answer {
   Motion motion;
   Wanted want;

@@ -6,10 +6,10 @@
 #include "polhode/core/quat.hpp"
 
 // What comes from Python is checked here, once. Every refusal is an InvalidInput (a ValueError) that names the
-// argument, also where pybind11 by itself would say TypeError.
+// argument, also where pybind11 alone would say TypeError.
 namespace polhode::python {
 
-/// How arrays are asked for: other ones (strided, of another type, at an odd address) are copied.
+/// The arrays that are taken as they are: other ones (strided, of another type, at an odd address) are copied.
 constexpr int plain = py::array::c_style | py::array::forcecast | py::detail::npy_api::NPY_ARRAY_ALIGNED_;
 using Array = py::array_t<double, plain>;
 
@@ -30,7 +30,7 @@ void refuse_masked(py::handle value, const char* name);
 /// Throws unless every entry is finite.
 void require_finite(const Array& array, const char* name);
 
-/// to_array with the shape (..., last...) asked for: `tail` gives the last dimensions, e.g. {3} or {3, 3}.
+/// to_array with the shape (..., last...): `tail` gives the last dimensions, e.g. {3} or {3, 3}.
 Array to_array_with_tail(py::handle value, const char* name, std::initializer_list<py::ssize_t> tail);
 
 double to_real(py::handle value, const char* name);             ///< one finite number

@@ -10,7 +10,7 @@
 
 namespace polhode::python {
 
-/// Work without the lock that tells Python how far it is: callback(done, total) about fifty times a second, on the
+/// Work without the lock that reports to Python how far it is: callback(done, total) about fifty times a second, on the
 /// calling thread. The work itself only adds to a counter. What the callback raises ends the work.
 class ReportedWork {
  public:
@@ -18,7 +18,7 @@ class ReportedWork {
     if (!callback.is_none()) guard_.emplace([this] { report(done_); });
   }
 
-  /// To be counted up; null if nobody listens.
+  /// To be counted up; null if there is no callback.
   std::atomic<std::size_t>* done() { return guard_ ? &done_ : nullptr; }
 
   /// The last call, with all done.

@@ -77,7 +77,7 @@ def read(path: pathlib.Path, most: int) -> bytes:
     """Return the bytes of a regular file of at most `most` bytes; raise InvalidInput for any other."""
     try:
         with opened(path, most) as (file, size):
-            return file.read(size)   # Python reserves what is asked for
+            return file.read(size)   # Python reserves this size
     except OSError as error:
         raise InvalidInput(f"{path}: cannot be read: {error.strerror}") from None
 
@@ -116,7 +116,7 @@ def whole(path: pathlib.Path, follow: bool = True) -> Iterator[pathlib.Path]:
     try:
         yield draft
         with open(draft, "rb+") as written:
-            os.fsync(written.fileno())   # some systems tell only now that the disk is full
+            os.fsync(written.fileno())   # some systems report only now that the disk is full
         if target.exists():
             draft.chmod(target.stat().st_mode & 0o777)
         os.replace(draft, target)

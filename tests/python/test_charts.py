@@ -384,14 +384,13 @@ def test_the_command_prints_tables_uncut(tmp_path, monkeypatch):
     assert re.fullmatch(r"rk45 +1e-09 +\d\.\de-\d\d( +[\d.]+ (µs|ms)){3} +\d +[\d,]+ +[\d,]+ +\de-\d\d +\de-\d\d *",
                         row)
     assert str(Path(tmp_path) / "overview.png") in result.stdout and "input rounding 2e-14" in result.stdout
-    content = CliRunner().invoke(app, ["chart", "S5", "-o", str(tmp_path), "--budget", "0.06min", "--no-peers",
-                                       "--json"])
+    arguments = ["chart", "S5", "-o", str(tmp_path), "--budget", "0.06min", "--no-peers", "--json"]
+    content = CliRunner().invoke(app, arguments)
     assert json.loads(content.stdout)["scenes"][0]["name"] == "S5"
 
 
 @pytest.mark.parametrize(("arguments", "words"), [
-    ({"scenes": []}, "none given"),
-    ({"scenes": [TINY, TINY]}, "'tiny' is given twice"),
+    ({"scenes": []}, "none given"), ({"scenes": [TINY, TINY]}, "'tiny' is given twice"),
     ({"scenes": [TINY], "budget": float("nan")}, "budget: must be positive"),
     ({"scenes": [TINY], "budget": 0.0}, "budget: must be positive"),
     ({"scenes": [TINY.replace(want=["omega"])]}, "want: must be omega and attitude"),

@@ -153,7 +153,7 @@ double Draw::component(const Component& c, std::uint64_t word) const {
     }
     default: {
       if (c.b == 0.0) return c.a;
-      // The probabilities below and above, each without a difference: the smaller tells the number.
+      // The probabilities below and above, each without a difference: the smaller gives the number.
       const double u = fraction_of(word), below = c.lower[0] * (1.0 - u) + c.lower[1] * u;
       const double above = c.upper[0] * (1.0 - u) + c.upper[1] * u;
       const double z = math::upper_normal_quantile(std::min({below, above, 0.5}));

@@ -94,7 +94,7 @@ void FreeBlock::set_up() {
     const bool singly = next < count && left_[next] == i;
     next += singly;
     const double* q = b_.attitude + 4 * (begin_ + i);
-    if (!singly && !poor_[i]) frames_[i] = principal_->to_body_axes(i, trig_[i], frames_[i], {q[0], q[1], q[2], q[3]});
+    if (!singly && !failed_[i]) frames_[i] = principal_->to_body_axes(i, trig_[i], frames_[i], {q[0], q[1], q[2], q[3]});
   }
 }
 
@@ -107,14 +107,14 @@ void FreeBlock::add_singles(std::size_t count) {
   singles_.clear();
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t i = left_[k];
-    if (poor_[i]) continue;
+    if (failed_[i]) continue;
     try {
       singles_.emplace_back(i, single(begin_ + i));
       // At the edge of the range: what evaluate() would refuse.
       if (!b_.refuse && std::isfinite(reach_[i])) singles_.back().second.at(reach_[i]);
     } catch (const InvalidInput&) {
       if (b_.refuse) throw;
-      poor_[i] = true;   // what stands in singles_ is not asked for
+      failed_[i] = true;   // what stands in singles_ is not used
     }
   }
 }

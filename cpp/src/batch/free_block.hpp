@@ -55,7 +55,7 @@ class PrincipalStarts {
 };
 
 /// Up to `free_block` bodies of a batch, checked and set up. Each is then evaluated at any times, also in parts that
-/// are whole blocks of a grid. A body that is not finite, or beyond float64, is poor: its states are NaN. So is a
+/// are whole blocks of a grid. A body that is not finite, or beyond float64, fails: its states are NaN. So is a
 /// refused one, if the batch does not ask for the exception.
 class FreeBlock {
  public:
@@ -68,8 +68,8 @@ class FreeBlock {
     find_starts();
     const bool finite = is_finite(begin, n_);
     for (std::size_t i = 0; i < n_; ++i) {
-      poor_[i] = !((finite || is_finite(begin + i, 1)) && is_carried(i));
-      if (!poor_[i]) reach_[i] = reach(begin + i), poor_[i] = !passes(i);
+      failed_[i] = !((finite || is_finite(begin + i, 1)) && is_carried(i));
+      if (!failed_[i]) reach_[i] = reach(begin + i), failed_[i] = !passes(i);
     }
   }
 
@@ -78,7 +78,7 @@ class FreeBlock {
   /// Instead of set_up(): each body at one time of its own.
   void evaluate_once(const double* t, double* omega, double* attitude);
 
-  bool poor(std::size_t i) const { return poor_[i]; }
+  bool has_failed(std::size_t i) const { return failed_[i]; }
   bool rotated() const { return principal_ && principal_->rotated; }
 
   /// Body i of the block at these times; nothing where `evaluate_once` did it.
@@ -103,7 +103,7 @@ class FreeBlock {
   bool once_ = false;
   exact::FreeStarts starts_{};
   std::optional<PrincipalStarts> principal_;  ///< with a tensor
-  bool poor_[free_block];
+  bool failed_[free_block];
   double reach_[free_block];                  ///< the largest |t|
   std::size_t left_[free_block];
   std::vector<exact::FreeTrig<double>> trig_;

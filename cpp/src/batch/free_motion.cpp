@@ -21,13 +21,13 @@ class Run {
         reach_(reach),
         block_(batch) {}
 
-  /// Writes bodies [first, last). Returns the number of poisoned rows.
+  /// Writes bodies [first, last). Returns the number of failed rows.
   std::size_t operator()(std::size_t first, std::size_t last) {
-    std::size_t poisoned = 0;
+    std::size_t failed = 0;
     const std::size_t step = is_once() ? free_block : kept_block;
     for (std::size_t begin = first; begin < last; begin += step)
-      poisoned += do_block(begin, std::min(last, begin + step));
-    return poisoned;
+      failed += do_block(begin, std::min(last, begin + step));
+    return failed;
   }
 
  private:
@@ -52,12 +52,12 @@ class Run {
     } else {
       block_.set_up();
     }
-    std::size_t poisoned = 0;
+    std::size_t failed = 0;
     for (std::size_t body = begin; body < end; ++body) {
-      if (block_.poor(body - begin)) {
-        poisoned += rows_.poison(body, 0, b_.times);
+      if (block_.has_failed(body - begin)) {
+        failed += rows_.fail(body, 0, b_.times);
       } else if (block_.done(body - begin)) {
-        poisoned += rows_.after_once(body);
+        failed += rows_.after_once(body);
       } else {
         const auto at = [&](const exact::TimeGrid& t, double* w, double* q) {
           block_.evaluate(body - begin, t, w, q);
@@ -65,11 +65,11 @@ class Run {
         const auto single_at = [&](const exact::TimeGrid& t, float* w, float* q) {
           block_.evaluate(body - begin, t, w, q);
         };
-        poisoned += block_.takes_floats(body - begin) ? rows_.each_run(body, at, single_at) : rows_.each_run(body, at);
+        failed += block_.takes_floats(body - begin) ? rows_.each_run(body, at, single_at) : rows_.each_run(body, at);
       }
     }
     if (b_.done) *b_.done += (end - begin) * b_.times;
-    return poisoned;
+    return failed;
   }
 
   const FreeMotionBatch& b_;
@@ -89,7 +89,7 @@ std::size_t free_motion(const FreeMotionBatch& given, const MotionOutput& out, i
   if (given.tensor) FreeMotion(*given.tensor, Vector3d::Zero());  // refuses a body without a moment about some axis
   FreeMotionBatch batch = given;
   batch.own_times = given.own_times && given.bodies > 1;  // the times of a single body are shared times
-  std::atomic<std::size_t> poisoned{0};
+  std::atomic<std::size_t> failed{0};
   const std::size_t states = batch.bodies * batch.times;
   const std::size_t common = batch.own_times ? 0 : batch.times;
   const SharedTimes shared(exact::free_kernels().times, batch.t, common, batch.bodies > 1);
@@ -100,15 +100,15 @@ std::size_t free_motion(const FreeMotionBatch& given, const MotionOutput& out, i
       FreeMotionBatch piece = batch;
       piece.t = batch.t + begin, piece.times = end - begin;
       const exact::TimeGrid times = shared.grid.piece(begin, end - begin);
-      poisoned += Run(piece, times, shared.reach, out.from(begin))(0, 1);
+      failed += Run(piece, times, shared.reach, out.from(begin))(0, 1);
     });
-    return poisoned;
+    return failed;
   }
   const std::size_t workers = thread_count(threads, states, 2000);
   parallel_for(batch.bodies, workers, kept_block, [&](std::size_t begin, std::size_t end) {
-    poisoned += Run(batch, shared.grid, shared.reach, out)(begin, end);
+    failed += Run(batch, shared.grid, shared.reach, out)(begin, end);
   });
-  return poisoned;
+  return failed;
 }
 
 }  // namespace polhode

@@ -49,7 +49,7 @@ class ColumnsRun {
            exact::carries_moments(b_.tensor ? b_.tensor->moments().data() : b_.moments + 3 * body);
   }
 
-  void poison(std::size_t body) const {
+  void fail(std::size_t body) const {
     const std::size_t size = 3 * layout_.width * b_.times;
     const double nan = std::numeric_limits<double>::quiet_NaN();
     std::fill_n(d_omega_ + body * size, size, nan), std::fill_n(d_attitude_ + body * size, size, nan);
@@ -72,7 +72,7 @@ class ColumnsRun {
       const bool singly = !lanes || (next < remaining && left[next] == i);
       if (lanes && singly) ++next;
       if (!is_good(body)) {
-        poison(body);
+        fail(body);
       } else if (singly) {
         evaluate(exact::MotionColumns(motion(body)), body, 0, b_.times);
       } else {
@@ -134,7 +134,7 @@ std::size_t free_sensitivity(const FreeMotionBatch& given, std::vector<Sensitivi
   std::vector<double> own_omega(omega ? 0 : 3 * states), own_attitude(attitude ? 0 : 4 * states), own_columns;
   if (!omega) omega = own_omega.data();
   if (!attitude) attitude = own_attitude.data();
-  const std::size_t poisoned = free_motion(batch, omega, attitude, threads);
+  const std::size_t failed = free_motion(batch, omega, attitude, threads);
 
   // The columns of the axes are made of those of omega(0).
   const exact::ColumnLayout layout(exact::with_needed(wrt), side);
@@ -146,7 +146,7 @@ std::size_t free_sensitivity(const FreeMotionBatch& given, std::vector<Sensitivi
   const ColumnsRun all(batch, layout, omega, attitude, to_omega, to_attitude);
   if (batch.bodies == 1) {
     if (!all.is_good(0)) {
-      all.poison(0);
+      all.fail(0);
     } else {
       const exact::MotionColumns columns(all.motion(0));
       parallel_for(batch.times, thread_count(threads, states, 5000), exact::TimeGrid::block,
@@ -163,7 +163,7 @@ std::size_t free_sensitivity(const FreeMotionBatch& given, std::vector<Sensitivi
     std::copy_n(to_omega + layout.width * row, wanted, d_omega + wanted * row);
     std::copy_n(to_attitude + layout.width * row, wanted, d_attitude + wanted * row);
   }
-  return poisoned;
+  return failed;
 }
 
 }  // namespace polhode

@@ -66,35 +66,35 @@ struct Rows {
 
   const double* times_of(std::size_t body) const { return t + (shared ? 0 : body * times); }
 
-  std::size_t poison(std::size_t body, std::size_t from, std::size_t count) const {
+  std::size_t fail(std::size_t body, std::size_t from, std::size_t count) const {
     const MotionOutput at = out.from(body * times + from);
-    poison(at.rows, count), poison(at.single, count);
+    fail(at.rows, count), fail(at.single, count);
     return count;
   }
 
-  /// Calls evaluate(times, omega, attitude) for each run of finite times. Poisons the other rows and returns their
+  /// Calls evaluate(times, omega, attitude) for each run of finite times. Fills the other rows with NaN and returns their
   /// number. Times that are not all finite are never taken as a grid: bits must not depend on how threads divide them.
-  /// single(times, omega, attitude), if there is one, writes floats by itself.
+  /// single(times, omega, attitude), if there is one, writes floats.
   template <class Evaluate, class Single = std::nullptr_t>
   std::size_t each_run(std::size_t body, const Evaluate& evaluate, const Single& single = nullptr) const {
-    if (!follows(body)) return poison(body, 0, times);
+    if (!follows(body)) return fail(body, 0, times);
     const double* own = times_of(body);
     if (finite || within(own, times)) {
       exact::each_part(shared ? *shared : exact::TimeGrid(own, times),
                        [&](const exact::TimeGrid& part, std::size_t i) { run(body, i, part, evaluate, single); });
       return 0;
     }
-    std::size_t poisoned = 0;
+    std::size_t failed = 0;
     for (std::size_t i = 0, end = 0; i < times; i = end) {
       const bool good = std::isfinite(own[i]);
       for (end = i; end < times && std::isfinite(own[end]) == good;) ++end;
       if (good) {
         run(body, i, SharedTimes::any_times(own + i, end - i), evaluate, single);
       } else {
-        poisoned += poison(body, i, end - i);
+        failed += fail(body, i, end - i);
       }
     }
-    return poisoned;
+    return failed;
   }
 
   /// Bodies at one time each: calls evaluate(omega, attitude) for n of them at once.
@@ -106,14 +106,14 @@ struct Rows {
     evaluate(omega.data(), attitude.data());
     for (std::size_t i = 0; i < n; ++i) write(first + i, first + i, 1, &omega[3 * i], &attitude[4 * i]);
   }
-  /// Poisons what `once` could not know; returns its number.
+  /// Fills with NaN what `once` could not know; returns its number.
   std::size_t after_once(std::size_t body) const {
-    return follows(body) && std::isfinite(*times_of(body)) ? 0 : poison(body, 0, 1);
+    return follows(body) && std::isfinite(*times_of(body)) ? 0 : fail(body, 0, 1);
   }
 
  private:
   template <class S>
-  static void poison(const MotionRows<S>& rows, std::size_t count) {
+  static void fail(const MotionRows<S>& rows, std::size_t count) {
     const S nan = std::numeric_limits<S>::quiet_NaN();
     if (rows.omega) std::fill_n(rows.omega, 3 * count, nan);
     if (rows.attitude) std::fill_n(rows.attitude, 4 * count, nan);
@@ -131,7 +131,7 @@ struct Rows {
     if constexpr (!std::is_same_v<Single, std::nullptr_t>) {
       if (out.single_states()) return single(part, at.single.omega, at.single.attitude);
     }
-    // By way of a cache's worth of doubles, which whole blocks of the grid fill.
+    // By way of as many doubles as a cache holds, which whole blocks of the grid fill.
     constexpr std::size_t most = 4 * exact::TimeGrid::block;
     double omega[3 * most], attitude[4 * most];
     const bool rates = at.rows.omega || at.single.omega;

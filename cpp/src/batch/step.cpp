@@ -122,7 +122,7 @@ void run(const StepBatch<T>& batch, int threads) {
   if (batch.count == 0) return;
 
   const StepKernels& kernels = choose_kernels();
-  // In pieces, so that Ctrl-C is heard. Kicks between the steps of a call last a whole step, also between its pieces.
+  // In pieces, so that Ctrl-C takes effect. Kicks between the steps of a call last a whole step, also between its pieces.
   const long most = static_cast<long>(std::max<std::size_t>(1, round_work / grain));
   parallel_for(batch.bodies, workers, grain, [&](std::size_t begin, std::size_t end) {
     const std::size_t bodies = std::max(grain, round_work / std::min(steps, round_work) / grain * grain);

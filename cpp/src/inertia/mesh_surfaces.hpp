@@ -46,7 +46,7 @@ std::vector<Surface> measure(const Corners& corners, const Mesh& mesh, Surfaces&
 
 /// Finds which surfaces lie inside others, by the winding number of the others about a point of each. Counts cavities
 /// that lie in no solid, and outward surfaces inside a solid, whose volume counts twice.
-/// `report.inside_out` tells which winding is outward.
+/// `report.inside_out` says which winding is outward.
 void check_nesting(const std::vector<Surface>& surfaces, const Corners& corners, const Mesh& mesh, Surfaces& roots,
                    MeshReport& report);
 

@@ -64,7 +64,7 @@ def read(out: str) -> list[dict[str, Any]]:
 
 
 def _is_event(event: dict[str, Any]) -> bool:
-    """Tell whether the parts of an event that are used are of their types."""
+    """Return whether the parts of an event that are used are of their types."""
     numbers = (event.get("at"), event.get("seconds", 0.0))
     return (isinstance(event.get("event"), str) and isinstance(event.get("why", ""), str)
             and isinstance(event.get("chunk"), (int, type(None)))

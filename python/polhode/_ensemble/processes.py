@@ -1,6 +1,6 @@
 """Worker processes of this machine as an executor. One that dies costs its own chunk alone.
 
-The standard library's pool of processes is broken by the first process that dies: it does not tell which chunk killed
+The standard library's pool of processes is broken by the first process that dies: it does not say which chunk killed
 it, and it imports the caller's script again. These workers do neither.
 """
 

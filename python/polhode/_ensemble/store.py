@@ -174,7 +174,7 @@ class Reader:
         """Return a chunk's record; refuse a damaged one by its name."""
         path = file_of(self.out, MARKS, chunk, 0)
         try:
-            if path.exists():   # Zarr would inflate to whatever the file says
+            if path.exists():   # Zarr would inflate to any size that the file states
                 _folders.require_chunk(path, self._claim)
             return np.asarray(self._records[chunk])
         except Exception as error:   # codecs raise what they like

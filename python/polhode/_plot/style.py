@@ -1,4 +1,4 @@
-"""Style of all charts: colours that colour-blind readers can tell apart, labels at the curves, quiet axes."""
+"""Style of all charts: colours that colour-blind readers can distinguish, labels at the curves, quiet axes."""
 
 from __future__ import annotations
 

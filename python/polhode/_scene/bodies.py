@@ -115,7 +115,7 @@ def body_properties(body: Any) -> _core.MassProperties:
     if not body.parts:
         raise InvalidInput("body.parts: must be one part or more, got none")
     whole: _core.MassProperties | None = None
-    # What is taken out comes last, whatever the order in the file.
+    # What is taken out comes last, in any order of the file.
     for i, part in sorted(enumerate(body.parts), key=lambda entry: entry[1].subtract):
         where = f"body.parts.{i}"
         placed = _made(part, where).moved(attitude_of(part), part.position)

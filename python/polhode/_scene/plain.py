@@ -29,7 +29,7 @@ def _made(kind: Any, state: list[Any]) -> Any:
 
 
 class LostFunction:
-    """Stands for the function of a torque in a scene from a file. Whatever calls it is refused."""
+    """Stands for the function of a torque in a scene from a file. Anything that calls it is refused."""
 
     def __init__(self, name: str) -> None:
         self.__qualname__ = name

@@ -84,7 +84,7 @@ class Motion:
     proved_span : tuple of float, or None
         Of a proof: the times between which every sample has the accuracy [s].
     sensitivity : Sensitivity, or None
-        The derivatives of the motion at the scene's times, where `solve` was asked for them. See docs/sensitivity.md.
+        The derivatives of the motion at the scene's times, where `solve` computed them. See docs/sensitivity.md.
     """
 
     t: Floats

@@ -115,7 +115,7 @@ class Family:
     y_limits: tuple[float, float] | None = None
     tick_names: tuple[tuple[float, str], ...] = ()   # values that are called something else
     failed_below: bool = False   # a run that broke off is drawn at the bottom: where more is better
-    cost: float = 1.0            # seconds of CPU that the whole sweep takes, about: dear ones are begun first
+    cost: float = 1.0            # seconds of CPU that the whole sweep takes, about: long ones are begun first
     summary: str = ""            # what the column of the matrix is headed by, in two lines at most
 
 

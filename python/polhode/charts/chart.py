@@ -67,7 +67,7 @@ def chart(
     peers : bool
         Also run other programs that are installed. Missing programs are listed.
     entrants : iterable of Entrant, callables or peers
-        Solvers of your own. A function ``f(scene, rtol)`` returns omega and attitude; `Entrant` has its other properties.
+        Solvers of your own. A function ``f(scene, rtol)`` returns omega and attitude; `Entrant` has more of it.
         A module of `polhode.charts.peers` adds that program alone. Functions run in this process.
     progress : callable
         ``progress(finished scenes, present task)``.

@@ -1,4 +1,4 @@
-"""`polhode ensemble`: run a recipe, tell the state of a run, and write its report."""
+"""`polhode ensemble`: run a recipe, show the state of a run, and write its report."""
 
 from __future__ import annotations
 

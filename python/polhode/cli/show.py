@@ -23,7 +23,7 @@ UNCUT = 100_000
 
 
 class _Console(Console):
-    """A console that leaves a closed pipe to the command, whatever the version of rich does about it."""
+    """A console that leaves a closed pipe to the command, in every version of rich."""
 
     def on_broken_pipe(self) -> None:
         raise BrokenPipeError

@@ -11,7 +11,7 @@ from rich.text import Text
 from ..inertia.codes import LEVELS
 from .show import _table, console
 
-FEW = 3    # notes of one kind that are shown each by itself
+FEW = 3    # notes of one kind that are shown one by one
 
 
 def robot(content: dict[str, Any]) -> None:

@@ -111,7 +111,7 @@ struct MeshIntegrals {
 };
 
 /// Sums over the tetrahedra between a reference point and each face ([Mirtich1996], [Eberly2002]); no approximation.
-/// The sums are compensated and have the same bits on avx2 and avx512, whatever the number of threads (0: two from
+/// The sums are compensated and have the same bits on avx2 and avx512, for any number of threads (0: two from
 /// 200 000 faces on). The surface is not checked. Throws InvalidInput for an index out of range, a vertex that is not
 /// finite, or no face at all.
 MeshIntegrals integrate_mesh(const Mesh& mesh);

@@ -38,7 +38,7 @@ class FixedStepper : public Stepper {
   double fraction(double t) const { return (t - t_old_) / (t_ - t_old_); }
   double h_taken() const { return h_taken_; }
 
-  /// What n h itself is rounded by at time t, whatever t0 is.
+  /// What n h itself is rounded by at time t, for any t0.
   double time_rounding(double t) const { return 4 * std::numeric_limits<double>::epsilon() * std::abs(t - t0_); }
 
  private:

@@ -38,7 +38,7 @@ struct ClosedFormRecord {
   std::unique_ptr<const ClosedForm> (*make)(const Scene& scene, const Facts& facts);
   /// The reason for the plan, in one or two sentences.
   std::string (*explain)(const Scene& scene, const Facts& facts);
-  /// The closed forms that measure_error() makes from changed inputs, each as dear as the form itself.
+  /// The closed forms that measure_error() makes from changed inputs, each at the cost of the form itself.
   int (*count_error_set_ups)(const Scene& scene, const Facts& facts);
   /// True for scenes of which a reader expects this form, so that its refusal is the reason for steps.
   bool (*is_near)(const Scene& scene, const Facts& facts) = nullptr;

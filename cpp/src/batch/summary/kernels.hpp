@@ -23,7 +23,7 @@ struct TimeVectors {
 /// Where the numbers of one scalar are added up: rows of times, and bins a time.
 struct ScalarSums {
   double *count, *sum, *sum2, *least, *largest;
-  std::uint32_t* bins;   ///< a row for each time; its last entry is for what is no number
+  std::uint32_t* bins;   ///< a row for each time; its last entry is for NaN
   std::size_t row;       ///< entries of a row
   double first, last;    ///< numbers below `first` are in bin 0 (or the middle), from `last` on in the outermost
   bool both_signs;

@@ -14,7 +14,7 @@ struct Layout {
     const SummaryQuantity* quantity;
     const std::vector<double>* planes;   ///< of the reference
     std::size_t plane, sums, value;      ///< its first plane, row of sums, and number among the values
-    std::size_t bins;                    ///< without the one for what is no number
+    std::size_t bins;                    ///< without the one for NaN
   };
   std::vector<Entry> entries;
   std::size_t times, row;                ///< row: times padded

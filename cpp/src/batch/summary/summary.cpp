@@ -88,7 +88,7 @@ class FreeSource {
 
   /// Returns false if a row is not finite.
   bool measure(Reducer& reducer, std::size_t i, std::size_t from, std::size_t n) {
-    if (block_.poor(i)) {
+    if (block_.has_failed(i)) {
       for (std::size_t k = 0; k < n; ++k) reducer.leave_out(i, k);
       return false;
     }

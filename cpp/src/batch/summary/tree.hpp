@@ -10,7 +10,7 @@
 
 // A binary tree on the numbers of blocks: node (level, start) holds the sums of 2^level blocks from `start` on, a
 // multiple of 2^level. Two complete siblings become their parent. So the sums of a set of blocks have the same bits in
-// whatever order the blocks came.
+// in any order of the blocks.
 namespace polhode::summary {
 
 inline std::uint64_t length_of(int level) { return std::uint64_t{1} << level; }

@@ -219,7 +219,7 @@ inline std::size_t set_up_in(FreeStarts starts, std::size_t n, FreeTrig<double>*
   return count;
 }
 
-// A few bodies take one register: two would compute what nobody asks for.
+// A few bodies take one register: two would compute unused states.
 inline std::size_t once(FreeStarts starts, const double* t, std::size_t n, double* omega, double* attitude,
                         std::size_t* left) {
   return (n > Wide::width ? once_in<Two> : once_in<Wide>)(starts, t, n, omega, attitude, left);

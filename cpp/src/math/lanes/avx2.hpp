@@ -39,7 +39,7 @@ POLHODE_INLINE Wide madd(Wide a, Wide b, Wide c) { return _mm256_fmadd_pd(a.v, b
 POLHODE_INLINE Wide rint(Wide a) { return _mm256_round_pd(a.v, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC); }
 POLHODE_INLINE Wide sqrt(Wide a) { return _mm256_sqrt_pd(a.v); }
 POLHODE_INLINE Wide abs(Wide a) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a.v); }
-/// The larger; for what is no number, either.
+/// The larger; for NaN, either.
 POLHODE_INLINE Wide larger(Wide a, Wide b) { return _mm256_max_pd(a.v, b.v); }
 POLHODE_INLINE Wide copysign(Wide a, Wide b) {
   const __m256d sign = _mm256_set1_pd(-0.0);

@@ -6,7 +6,7 @@
 #include <immintrin.h>
 #endif
 
-// Four and eight doubles that belong to one body: its components side by side, for whatever the file is built for.
+// Four and eight doubles that belong to one body: its components side by side, for the instruction set of the file.
 // POLHODE_ISA names the namespace. Sums run in one order at every level, so that avx2 and avx512 give the same bits.
 namespace polhode::POLHODE_ISA {
 

@@ -110,7 +110,7 @@ void ColumnSeries::find_products(DD t, double unit, int order) const {
       VectorRows& timed = source(Source::timed_pairs);
       for (int k = 0; k <= order; ++k)
         for (int i = 0; i < 3; ++i) turned[k][i] += other[k][i];
-      // In loops of their own: where row 0 is told apart within one, GCC 14 splits, vectorises and reads old rows.
+      // In loops of their own: where row 0 is an exception within one, GCC 14 splits, vectorises and reads old rows.
       for (int i = 0; i < 3; ++i) timed[0][i] = t.hi * turned[0][i];
       for (int k = 1; k <= order; ++k)
         for (int i = 0; i < 3; ++i) timed[k][i] = t.hi * turned[k][i] + unit * turned[k - 1][i];

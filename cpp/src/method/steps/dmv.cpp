@@ -68,7 +68,7 @@ class Dmv {
       x[2] = A * u[2] + g[2] * x[0] * x[1];
       const double change = std::abs(x[0] - old[0]) + std::abs(x[1] - old[1]) + std::abs(x[2] - old[2]);
       if (!std::isfinite(change))
-        return !std::isfinite(L[0] + L[1] + L[2]);   // a torque that was no number, or no solution
+        return !std::isfinite(L[0] + L[1] + L[2]);   // a torque that was NaN, or no solution
       if (change <= 1e-16 * size || (change < 1e-12 * size && change >= last)) break;
       last = change;
     }

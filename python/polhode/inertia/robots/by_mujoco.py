@@ -65,7 +65,7 @@ def _fill(link: Link, body: list[Any] | None) -> None:
 
 
 def _allowed(file: pathlib.Path, root: Node, search: Search) -> bool:
-    """Tell whether every file that is named lies where it may."""
+    """Return whether every file that is named lies where it may."""
     for node in root.walk():
         if node.tag in ("plugin", "extension"):
             return False

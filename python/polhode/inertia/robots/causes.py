@@ -1,4 +1,4 @@
-"""Causes of what is wrong with a link, named only where the evidence tells them apart."""
+"""Causes of what is wrong with a link, named only where the evidence separates them."""
 
 from __future__ import annotations
 
@@ -138,7 +138,7 @@ def _left(body: ev.Bodies, geometry: ev.Geometry) -> float:
 
 
 def _explains(cause: Cause, given: ev.Bodies, known: Known, geometry: ev.Geometry, broken: set[str]) -> bool:
-    """Tell whether a cause explains more than its own factor."""
+    """Return whether a cause explains more than its own factor."""
     body = cause.body
     before, after = given.matrix[0], body.matrix[0]
     if not geometry.references:
@@ -186,7 +186,7 @@ def _isotropic(matrix: Array) -> bool:
 
 
 def _form(matrix: Array, geometry: ev.Geometry) -> bool:
-    """Tell whether the tensor has the form of a reference, which is not that of a sphere."""
+    """Return whether the tensor has the form of a reference, which is not that of a sphere."""
     unit = matrix / np.trace(matrix)
     for r in geometry.references:
         form = r.matrix / np.trace(r.matrix)
@@ -196,7 +196,7 @@ def _form(matrix: Array, geometry: ev.Geometry) -> bool:
 
 
 def _places(com: Array, geometry: ev.Geometry) -> bool:
-    """Tell whether a centre agrees with that of a reference, in more than being near the origin."""
+    """Return whether a centre agrees with that of a reference, in more than being near the origin."""
     for r in geometry.references:
         size = float(np.linalg.norm(r.com))
         radius = float(np.sqrt(np.trace(r.matrix) / 2))
@@ -233,7 +233,7 @@ def _key(candidate: Candidate) -> str:
 
 
 def _same(a: Candidate, b: Candidate) -> bool:
-    """Tell whether two causes have the same name, or the same outcome."""
+    """Return whether two causes have the same name, or the same outcome."""
     size, reach = float(np.abs(a.body.matrix).max()), float(np.abs(a.body.com).max())
     return a.kind == b.kind or (
         np.allclose(a.body.matrix, b.body.matrix, rtol=0, atol=0.01 * size)

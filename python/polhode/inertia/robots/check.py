@@ -11,7 +11,7 @@ from .causes import tally
 from .judgement import Case, conclude, study
 from .link import Link, Robot
 
-IDENTIFIED = 0.3    # of the links with geometry are unlike it, each by itself
+IDENTIFIED = 0.3    # of the links with geometry are unlike it, one by one
 FEWEST = 3
 
 
@@ -33,7 +33,7 @@ def judge(robot: Robot) -> list[tuple[Link, Diagnosis | None]]:
 
 
 def _has_products(case: Case) -> bool:
-    """Tell whether all six numbers of a tensor are there: of those who write by hand, few fill in the products."""
+    """Return whether all six numbers of a tensor are there: of those who write by hand, few fill in the products."""
     assert case.link.matrix is not None
     return bool(case.link.matrix[np.triu_indices(3, 1)].all())
 

@@ -22,7 +22,7 @@ def expand(file: pathlib.Path, search: Search) -> bytes:
     Raises
     ------
     InvalidInput
-        Without the xacro package, and for whatever xacro refuses.
+        Without the xacro package, and for anything that xacro refuses.
     """
     _files.size_of(file, _files.TEXT)
     try:

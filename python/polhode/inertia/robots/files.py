@@ -40,7 +40,7 @@ def _walk(folder: pathlib.Path) -> Iterator[pathlib.Path]:
 
 
 def _is_robot(file: pathlib.Path) -> bool:
-    """Tell by the first element; a suffix of its own is enough."""
+    """Decide by the first element; a suffix of its own is enough."""
     if file.suffix.lower() not in (".xml", ".world"):
         return True
     try:

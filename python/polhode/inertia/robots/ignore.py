@@ -25,7 +25,7 @@ class Rule:
     used: bool = False
 
     def excuses(self, link: str, code: str, file: str) -> bool:
-        """Tell whether a finding is excused."""
+        """Return whether a finding is excused."""
         path = file.replace(os.sep, "/")
         return (fnmatch.fnmatchcase(link, self.link) and (not self.code or self.code == code)
                 and (not self.file or fnmatch.fnmatchcase(path, self.file)

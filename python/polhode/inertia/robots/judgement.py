@@ -127,7 +127,7 @@ def _known(link: Link, mass: float, matrix: Array) -> Known:
 
 
 def _agrees(link: Link, geometry: ev.Geometry, mass: float, matrix: Array) -> bool:
-    """Tell whether tensor over mass is that of the geometry, so that only the density is in question."""
+    """Return whether tensor over mass is that of the geometry, so that only the density is in question."""
     if not geometry.references:
         return False
     com = link.pose.turn.T @ link.pose.place

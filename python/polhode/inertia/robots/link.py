@@ -57,9 +57,9 @@ class Link:
     _known: ev.Geometry | None = None
 
     def diagnose(self) -> Diagnosis | None:
-        """Judge the link by itself, its numbers as they stand in the file; None where there are none.
+        """Judge the link alone, its numbers as they stand in the file; None where there are none.
 
-        The other links of the file may tell more: see `check`.
+        The other links of the file may show more: see `check`.
         """
         case = study(self)
         return None if case is None else conclude(case, {})
@@ -152,7 +152,7 @@ class Robot:
 
 
 def read_link(name: str, node: Node, fill: Callable[[Link], None]) -> Link:
-    """Read one link; whatever goes wrong is its own verdict."""
+    """Read one link; an error is its own verdict."""
     link = Link(name, line=node.line, file=node.file)
     try:
         fill(link)

@@ -126,7 +126,7 @@ def _is_there(path: pathlib.Path) -> bool:
 
 
 def _within(file: pathlib.Path, folder: pathlib.Path) -> bool:
-    """Tell whether a path stays in a folder by its words, wherever its links lead."""
+    """Return whether a path stays in a folder by its words, wherever its links lead."""
     return pathlib.Path(os.path.abspath(file)).is_relative_to(os.path.abspath(folder))
 
 

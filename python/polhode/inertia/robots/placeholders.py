@@ -12,7 +12,7 @@ NEGLIGIBLE = 1e-12   # [m^2]: moments over the mass, of a radius of gyration of 
 
 
 def is_negligible(matrix: Array, mass: float) -> bool:
-    """Tell whether a tensor is zero but for rounding."""
+    """Return whether a tensor is zero but for rounding."""
     largest = float(np.abs(matrix).max())
     return largest == 0 or largest < 1e-15 and (mass == 0 or largest < NEGLIGIBLE * abs(mass))
 

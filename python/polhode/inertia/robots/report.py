@@ -96,7 +96,7 @@ class Report:
         return LEVELS[max(found)] if found else ""
 
     def fails(self, level: str = "warning") -> bool:
-        """Tell whether there is a finding of this level or above."""
+        """Return whether there is a finding of this level or above."""
         return bool(self.level) and LEVELS.index(self.level) >= LEVELS.index(level)
 
 

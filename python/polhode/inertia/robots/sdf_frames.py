@@ -41,7 +41,7 @@ def pose_of(node: Node) -> tuple[Pose, str]:
 
 
 class Frames:
-    """The frames of one model, each in the model's frame; found when they are asked for."""
+    """The frames of one model, each in the model's frame; found when they are needed."""
 
     def __init__(self, model: Node) -> None:
         self._nodes = {node.get("name") or "": node for node in model.nodes if node.tag in FRAMES}

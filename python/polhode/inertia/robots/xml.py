@@ -136,7 +136,7 @@ def parse_bytes(data: bytes, name: str) -> Node:
     data, encoding = _without_declaration(data)
     error = builder.feed(data, encoding)
     if builder.done:
-        error = None   # the first root counts, whatever follows it
+        error = None   # the first root counts, not what follows it
     if error is not None and b"<!--" in data:
         again = _Builder(name)   # a comment may hold what XML forbids there
         error, builder = again.feed(_COMMENT.sub(_blank, data), encoding), again

@@ -72,7 +72,7 @@ struct Interval {
     if (!(least > 0.0) || !a.is_bounded() || !b.is_bounded()) return all();
     if (a.is_zero()) return {};
     const DD quotient = a.middle / b.middle;
-    // a / b - q = (a - q b) / b, whatever the rounding of q.
+    // a / b - q = (a - q b) / b, for any rounding of q.
     return {quotient, raise((a - Interval(quotient, 0.0) * b).magnitude() / least) + absolute};
   }
 };

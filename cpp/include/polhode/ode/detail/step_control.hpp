@@ -38,7 +38,7 @@ inline double rough_exp2(double x) {
 }
 
 /// The step from t that ends at a number: the time t + h is rounded, and a step of h itself would miss it. The difference
-/// is half a unit in the last place of t a step, which tells where times lie close together and far from zero.
+/// is half a unit in the last place of t a step, which matters where times lie close together and far from zero.
 inline double representable_step(double t, double h) {
   return (t + h) - t;
 }

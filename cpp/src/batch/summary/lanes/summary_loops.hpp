@@ -112,7 +112,7 @@ POLHODE_INLINE void add_scalar(const double* values, std::size_t bodies, std::si
   const std::int64_t below = static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(sums.first) >> 46) - 1;
   const auto row_length = static_cast<std::int64_t>(sums.row);
   const std::int64_t beyond = both_signs ? row_length / 2 : row_length - 1;
-  // Numbers out of range become the nearest one of the bins at the ends; what is no number, one beyond all bins.
+  // Numbers out of range become the nearest one of the bins at the ends; NaN, one beyond all bins.
   const Wide low(std::bit_cast<double>(static_cast<std::uint64_t>(below) << 46)), high(sums.last);
   const Wide trash(std::bit_cast<double>(static_cast<std::uint64_t>(below + beyond) << 46));
   alignas(64) std::int64_t bits[summary::tile][Wide::width];
