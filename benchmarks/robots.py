@@ -71,7 +71,7 @@ def compare(report, file, tally):
         if changed or any(finding.level == "error" for finding in each.findings):
             continue   # it changes the numbers, and says so
         mass, centre, matrix = bodies[link.name]
-        own = link.pose.turn @ link.matrix @ link.pose.turn.T
+        own = link.pose.rotation @ link.matrix @ link.pose.rotation.T
         if not own.any():
             continue
         radius = np.sqrt(np.abs(matrix).max() / mass) if mass > 0 else 1.0

@@ -86,7 +86,7 @@ class Measurement(abc.ABC):
         """Return model minus data, shape (n, residuals)."""
 
     @abc.abstractmethod
-    def rows(self, omega: Array, attitude: Array, d_omega: Array, d_turn: Array) -> Array:
+    def rows(self, omega: Array, attitude: Array, d_omega: Array, d_attitude: Array) -> Array:
         """Return the derivatives (n, residuals, k) from those of omega and of the attitude (small turns in space)."""
 
 
@@ -125,7 +125,7 @@ class Rates(Measurement):
         """Return omega (+ bias) - y."""
         return omega - self.y + bias if self.bias else omega - self.y
 
-    def rows(self, omega: Array, attitude: Array, d_omega: Array, d_turn: Array) -> Array:
+    def rows(self, omega: Array, attitude: Array, d_omega: Array, d_attitude: Array) -> Array:
         """Return the derivatives of omega."""
         return d_omega
 
@@ -147,11 +147,11 @@ class Attitudes(Measurement):
         """Return the rotation vector from the measured attitude to that of the model, in body axes."""
         return turns.log(turns.product(turns.conjugate(self.y), attitude))
 
-    def rows(self, omega: Array, attitude: Array, d_omega: Array, d_turn: Array) -> Array:
+    def rows(self, omega: Array, attitude: Array, d_omega: Array, d_attitude: Array) -> Array:
         """Return the derivatives of the rotation vector: the inverse right Jacobian times the small body turns."""
         vector = turns.log(turns.product(turns.conjugate(self.y), attitude))
         back = turns.to_matrix(attitude).transpose(0, 2, 1)
-        return turns.inverse_right_jacobian(vector) @ (back @ d_turn)
+        return turns.inverse_right_jacobian(vector) @ (back @ d_attitude)
 
 
 class _Pairs(Measurement):
@@ -182,9 +182,9 @@ class Axis(_Pairs):
         """Return R axis - y."""
         return turns.rotate(attitude, self.known) - self.y
 
-    def rows(self, omega: Array, attitude: Array, d_omega: Array, d_turn: Array) -> Array:
+    def rows(self, omega: Array, attitude: Array, d_omega: Array, d_attitude: Array) -> Array:
         """Return d theta_W x R axis."""
-        return -turns.cross_matrix(turns.rotate(attitude, self.known)) @ d_turn
+        return -turns.cross_matrix(turns.rotate(attitude, self.known)) @ d_attitude
 
 
 class Direction(_Pairs):
@@ -197,10 +197,10 @@ class Direction(_Pairs):
         """Return R^T direction - y."""
         return turns.rotate(turns.conjugate(attitude), self.known) - self.y
 
-    def rows(self, omega: Array, attitude: Array, d_omega: Array, d_turn: Array) -> Array:
+    def rows(self, omega: Array, attitude: Array, d_omega: Array, d_attitude: Array) -> Array:
         """Return (R^T direction) x d theta_B."""
         seen = turns.rotate(turns.conjugate(attitude), self.known)
-        return turns.cross_matrix(seen) @ (turns.to_matrix(attitude).transpose(0, 2, 1) @ d_turn)
+        return turns.cross_matrix(seen) @ (turns.to_matrix(attitude).transpose(0, 2, 1) @ d_attitude)
 
 
 class Scalar(Measurement):
@@ -234,7 +234,7 @@ class Scalar(Measurement):
         """Return fun - y."""
         return (self._values(attitude) - self.y)[:, None]
 
-    def rows(self, omega: Array, attitude: Array, d_omega: Array, d_turn: Array) -> Array:
+    def rows(self, omega: Array, attitude: Array, d_omega: Array, d_attitude: Array) -> Array:
         """Return the derivative of fun."""
         if self.jac is not None:
             gradient = np.asarray(self.jac(attitude), dtype=float)
@@ -244,4 +244,4 @@ class Scalar(Measurement):
                 (self._values(turns.product(turns.exp(step * axis), attitude))
                  - self._values(turns.product(turns.exp(-step * axis), attitude))) / (2 * step)
                 for axis in np.eye(3)], axis=1)
-        return gradient[:, None, :] @ d_turn
+        return gradient[:, None, :] @ d_attitude

@@ -133,7 +133,7 @@ class DrivenProblem(Problem):
         wanted = [group for group in self.groups]
         omega, attitude, dw, dq = self._motion(state, wanted)
         n = self.t.size
-        d_omega, d_turn = np.zeros((n, 3, len(self.names))), np.zeros((n, 3, len(self.names)))
+        d_omega, d_attitude = np.zeros((n, 3, len(self.names))), np.zeros((n, 3, len(self.names)))
         first = 0
         for group in wanted:
             here = self.slices[group]
@@ -143,9 +143,9 @@ class DrivenProblem(Problem):
                 P = np.exp(state.seconds)   # type: ignore[attr-defined]
                 chain = (1 - np.eye(3)) * P
                 a, b = a @ chain, b @ chain
-            d_omega[..., here], d_turn[..., here] = a, b
+            d_omega[..., here], d_attitude[..., here] = a, b
             first += width
-        return omega, attitude, d_omega, d_turn
+        return omega, attitude, d_omega, d_attitude
 
     def with_data(self, data: Sequence[Measurement], base: State | None = None) -> DrivenProblem:
         """Return the same problem with other samples, or from another state."""

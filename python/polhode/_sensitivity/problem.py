@@ -39,15 +39,15 @@ class State:
         def part(name: str, width: int) -> Array:
             return step[slices[name]] if name in slices else np.zeros(width)
 
-        def turned(q: Array, vector: Array) -> Array:
+        def displaced(q: Array, vector: Array) -> Array:
             if not vector.any():
                 return q
             new = turns.product(turns.exp(vector), q)
             out: Array = new / np.linalg.norm(new)
             return out
 
-        return State(turned(self.attitude, part("attitude", 3)), self.omega + part("omega", 3),
-                     np.clip(self.ratios + part("inertia", 2), -30, 30), turned(self.axes, part("axes", 3)),
+        return State(displaced(self.attitude, part("attitude", 3)), self.omega + part("omega", 3),
+                     np.clip(self.ratios + part("inertia", 2), -30, 30), displaced(self.axes, part("axes", 3)),
                      self.bias + part("bias", self.bias.size))
 
     def values(self) -> dict[str, Array]:
@@ -58,20 +58,20 @@ class State:
     def motion(self) -> FreeMotion:
         """The motion in principal axes."""
         inertia = InertiaTensor.from_moments(self.moments, physical=False)
-        if not self.turned:
+        if not self.oblique:
             return FreeMotion(inertia, self.omega, self.attitude)
         back = turns.conjugate(self.axes)
         attitude = turns.product(self.attitude, self.axes)
         return FreeMotion(inertia, turns.rotate(back, self.omega), attitude / np.linalg.norm(attitude))
 
     @property
-    def turned(self) -> bool:
+    def oblique(self) -> bool:
         """Whether the given axes are not principal."""
         return bool(self.axes[:3].any())
 
     def to_body(self, omega: Array, attitude: Array) -> tuple[Array, Array]:
         """Return states in the given axes from those in principal axes."""
-        if not self.turned:
+        if not self.oblique:
             return omega, attitude
         return turns.rotate(self.axes, omega), turns.product(attitude, turns.conjugate(self.axes))
 
@@ -132,16 +132,16 @@ class Problem:
         s = state.motion().sensitivity(self.t, self.wrt)
         E = turns.to_matrix(state.axes)
         n, width = self.t.size, len(self.names)
-        d_omega, d_turn = np.zeros((n, 3, width)), np.zeros((n, 3, width))
+        d_omega, d_attitude = np.zeros((n, 3, width)), np.zeros((n, 3, width))
 
         def put(group: str, transform: Array) -> None:
             first = 3 * self.wrt.index(group)
             part = s.d_omega[..., first : first + 3] @ transform
-            d_omega[..., self.slices[group]] = E @ part if state.turned else part
-            d_turn[..., self.slices[group]] = s.d_attitude[..., first : first + 3] @ transform
+            d_omega[..., self.slices[group]] = E @ part if state.oblique else part
+            d_attitude[..., self.slices[group]] = s.d_attitude[..., first : first + 3] @ transform
 
         if "attitude" in self.slices:
-            d_turn[..., self.slices["attitude"]] = np.eye(3)
+            d_attitude[..., self.slices["attitude"]] = np.eye(3)
         if "omega" in self.slices:
             put("omega", E.T)
         if "inertia" in self.slices:
@@ -149,15 +149,15 @@ class Problem:
             put("inertia", np.array([[0, b], [a, 0], [a, b]]))
         if "axes" in self.slices:
             put("axes", E.T)
-        return *state.to_body(s.omega, s.attitude), d_omega, d_turn
+        return *state.to_body(s.omega, s.attitude), d_omega, d_attitude
 
     def residuals_and_jacobian(self, state: State) -> tuple[Array, Array]:
         """Residuals over sigma, and their derivatives by a step of the parameters."""
-        omega, attitude, d_omega, d_turn = self.columns(state)
+        omega, attitude, d_omega, d_attitude = self.columns(state)
         rows, bias = [], self.slices["bias"].start if "bias" in self.slices else 0
         for k, measurement in enumerate(self.data):
             here = slice(self.ends[k], self.ends[k + 1])
-            part = measurement.rows(omega[here], attitude[here], d_omega[here], d_turn[here])
+            part = measurement.rows(omega[here], attitude[here], d_omega[here], d_attitude[here])
             if measurement.bias:
                 part = part.copy()
                 part[:, :, bias : bias + 3] = np.eye(3)

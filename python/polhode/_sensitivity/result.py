@@ -128,10 +128,10 @@ class FitResult:
         times = np.atleast_1d(np.asarray(t, dtype=float))
         problem = self.problem.with_data([], self.state)
         problem.t = times
-        omega, attitude, d_omega, d_turn = problem.columns(self.state)
+        omega, attitude, d_omega, d_attitude = problem.columns(self.state)
         cov = np.nan_to_num(self.cov[: len(problem.names), : len(problem.names)])
         return Prediction(times, omega, attitude, d_omega @ cov @ d_omega.transpose(0, 2, 1),
-                          d_turn @ cov @ d_turn.transpose(0, 2, 1))
+                          d_attitude @ cov @ d_attitude.transpose(0, 2, 1))
 
     def plot(self) -> Any:
         """Draw the motion over the data, the residuals, the correlations and the spread of the prediction."""
@@ -215,8 +215,8 @@ def make_result(problem: Problem, found: Minimum, scene: Scene | None, largest: 
         correlation = cov / stderr / stderr[:, None]
     moments = state.moments / state.moments.max() * largest
     E = turns.to_matrix(state.axes)
-    turned = "axes" in problem.slices or bool(np.abs(state.axes[:3]).any())
-    inertia: Any = InertiaTensor(E @ np.diag(moments) @ E.T, physical=False) if turned else moments
+    oblique = "axes" in problem.slices or bool(np.abs(state.axes[:3]).any())
+    inertia: Any = InertiaTensor(E @ np.diag(moments) @ E.T, physical=False) if oblique else moments
     unobservable = [] if scene is not None else ["the scale of the inertia: a free motion does not depend on it"]
     if "attitude" in problem.slices and all(isinstance(m, Rates) for m in problem.data):
         hidden = [text for text in hidden if not text.startswith("attitude")]
@@ -242,7 +242,7 @@ def make_result(problem: Problem, found: Minimum, scene: Scene | None, largest: 
         scene_out = state.make_scene(times, "inertia" in problem.slices)
         inertia, numbers = state.moments, {group: state.numbers[group] for group in state.numbers}
     else:
-        scene_out = Scene(inertia=inertia if turned else tuple(moments), omega=tuple(state.omega),
+        scene_out = Scene(inertia=inertia if oblique else tuple(moments), omega=tuple(state.omega),
                           attitude=attitude, times=times, name=scene.name if scene is not None else "fit")
         numbers = {}
     return FitResult(x, found.cost, found.residuals, found.jacobian, found.nfev, found.status, message,

@@ -18,16 +18,16 @@ Array = npt.NDArray[np.float64]
 
 @dataclasses.dataclass(frozen=True)
 class Pose:
-    """Axes and origin of one frame in another: x_B = turn @ x_A + place."""
+    """Axes and origin of one frame in another: x_B = rotation @ x_A + place."""
 
-    turn: Array = dataclasses.field(default_factory=lambda: np.eye(3))
+    rotation: Array = dataclasses.field(default_factory=lambda: np.eye(3))
     place: Array = dataclasses.field(default_factory=lambda: np.zeros(3))
 
     def __matmul__(self, other: Pose) -> Pose:
-        return Pose(self.turn @ other.turn, self.turn @ other.place + self.place)
+        return Pose(self.rotation @ other.rotation, self.rotation @ other.place + self.place)
 
     def inverse(self) -> Pose:
-        return Pose(self.turn.T, -self.turn.T @ self.place)
+        return Pose(self.rotation.T, -self.rotation.T @ self.place)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -95,20 +95,21 @@ def capsule(radius: float, height: float, pose: Pose) -> Part:
 def _part(unit: MassProperties, half: Array, volume: float, pose: Pose) -> Part:
     solid = MassProperties(volume, unit.com, np.asarray(unit.inertia.matrix) * volume)
     signs = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)])
-    return Part(solid.moved(Rotation.from_matrix(pose.turn), pose.place), (signs * half) @ pose.turn.T + pose.place)
+    return Part(solid.moved(Rotation.from_matrix(pose.rotation), pose.place),
+                (signs * half) @ pose.rotation.T + pose.place)
 
 
 def mesh(surface: meshes.Surface, scale: Array, pose: Pose) -> Part:
     """A mesh: the body inside where it is closed, else its convex hull; and the box round it in any case."""
     signs = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
-    axes = np.abs(pose.turn).max(1) > 1 - 1e-9
+    axes = np.abs(pose.rotation).max(1) > 1 - 1e-9
     vertices = signs * (surface.high - surface.low) + surface.low if axes.all() else surface.corners
-    vertices = (vertices * scale) @ pose.turn.T + pose.place   # along the axes the box of the file turns with it
+    vertices = (vertices * scale) @ pose.rotation.T + pose.place   # along the axes the box of the file turns with it
     low, high = vertices.min(0), vertices.max(0)
     bound = surface.solid is None
     moments = surface.hull if surface.solid is None else surface.solid
     solid = None
     if moments is not None and scale.all():
         with contextlib.suppress(InvalidInput):   # a body that is all but flat
-            solid = meshes.placed(moments, scale, pose.turn, pose.place)
+            solid = meshes.placed(moments, scale, pose.rotation, pose.place)
     return Part(solid, low + signs * (high - low), bound)

@@ -58,7 +58,7 @@ def study(link: Link) -> Case | None:
         i, j = np.argwhere(~usable)[0]
         advice = "a wrong exponent?" if np.isfinite(matrix[i, j]) else "a number that was not computed"
         return _settled(link, "finite", "unknown", f"{matrix[i, j]} at [{i}, {j}]", advice)
-    com = link.pose.turn.T @ link.pose.place
+    com = link.pose.rotation.T @ link.pose.place
     with np.errstate(all="ignore"):
         return _simple(link, mass, matrix) or _study(link, mass, com, matrix)
 
@@ -130,7 +130,7 @@ def _agrees(link: Link, geometry: ev.Geometry, mass: float, matrix: Array) -> bo
     """Return whether tensor over mass is that of the geometry, so that only the density is in question."""
     if not geometry.references:
         return False
-    com = link.pose.turn.T @ link.pose.place
+    com = link.pose.rotation.T @ link.pose.place
     return ev.apart(ev.single(mass, com, matrix), geometry) < 0.3
 
 
@@ -170,7 +170,7 @@ def _with_cause(breach: Breach, cause: Candidate, case: Case, code: str = "") ->
 
 def _plain(breach: Breach, case: Case, cause: str, advice: str, code: str = "", matrix: Array | None = None) -> Finding:
     mass = case.link.mass
-    com = case.link.pose.turn.T @ case.link.pose.place
+    com = case.link.pose.rotation.T @ case.link.pose.place
     return Finding(*breach, cause, advice, matrix, mass, com, level=CODES[code].level if code else "", code=code)
 
 
@@ -223,7 +223,7 @@ def _distance(case: Case) -> float:
     """How far the centre of mass lies outside the box, as a part of its largest side: a thin part may hide a motor."""
     box = case.known.geometry.box
     assert box is not None
-    com = case.link.pose.turn.T @ case.link.pose.place
+    com = case.link.pose.rotation.T @ case.link.pose.place
     return float(np.maximum(np.maximum(box[0] - com, com - box[1]), 0.0).max() / np.ptp(box, axis=0).max())
 
 
@@ -251,7 +251,7 @@ def _density(breach: Breach, cause: Candidate | None, case: Case) -> Finding | N
     error = case.known.quality == "body" and density > ev.DENSEST
     level = "PI006" if error else "PI105"
     if steps:
-        body = ev.single(mass / steps[0], link.pose.turn.T @ link.pose.place, link.matrix / steps[0])
+        body = ev.single(mass / steps[0], link.pose.rotation.T @ link.pose.place, link.matrix / steps[0])
         return Finding(*breach, "density", advice + f" Both are {steps[0]:g} times too large", body.matrix[0],
                        float(body.mass[0]), body.com[0], level=CODES[level].level, code=level)
     return _plain(breach, case, "density", advice, level)

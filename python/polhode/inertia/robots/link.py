@@ -71,10 +71,10 @@ class Link:
         return self._known
 
     def _compute_geometry(self) -> ev.Geometry:
-        back = Rotation.from_matrix(self.pose.turn.T)
+        back = Rotation.from_matrix(self.pose.rotation.T)
         sets = [assembly for assembly in (self.visual, self.collision) if assembly.parts and assembly.whole]
         solids = [solid for assembly in sets if (solid := assembly.solid()) is not None]
-        corners = [part.corners @ self.pose.turn for assembly in sets for part in assembly.parts]
+        corners = [part.corners @ self.pose.rotation for assembly in sets for part in assembly.parts]
         box = np.concatenate(corners) if corners else None
         whole = self.visual.whole and self.collision.whole   # else what could not be read may reach further
         return ev.Geometry(tuple(ev.reference(solid.moved(back)) for solid in solids),
@@ -84,7 +84,7 @@ class Link:
 
     def rotation_causes(self) -> list[Cause]:
         """Rotations of the inertial frame that should not be there, or the other way round."""
-        turn, matrix = self.pose.turn, self.matrix
+        turn, matrix = self.pose.rotation, self.matrix
         assert matrix is not None and self.mass is not None
         com = turn.T @ self.pose.place
         once = turn.T @ matrix @ turn

@@ -152,7 +152,7 @@ def _edit_mass(edits: _Edits, link: Link, finding: Finding, form: str) -> bool:
 def _edit_centre(edits: _Edits, link: Link, finding: Finding, form: str) -> bool:
     if finding.com is None:
         return True
-    com = link.pose.turn @ finding.com
+    com = link.pose.rotation @ finding.com
     if np.allclose(com, link.pose.place, rtol=1e-9, atol=1e-12):
         return True
     node = link.source.pose

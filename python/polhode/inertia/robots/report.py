@@ -219,7 +219,7 @@ def link_to_dict(report: LinkReport) -> dict[str, Any]:
 def _finding(finding: Finding, link: Link) -> dict[str, Any]:
     content = {**finding.to_dict(), "line": link.line}
     if finding.com is not None:
-        com = link.pose.turn @ finding.com   # in the link's axes, as in the file
+        com = link.pose.rotation @ finding.com   # in the link's axes, as in the file
         content["com"] = np.where(np.abs(com) < 1e-9 * np.abs(com).max(), 0.0, com).tolist()
     return content
 
