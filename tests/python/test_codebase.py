@@ -34,7 +34,6 @@ MAY_USE = {
 # The rooms of `solve`, and what each may use; solve.cpp stands above them.
 SOLVE_ROOMS = {"ground": [], "form": ["ground"], "run": ["ground"], "proof": ["ground"],
                "plan": ["ground", "form", "run"], "certify": ["ground", "form", "run", "proof", "plan"]}
-OLD_PLACES = {"euler_formulas", "euler_problem", "lagrangian_problem", "methods"}   # headers of one line until 0.3
 
 
 def sources(*folders, suffixes=(".hpp", ".cpp", ".inl", ".def")):
