@@ -1,6 +1,5 @@
 """Rotational motion of rigid bodies: attitude and angular velocity as functions of time."""
 
-import importlib as _importlib
 from typing import TYPE_CHECKING as _TYPE_CHECKING
 from typing import Any as _Any
 
@@ -8,6 +7,7 @@ from . import _process  # first: it refuses subinterpreters and second copies
 
 _process.require_one_copy(__file__)
 
+from . import _wings
 from . import elliptic as elliptic
 from . import inertia as inertia
 from . import measured as measured
@@ -54,31 +54,30 @@ from .inertia import MassProperties as MassProperties
 from .inertia import PrincipalAxes as PrincipalAxes
 
 if _TYPE_CHECKING:
-    from . import atlas as atlas
-    from . import charts as charts
     from . import recipe as recipe
-    from . import report as report
     from . import schema as schema
-    from ._ensemble.ensemble import Ensemble as Ensemble
-    from ._ensemble.run import ensemble as ensemble
     from ._saved import load as load
+    from ._wings import Ensemble as Ensemble
+    from ._wings import atlas as atlas
+    from ._wings import charts as charts
+    from ._wings import ensemble as ensemble
+    from ._wings import report as report
 
 _attach()   # the methods of compiled classes that are written in Python
 
-# imported at first use, to keep `import polhode` fast
-_LATE = ("atlas", "charts", "recipe", "report", "schema")
-_LATE_NAMES = {"Ensemble": "_ensemble.ensemble", "ensemble": "_ensemble.run", "load": "_saved"}
+# Imported at first use, to keep `import polhode` fast; of wings that are not there, refused by name.
+_LATE_NAMES = {"load": "_saved", "recipe": "recipe", "schema": "schema", **_wings.list_names()}
+_LATE = [name for name, module in _LATE_NAMES.items() if name == module]
 
-__all__ = sorted({*(name for name in globals() if not name.startswith("_")), *_LATE_NAMES}) + ["__version__"]
+__all__ = sorted({name for name in {*globals(), *_LATE_NAMES} if not name.startswith("_")} - {*_LATE}) + ["__version__"]
 
 
 def __getattr__(name: str) -> _Any:
-    if name in _LATE_NAMES:
-        return getattr(_importlib.import_module(f"{__name__}.{_LATE_NAMES[name]}"), name)
-    if name in _LATE:
-        return _importlib.import_module(f"{__name__}.{name}")
+    if place := {**_LATE_NAMES, **_wings.list_names(there=False)}.get(name):
+        module = _wings.load(place)
+        return module if name == place else getattr(module, name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_LATE, *_LATE_NAMES})
+    return sorted({*globals(), *_LATE_NAMES})

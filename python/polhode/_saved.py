@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import os
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from . import _files, _folders, _saved_files
+from . import _files, _folders, _saved_files, _wings
 from ._batch.solve_many import Motions
 from ._core import InvalidInput
-from ._ensemble.ensemble import Ensemble
-from ._ensemble.load import from_arrays, open_run, sizes
 from ._scene.plain import from_plain
 from ._solve.motion import EventHit, Motion
 from ._solve.plan import Plan
+
+if TYPE_CHECKING:
+    from ._wings import Ensemble
 
 
 def load(path: str | os.PathLike[str]) -> Motion | Motions | Ensemble:
@@ -38,19 +39,23 @@ def load(path: str | os.PathLike[str]) -> Motion | Motions | Ensemble:
     if not found.exists():
         raise InvalidInput(f"{found}: cannot be read: no such file")
     if found.is_dir() and "polhode" not in _folders.attributes(found):
-        return open_run(str(found))
-    about, arrays = _saved_files.read(found, sizes)
-    readers: dict[Any, Any] = {"motion": _motion, "motions": _motions}
+        store: Ensemble = _ensembles().open_run(str(found))
+        return store
+    about, arrays = _saved_files.read(found, lambda path, about: _ensembles().sizes(path, about))
+    readers: dict[Any, Any] = {"motion": _motion, "motions": _motions,
+                               "ensemble": lambda about, arrays: _ensembles().from_arrays(found, about, arrays)}
     kind = about.get("kind") if isinstance(about, dict) else None
     try:
-        if kind == "ensemble":
-            return from_arrays(found, about, arrays)
-        result: Motion | Motions = readers[kind](about, arrays)
+        result: Motion | Motions | Ensemble = readers[kind](about, arrays)
         return result
     except (LookupError, TypeError, ValueError, AttributeError) as error:
         if isinstance(error, InvalidInput):
             raise
         raise InvalidInput(f"{found}: must be a file that polhode saved ({type(error).__name__})") from None
+
+
+def _ensembles() -> Any:
+    return _wings.load("_ensemble.load")
 
 
 def _motion(about: dict[str, Any], arrays: dict[str, Any]) -> Motion:

@@ -285,7 +285,7 @@ def _require_off_claims(data: bytes) -> None:
 
 def _collada_unit(data: bytes, file: pathlib.Path) -> float:
     """Refuse entities, and return the length of the file's unit [m]."""
-    from .inertia.robots.xml import parse_bytes
+    from ._xml import parse_bytes
 
     try:
         root = parse_bytes(data, str(file))

@@ -115,7 +115,7 @@ def test_the_quick_sweep_is_a_part_of_the_whole_one(name, family, monkeypatch):
 
 WORKER = """
 import os, sys, time
-from polhode._harness.workers import serve
+from polhode._workers import serve
 
 def answer(job):
     yield {"x": 1.0, "series": "", "values": {"error": 1e-3}, "why": "", "status": "answered", "cpu": 0.5}

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import polhode as ph
+from polhode import _wings
 
 BLOCK = (0.20, 0.40, 0.52)
 OMEGA = (1.0, 2.0, 3.0)
@@ -229,7 +230,6 @@ SMOKE = {
     "Pendulum": smoke_pendulum,
     "InertiaTensor": smoke_inertia_tensor,
     "IntegrationFailure": smoke_errors,
-    "Ensemble": smoke_ensemble,
     "InvalidInput": smoke_errors,
     "MassProperties": smoke_mass_properties,
     "Motion": smoke_solve,
@@ -244,7 +244,6 @@ SMOKE = {
     "body_rates": smoke_body_rates,
     "build_info": smoke_build_info,
     "cmake_prefix": smoke_cmake_prefix,
-    "ensemble": smoke_ensemble,
     "euler_rates": smoke_body_rates,
     "fit": smoke_fit,
     "free_motion": smoke_free_motion,
@@ -260,7 +259,7 @@ SMOKE = {
     "plan": smoke_plan,
     "solve": smoke_solve,
     "solve_many": smoke_solve_many,
-}
+} | {name: smoke_ensemble for name in ("Ensemble", "ensemble") if _wings.is_there("ensemble")}
 
 
 @pytest.mark.parametrize("name", [n for n in ph.__all__ if not isinstance(getattr(ph, n), types.ModuleType)])
@@ -294,7 +293,7 @@ def test_scene_files_are_read():
     assert ph.Scene.load("S1").times.size == 1001
 
 
-LATE = ("atlas", "charts", "recipe", "report", "schema")
+LATE = ("recipe", "schema", *(("atlas", "charts", "report") if _wings.is_there("charts") else ()))
 
 
 @pytest.mark.parametrize("name", LATE)

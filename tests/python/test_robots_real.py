@@ -13,7 +13,7 @@ from polhode.inertia.evidence import Geometry, single
 from polhode.inertia.robots.causes import Candidate, Known, choose, tally
 from polhode.inertia.robots.meshes import convex_hull
 from polhode.inertia.robots.paths import Search
-from polhode.inertia.robots.xml import parse_bytes
+from polhode._xml import parse_bytes
 
 BLOCK = ph.shapes.box(12.0, (0.1, 0.2, 0.3))
 GOOD = f'<mass value="12"/>{tensor(BLOCK.inertia.matrix)}'

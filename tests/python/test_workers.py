@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from polhode._harness.workers import Worker
+from polhode._workers import Worker
 
 ANSWERS = """
 import os, time
-from polhode._harness.workers import serve
+from polhode._workers import serve
 
 def answer(message):
     print("not an answer")
@@ -78,7 +78,7 @@ def test_a_sleep_without_end_is_no_progress(worker):
 def test_ctrl_c_is_not_for_it_and_it_ends_with_its_giver():
     giver = f"""
 import os, sys, time
-from polhode._harness.workers import Worker
+from polhode._workers import Worker
 worker = Worker(sys.executable, "-c", {ANSWERS!r})
 worker.tell(4)
 while not worker.receive(1.0): pass

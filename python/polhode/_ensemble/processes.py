@@ -14,7 +14,7 @@ import threading
 from collections.abc import Callable
 from typing import Any
 
-from .._harness import workers
+from .._workers import Worker, command
 from . import worker
 
 MODULE = worker.__name__
@@ -31,7 +31,7 @@ class Processes(concurrent.futures.Executor):
         self.count = count
         self._tasks: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._ending = False
-        self._living: dict[int, workers.Worker] = {}
+        self._living: dict[int, Worker] = {}
         self._lock = threading.Lock()
         self._threads = [threading.Thread(target=self._serve, args=(i,), daemon=True) for i in range(count)]
         for thread in self._threads:
@@ -49,11 +49,11 @@ class Processes(concurrent.futures.Executor):
         self._tasks.put((future, fn, args))
         return future
 
-    def _worker(self, index: int) -> workers.Worker:
+    def _worker(self, index: int) -> Worker:
         with self._lock:
             found = self._living.get(index)
             if found is None:
-                found = self._living[index] = workers.Worker(*workers.command(MODULE))
+                found = self._living[index] = Worker(*command(MODULE))
                 found.tell((worker.extend_path, (sys.path,)))
                 while (messages := found.receive(1.0)) is not None and "end" not in [kind for kind, _ in messages]:
                     pass

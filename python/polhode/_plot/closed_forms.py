@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import matplotlib.axes
     import matplotlib.figure
 
-    import polhode._plot.film.film
+    import polhode._wings
 
     from .track import Track
 
@@ -102,7 +102,7 @@ def plot(self: Any, t: Any = None, *parts: str, ax: matplotlib.axes.Axes | None 
     return draw(make_track(self, t), parts, ax, marks, dark)
 
 
-def animate(self: Any, t: Any = None, *, body: Any = "box", axis: Any = None) -> polhode._plot.film.film.Film:
+def animate(self: Any, t: Any = None, *, body: Any = "box", axis: Any = None) -> polhode._wings.Film:
     """Make a film of the motion: the body turns, beside the polhode on the ellipsoid of its energy.
 
     Parameters
@@ -122,9 +122,9 @@ def animate(self: Any, t: Any = None, *, body: Any = "box", axis: Any = None) ->
     InvalidInput
         As :meth:`Motion.animate`.
     """
-    from .film.film import Film
+    from .motion import make_film
 
-    return Film(make_track(self, t), body, axis)
+    return make_film(make_track(self, t), body, axis)
 
 
 def attach() -> None:

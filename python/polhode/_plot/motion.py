@@ -6,14 +6,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .. import _wings
 from .._core import InvalidInput
 from .._solve.motion import Floats, Motion
 from . import style
-from .film.film import Film
 from .panels import DRAW, WITHOUT_ATTITUDE, Drawing, angles
 from .track import Track, of_motion, to_times
 
 if TYPE_CHECKING:
+    from .._wings import Film
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -52,7 +53,13 @@ def plot(motion: Motion, *parts: str, ax: Axes | None = None, marks: Any = None,
 
 def animate(motion: Motion, body: Any, axis: Any) -> Film:
     """Make a film of a motion; see `Motion.animate`."""
-    return Film(of_motion(motion), body, axis)
+    return make_film(of_motion(motion), body, axis)
+
+
+def make_film(track: Track, body: Any, axis: Any) -> Film:
+    """Make a film of what was taken of a motion."""
+    film: Film = _wings.load("_plot.film.film").Film(track, body, axis)
+    return film
 
 
 def draw(track: Track, parts: tuple[str, ...], ax: Axes | None, marks: Any, dark: bool) -> Figure:

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from .._plot.film.film import Film
     from .._sensitivity.sensitivity import Sensitivity
+    from .._wings import Film
 
 Floats = npt.NDArray[np.float64]
 

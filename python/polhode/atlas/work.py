@@ -7,8 +7,8 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
-from .._harness import workers
-from .._harness.workers import Worker
+from .. import _workers
+from .._workers import Worker
 from .family import Point, from_json, to_json
 from .jobs import Job, find_entrant, find_family
 
@@ -58,7 +58,7 @@ class _JobWorker(Worker):
 
 
 def work(jobs: Sequence[Job], done: Done, *, processes: int = 2,
-         command: Sequence[str] = workers.command(__name__), silence: float = SILENCE) -> None:
+         command: Sequence[str] = _workers.command(__name__), silence: float = SILENCE) -> None:
     """Do all jobs in their order, and pass on the points of each when it ends.
 
     Parameters

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .._harness.workers import Worker, command
+from .._workers import Worker, command
 from .._scene.scene import Scene
 from .candidate import Answer, Candidate, Failure, Run
 from .candidates import candidates

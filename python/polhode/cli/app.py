@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import functools
 import pathlib
-import re
 import sys
 from collections.abc import Callable
 from typing import Annotated, Any
 
 import typer
 
-from .. import _files
+from .. import _files, _wings
 from .._core import IntegrationFailure, InvalidInput, __version__
 from .._scene.scene import Scene
 from .._solve import calibrate as calibration
@@ -19,21 +18,19 @@ from .._solve.costs import cache_file
 from .._solve.plan import plan as make_plan
 from .._solve.solve import methods as method_records
 from .._solve.solve import solve
-from . import ensemble as ensembles  # after `show`, which imports rich itself
 from . import files, show
+from .options import Json, need_matplotlib
 from .streams import PipeClosed, say, write_json
 
 app = typer.Typer(name="polhode", add_completion=False, no_args_is_help=True, rich_markup_mode=None,
                   pretty_exceptions_enable=False, context_settings={"help_option_names": ["-h", "--help"]},
                   help="Rotational motion of rigid bodies: attitude and angular velocity at given times.")
 
-Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")]
 
-
-def _command(function: Callable[..., int | None]) -> Callable[..., None]:
+def _command(function: Callable[..., int | None], **settings: bool) -> Callable[..., None]:
     """Make a function a command. Its result is the exit status; bad input gives one line and status 2."""
 
-    @app.command()
+    @app.command(context_settings=settings)
     @functools.wraps(function)
     def wrapped(*args: Any, **kwargs: Any) -> None:
         try:
@@ -52,21 +49,6 @@ def _command(function: Callable[..., int | None]) -> Callable[..., None]:
         raise typer.Exit(status)
 
     return wrapped
-
-
-def _need_matplotlib(what: str) -> None:
-    try:
-        import matplotlib  # noqa: F401
-    except ImportError:
-        raise InvalidInput(f"{what} need matplotlib: pip install 'polhode[plot]'") from None
-
-
-def _seconds(text: str) -> float:
-    """Return the seconds of a text such as 90, 90s or 1.5min."""
-    found = re.fullmatch(r"\s*(\d+\.?\d*|\.\d+)\s*(s|min|)\s*", text)
-    if not found:
-        raise InvalidInput(f"budget: must be a time such as 90s or 5min, got {text!r}")
-    return float(found[1]) * (60 if found[2] == "min" else 1)
 
 
 @app.callback(invoke_without_command=True)
@@ -103,10 +85,11 @@ def run(
     if output is not None:
         files.check(output)
     if picture is not None:
-        _need_matplotlib("pictures")
+        need_matplotlib("pictures need")
         files.check(picture, (".png", ".svg", ".pdf"), "plot")
     if animate is not None:
         files.check(animate, (".html", ".gif", ".mp4"), "animate")
+        _wings.load("_plot.film")
     with show.Bar("solving") as bar:
         motion = solve(Scene.load(scene), accuracy, method=method, rtol=rtol, atol=atol, step=step, max_steps=max_steps,
                        certify="proof" if proof else True, progress=bar.fraction)
@@ -177,7 +160,7 @@ def fit(
     from . import fit as part
 
     if picture is not None:
-        _need_matplotlib("pictures")
+        need_matplotlib("pictures need")
         files.check(picture, (".png", ".svg", ".pdf"), "plot")
     found = part.run(data, columns, sigma, parameters, axis, direction, bias, degrees, loss, seed)
     if picture is not None:
@@ -247,14 +230,16 @@ def inertia(
     Prints moments, principal axes, symmetry, and whether such a body can exist. For robots it prints what is wrong and
     the likely cause.
     """
-    from . import part, robot
+    from . import part
+    from .robot_options import Options, is_robot
 
-    options = robot.Options("json" if as_json else form, fail_on, tuple(ignore or ()), tuple(path or ()),
+    options = Options("json" if as_json else form, fail_on, tuple(ignore or ()), tuple(path or ()),
                             tuple(package or ()), fix, xacro)
     file = files[0]
-    if len(files) > 1 or robot.is_robot(file):
+    if len(files) > 1 or is_robot(file):
         _only_for_meshes(density=density, mass=mass, unit=unit != "m", flip=flip, weld=weld != 1e-9)
-        return robot.run(files, options)
+        status: int = _wings.load("cli.robot").run(files, options)
+        return status
     if name := options.given() or ("--format" if form not in ("text", "json") else ""):
         raise InvalidInput(f"{name}: must be used with robots, got another file")
     if part.is_mesh(file):
@@ -277,111 +262,18 @@ def _only_for_meshes(**options: Any) -> None:
             raise InvalidInput(f"--{name}: must be used with a mesh file, got another file")
 
 
-@_command
-def chart(
-    scenes: Annotated[list[str], typer.Argument(help="Scene files, or names such as S1.")],
-    output: Annotated[
-        pathlib.Path, typer.Option("-o", "--output", help="Folder for all files.")] = pathlib.Path("charts"),
-    budget: Annotated[
-        str, typer.Option(help="Approximate time limit, such as 60s or 5min. Runs that exceed it are left out and "
-                               "listed.")
-    ] = "130s",
-    peers: Annotated[bool, typer.Option(help="Also run other programs that are installed.")] = True,
-    brief: Annotated[bool, typer.Option("--brief", help="Print the fastest at each error alone.")] = False,
-    as_json: Json = False,
-) -> int:
-    """Chart speed against accuracy.
+def _refuse(name: str, why: str) -> None:
+    """Add a command that says why it is not there."""
+    def refused() -> int:
+        raise _wings.MissingWing(why)
 
-    Runs all methods, the plan's choice, closed forms and other programs on the given scenes, and compares them with
-    the truth.
-    """
-    _need_matplotlib("charts")
-    from ..charts import chart as make_chart
-
-    seconds = _seconds(budget)
-    with show.Bar("charting", len(scenes), quiet=brief) as bar:
-        quiet = as_json or brief
-        results, content = make_chart(scenes, output, budget=seconds, peers=peers, progress=bar.step,
-                                      show=(lambda result: None) if quiet else (lambda result: bar.print_above(result)))
-    if as_json:
-        write_json(content)
-    elif brief:
-        show.choice(results, content, output)
-    else:
-        show.chart_end(content, output)
-    return 0
+    refused.__name__, refused.__doc__ = name, f"({why})"
+    _command(refused, ignore_unknown_options=True, allow_extra_args=True)
 
 
-@_command
-def report(
-    output: Annotated[
-        pathlib.Path, typer.Option("-o", "--output",
-                                   help="Folder for the page and its files.")] = pathlib.Path("report"),
-    full: Annotated[bool, typer.Option(help="Run everything, without the limit of a few minutes.")] = False,
-    budget: Annotated[
-        str | None, typer.Option(help="Approximate time limit of the charts, such as 60s or 5min.")] = None,
-    peers: Annotated[bool, typer.Option(help="Also run other programs that are installed.")] = True,
-    atlas: Annotated[bool, typer.Option(help="Also measure where methods fail.")] = True,
-    scenes: Annotated[list[str] | None, typer.Argument(help="Scene files or names; polhode's scenes if none is "
-                                                            "given.")] = None,
-) -> int:
-    """Write a web page of charts, pictures and tables.
-
-    It opens from disk and needs no network.
-    """
-    _need_matplotlib("reports")
-    from ..report import report as make_report
-    from ..report.report import SCENES
-
-    chosen = list(scenes or SCENES)
-    seconds = None if budget is None else _seconds(budget)
-    with show.Bar("reporting", len(chosen)) as bar:
-        page = make_report(output, scenes=chosen, full=full, budget=seconds, peers=peers, with_atlas=atlas,
-                           progress=bar.step)
-    print(page)
-    return 0
-
-
-@_command
-def atlas(
-    families: Annotated[list[str] | None, typer.Argument(help="Names of families; all if none is given.")] = None,
-    output: Annotated[pathlib.Path, typer.Option(
-        "-o", "--output", help="Folder for all files; finished families in it are kept.")] = pathlib.Path("atlas"),
-    quick: Annotated[bool, typer.Option("--quick", help="Use fewer values, which takes about a minute.")] = False,
-    fresh: Annotated[bool, typer.Option("--fresh", help="Repeat finished families.")] = False,
-    processes: Annotated[int, typer.Option(help="Number of worker processes.")] = 2,
-    limit: Annotated[
-        float | None, typer.Option(help="Limit of CPU time of one run [s]; 60, or 2 with --quick.")] = None,
-    as_json: Json = False,
-) -> int:
-    """Chart where methods fail.
-
-    Runs every method on families of hard problems, from the tennis racket to stiff damping. Compares each result with
-    the truth and a threshold.
-    """
-    try:
-        import matplotlib  # noqa: F401
-    except ImportError:
-        raise InvalidInput("the atlas needs matplotlib: pip install 'polhode[plot]'") from None
-    from ..atlas import atlas as make_atlas
-    from ..report.atlas_part import write as write_page
-    from . import atlas as tables
-
-    def table(result: Any) -> None:
-        if not as_json:
-            bar.above(tables.family, result)
-
-    with show.Bar("atlas") as bar:
-        _, content = make_atlas(families or (), output, quick=quick, fresh=fresh, processes=processes, limit=limit,
-                                progress=bar.of, show=table)
-    page = write_page(content, output)
-    if as_json:
-        write_json(content)
-    else:
-        tables.matrix(content)
-        tables.end(content, output)
-        print(page)
-    return 1 if content["broken_claims"] else 0
-
-
-_command(ensembles.ensemble)
+for _wing in _wings.WINGS:
+    for _name, _module in _wing.commands.items():
+        if _wings.is_there(_wing.name):
+            _command(getattr(_wings.load(_module), _name))
+        else:
+            _refuse(_name, _wings.say_missing(_wing))

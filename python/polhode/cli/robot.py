@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import pathlib
 import sys
 
@@ -10,38 +9,14 @@ from .. import _files
 from .._core import InvalidInput
 from ..inertia import robots
 from ..inertia.codes import LEVELS
-from ..inertia.robots.files import STDIN
 from ..inertia.robots.ignore import rules
 from ..inertia.robots.paths import Search
 from ..inertia.robots.report import Report, check, check_file, to_dict
 from . import formats, show_robots
+from .robot_options import STDIN, Options
 from .streams import say, write_json
 
 FORMATS = ("text", "json", "sarif", "junit", "github")
-
-
-@dataclasses.dataclass(frozen=True)
-class Options:
-    """The options of `polhode inertia` that are for robots."""
-
-    form: str = "text"
-    fail_on: str = "warning"
-    ignore: tuple[str, ...] = ()
-    path: tuple[str, ...] = ()
-    package: tuple[str, ...] = ()
-    fix: bool = False
-    xacro: bool = True
-
-    def given(self) -> str:
-        """The first option that only robots have, or ""."""
-        return next((f"--{name.replace('_', '-')}" for name in ("fail_on", "ignore", "path", "package", "fix", "xacro")
-                     if getattr(self, name) != getattr(Options(), name)), "")
-
-
-def is_robot(file: str) -> bool:
-    """Return True for a folder, for stdin, and for the suffix of a robot description."""
-    path = pathlib.Path(file)
-    return file == STDIN or path.suffix.lower() in robots.suffixes or path.is_dir()
 
 
 def run(files: list[str], options: Options) -> int:

@@ -6,14 +6,13 @@ the deficit in per cent and the likely cause. `polhode.shapes` makes simple bodi
 
 from __future__ import annotations
 
-import importlib
 import warnings
 from types import ModuleType
 
 import numpy as np
 import numpy.typing as npt
 
-from .. import _core
+from .. import _core, _wings
 from .._core import InertiaTensor, MassProperties, PrincipalAxes
 from .checks import Flaw, check
 from .diagnosis import diagnose
@@ -21,18 +20,21 @@ from .equivalent import equivalent_box, equivalent_ellipsoid
 from .findings import Diagnosis, Finding
 
 __all__ = ["Diagnosis", "Finding", "Flaw", "InertiaTensor", "MassProperties", "PrincipalAxes", "check", "diagnose",
-           "equivalent_box", "equivalent_ellipsoid", "principal_axes", "robots"]
+           "equivalent_box", "equivalent_ellipsoid", "principal_axes"]
+if _wings.is_there("robots"):
+    __all__ += ["robots"]
 
 
 def __getattr__(name: str) -> ModuleType:
     """Load the readers of robot descriptions when they are first used."""
     if name == "robots":
-        return importlib.import_module(f"{__name__}.robots")
+        robots: ModuleType = _wings.load("inertia.robots")
+        return robots
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), "robots"})
+    return sorted({*globals(), *__all__})
 
 
 def principal_axes(matrices: npt.ArrayLike) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:

@@ -14,10 +14,10 @@ import numpy as np
 
 from ..._attitude.rotation import Rotation
 from ..._core import InvalidInput
+from ..._xml import Node
 from .geometry import Assembly, Pose
 from .link import Link
 from .paths import Search
-from .xml import Node
 
 SECONDS = 60
 # In a process of its own: a fault in MuJoCo ends that process alone.

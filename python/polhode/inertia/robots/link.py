@@ -11,6 +11,7 @@ import numpy as np
 
 from ..._attitude.rotation import Rotation
 from ..._core import InvalidInput
+from ..._xml import Node, Wrong
 from .. import evidence as ev
 from ..corruptions import Cause
 from ..findings import Diagnosis
@@ -18,7 +19,6 @@ from . import meshes
 from .geometry import Array, Assembly, Part, Pose, mesh
 from .judgement import conclude, study
 from .paths import Search
-from .xml import Node, Wrong
 
 
 @dataclasses.dataclass

@@ -8,13 +8,13 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from ..._core import InvalidInput, MassProperties
+from ..._xml import Node, parse
 from . import geometry, meshes
 from .by_mujoco import complete
 from .geometry import Array, Assembly, Part, Pose
 from .link import Link, Robot, Source, read_link
 from .mjcf_model import Compiler, Model, gather, onto, orientation, pose, unit
 from .paths import Search
-from .xml import Node, parse
 
 UNREAD = ("composite", "flexcomp", "plugin")
 GROUPS = ("frame", "replicate")   # their children belong to what is around them

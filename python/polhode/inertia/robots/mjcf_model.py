@@ -9,9 +9,9 @@ import numpy as np
 
 from ..._attitude.rotation import Rotation
 from ..._core import InvalidInput
+from ..._xml import Node, parse
 from .geometry import Array, Pose
 from .paths import Search
-from .xml import Node, parse
 
 MOST_FILES = 1000     # that one model includes
 DEEPEST = 50          # includes in includes

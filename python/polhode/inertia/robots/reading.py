@@ -8,10 +8,10 @@ from collections.abc import Callable
 
 from ... import _files
 from ..._core import InvalidInput
+from ..._xml import Node, parse, parse_bytes
 from . import mjcf, sdf, urdf
 from .link import Robot
 from .paths import Search
-from .xml import Node, parse, parse_bytes
 
 _readers: dict[str, Callable[[Node, pathlib.Path, Search], Robot]] = {
     "robot": urdf.read, "mujoco": mjcf.read, "mujocoinclude": mjcf.read, "sdf": sdf.read, "gazebo": sdf.read}

@@ -6,10 +6,10 @@ import re
 
 import numpy as np
 
+from ..._xml import Node
 from ..findings import Finding
 from .link import Link
 from .report import Report
-from .xml import Node
 
 UNSURE = ("unknown", "placeholder", "marker", "identified", "massless", "text", "density")
 ENTRIES = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}

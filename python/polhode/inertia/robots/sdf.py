@@ -8,12 +8,12 @@ import pathlib
 import numpy as np
 
 from ..._core import InvalidInput
+from ..._xml import Node, Wrong, parse
 from . import geometry
 from .geometry import Assembly, Pose
 from .link import Link, Robot, Source, read_link
 from .paths import Search
 from .sdf_frames import Frames, entry, pose_of
-from .xml import Node, Wrong, parse
 
 DEEPEST = 20        # models in models
 MOST_LINKS = 100_000

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..._attitude.rotation import Rotation
+from ..._xml import Node
 from .geometry import Pose
-from .xml import Node
 
 FRAMES = ("link", "frame", "joint", "model")
 DEEPEST = 100   # frames that refer to others in turn

@@ -7,11 +7,11 @@ import pathlib
 import numpy as np
 
 from ..._attitude.rotation import Rotation
+from ..._xml import Node
 from . import geometry
 from .geometry import Assembly, Pose
 from .link import Link, Robot, Source, read_link
 from .paths import Search
-from .xml import Node
 
 
 def read(root: Node, file: pathlib.Path, search: Search) -> Robot:

@@ -10,8 +10,8 @@ from xml.parsers import expat
 import numpy as np
 import numpy.typing as npt
 
-from ... import _files
-from ..._core import InvalidInput
+from . import _files
+from ._core import InvalidInput
 
 Array = npt.NDArray[np.float64]
 
