@@ -209,14 +209,14 @@ Array from_rotvec(py::handle value, bool degrees) {
   return q;
 }
 
+template <auto kernel>
 Array multiply(const Array& q_AB, const Array& q_BC) {
   const Pair pair(q_AB, "the left rotations", q_BC, "the right rotations", 4);
   Array q_AC(pair.shape);
   const double *a = pair.a.data(), *b = pair.b.data();
   double* out = q_AC.mutable_data();
   in_parts(pair.n, [&](std::size_t begin, std::size_t count) {
-    arrays::multiply(count, a + pair.step_a * begin, pair.step_a, b + pair.step_b * begin, pair.step_b,
-                     out + 4 * begin);
+    kernel(count, a + pair.step_a * begin, pair.step_a, b + pair.step_b * begin, pair.step_b, out + 4 * begin);
     return count;
   });
   return q_AC;
@@ -289,7 +289,8 @@ void bind_attitude(py::module_& m) {
   a.def("from_rotvec", &from_rotvec, py::arg("rotvec"), py::arg("degrees"));
   a.def("as_rotvec", &as_rotvec, py::arg("quat"), py::arg("degrees"));
   a.def("magnitude", &magnitude, py::arg("quat"));
-  a.def("multiply", &multiply, py::arg("quat_AB"), py::arg("quat_BC"));
+  a.def("multiply", &multiply<&arrays::multiply>, py::arg("quat_AB"), py::arg("quat_BC"), "Of unit quaternions, unit.");
+  a.def("product", &multiply<&arrays::product>, py::arg("quat_AB"), py::arg("quat_BC"), "Of any quaternions.");
   a.def("apply", &apply, py::arg("quat"), py::arg("vectors"), py::arg("inverse"));
   a.def("body_rates", &body_rates_of, py::arg("sequence"), py::arg("angles"), py::arg("angle_rates"));
   a.def("euler_rates", &euler_rates_of, py::arg("sequence"), py::arg("angles"), py::arg("omega"));

@@ -1,3 +1,5 @@
+#include <vector>
+
 #include "convert.hpp"
 #include "gil.hpp"
 #include "polhode/batch/step.hpp"
@@ -23,11 +25,22 @@ void step_rows(const py::array_t<T>& moments, py::array_t<T>& momentum, py::arra
   step_bodies(batch, threads);
 }
 
+/// q_AB (..., 4) times q_BC, of the same shape or (4).
+template <class T>
+py::array_t<T> multiply(const py::array_t<T, plain>& q_AB, const py::array_t<T, plain>& q_BC) {
+  py::array_t<T> q_AC(std::vector<py::ssize_t>(q_AB.shape(), q_AB.shape() + q_AB.ndim()));
+  multiply_attitudes(static_cast<std::size_t>(q_AB.size()) / 4, q_AB.data(), q_BC.data(), q_BC.ndim() == 1 ? 0 : 4,
+                     q_AC.mutable_data());
+  return q_AC;
+}
+
 }  // namespace
 
 void bind_batch_step(py::module_& m) {
   m.def("_step_f", &step_rows<float>);
   m.def("_step_d", &step_rows<double>);
+  m.def("_multiply_f", &multiply<float>);
+  m.def("_multiply_d", &multiply<double>);
 }
 
 }  // namespace polhode::python

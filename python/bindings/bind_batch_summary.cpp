@@ -1,3 +1,5 @@
+#include <pybind11/typing.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -198,7 +200,7 @@ Summary from_record(const py::list& quantities, std::size_t times, const py::dic
   return Summary::from_record(to_quantities(quantities), times, record);
 }
 
-py::tuple mean_attitudes(const py::object& given) {
+py::typing::Tuple<Array, Array> mean_attitudes(const py::object& given) {
   const Array moments = to_array_with_tail(given, "moments", {10});
   std::vector<py::ssize_t> shape(moments.shape(), moments.shape() + moments.ndim() - 1);
   Array spread(shape);

@@ -190,7 +190,8 @@ void bind_solve(py::module_& m) {
     const WithoutGil nogil;
     return compute_drift(scene, motion);
   });
-  m.def("reference", [](const Scene& scene, int order, double tolerance, long max_steps) {
+  const py::object named = py::module_::import("collections").attr("namedtuple")("Reference", "omega attitude steps");
+  m.def("reference", [named](const Scene& scene, int order, double tolerance, long max_steps) {
     ReferenceOptions options{order, tolerance, max_steps, [] {
       check_signals();
       return true;
@@ -201,10 +202,10 @@ void bind_solve(py::module_& m) {
       found = compute_reference(scene, options);
     }
     const auto n = static_cast<py::ssize_t>(scene.times().size());
-    return py::make_tuple(Array({n, py::ssize_t{3}}, found.omega.data()),
-                          Array({n, py::ssize_t{4}}, found.attitude.data()), found.steps);
+    return named(Array({n, py::ssize_t{3}}, found.omega.data()), Array({n, py::ssize_t{4}}, found.attitude.data()),
+                 found.steps);
   }, py::arg("scene"), py::arg("order"), py::arg("tolerance"), py::arg("max_steps"),
-     "omega, attitude and steps of a scene by Taylor series in long double, as a reference.");
+     "A named tuple of omega, attitude and steps of a scene by Taylor series in long double, as a reference.");
   m.def("generalised_forces", [](py::handle torque, py::handle angles) {
     const Vector3d tau_B = to_vector3(torque, "torque"), q = to_vector3(angles, "angles");
     return from_vector3(LagrangianProblem<NoTorque>::compute_rate_map(q[1], q[2]).transpose() * tau_B);

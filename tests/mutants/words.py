@@ -18,6 +18,7 @@ PYTHON = {
     "_keywords": ["doors", "solve"],
     "_saved": ["saved", "ensemble_store"],
     "_files": ["outputs", "hostile_files", "schema", "mesh_files"],
+    "_wings": ["wings"],
     "_workers": ["workers", "atlas", "charts_limits", "ensemble_engines"],
     "_xml": ["robots", "robots_real", "robots_models", "mesh_files", "hostile_files", "fuzz"],
     "_harness": ["charts", "charts_peers", "atlas", "charts_limits"],

@@ -246,6 +246,33 @@ def test_measurements_and_solvers_do_not_import_charts():
     assert not wrong
 
 
+PRODUCTS = (r"(\w|\[[^]]*\]) \* \S+( - [^-+,;]+? \* [^-+,;]+?){3}",            # the scalar part, by components
+            r"- \(\w+\[\.\.\., :3\] \* \w+\[\.\.\., :3\]\)\.sum\(")     # and by vectors
+
+
+def test_quaternions_are_multiplied_by_the_core():
+    by_hand = ["pw * w - px * x - py * y - pz * z", "aw * bw - ax * bx - ay * by - az * bz",
+               "p[..., 3] * q[..., 3] - (p[..., :3] * q[..., :3]).sum(-1)",
+               "p[3] * q[3] - p[0] * q[0] - p[1] * q[1] - p[2] * q[2]"]
+    assert all(any(re.search(product, text) for product in PRODUCTS) for text in by_hand)
+    found = [path.name for _, path in modules() for product in PRODUCTS if re.search(product, path.read_text())]
+    assert not found, "use Rotation, or _core.attitude"
+
+
+def test_the_compiled_module_returns_no_long_tuple():
+    wrong = []
+    for path in sorted((PACKAGE / "_core").glob("*.pyi")):
+        for function in ast.walk(ast.parse(path.read_text())):
+            if not isinstance(function, ast.FunctionDef) or function.name.startswith("__") or any(
+                    ast.unparse(kind) == "property" for kind in function.decorator_list):   # such as all torques
+                continue
+            if (kind := ast.unparse(function.returns) if function.returns else "").startswith("tuple["):
+                parts = ast.parse(kind, mode="eval").body.slice
+                if len(parts.elts) > 3 or any(ast.unparse(part) == "..." for part in parts.elts):
+                    wrong.append(function.name)
+    assert not wrong, "return an object with names"
+
+
 def test_lines_of_python_have_120_columns():
     long = [f"{path.relative_to(ROOT)}:{number}" for folder in ("python", "tests", "benchmarks", "examples", "docs")
             for path in sorted((ROOT / folder).rglob("*.py"))

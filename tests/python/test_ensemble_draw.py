@@ -53,6 +53,18 @@ def test_a_body_that_cannot_be_is_drawn_again_alone():
     assert np.array_equal(moments[~again], first[~again]) and (moments[again] != first[again]).any(axis=1).all()
 
 
+def test_plates_of_any_size_are_taken_as_an_inertia_tensor_takes_them():
+    plates = drawn(made(body={"moments": [0.7, 1.3, 2.0], "moments_relative": {"uniform": [-0.5, 0.5], "same": True}}))
+    a, b, c = plates.values["body", "moments"].T
+    assert (a + b < c).sum() > 1000   # by rounding
+    assert not plates.attempts.any() and not plates.impossible.any()
+    for moments in plates.values["body", "moments"][a + b < c][:20]:
+        ph.InertiaTensor.from_moments(moments)
+    beyond = np.array([[1.0, 2.0, 3.0 * (1 + excess)] for excess in (0.9e-12, 1.1e-12)])
+    assert draw._are_possible(beyond, True).tolist() == [True, False]
+    assert draw._are_possible(beyond, False).all()
+
+
 def test_shapes_that_cannot_be_are_drawn_again():
     spec = made(body={"shape": "box", "mass": 1.0, "half_sides": [0.3, 0.2, {"normal": [0.1, 0.1]}]})
     bodies = drawn(spec, 0, 200)

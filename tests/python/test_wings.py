@@ -17,8 +17,8 @@ from polhode import _wings
 
 ROOT = pathlib.Path(__file__).parents[2]
 # What wings may use beside the names of polhode and of its public modules.
-NEUTRAL = {"_files", "_folders", "_workers", "_xml", "_wings", "_plot.style", "_plot.text", "cli.files", "cli.options",
-           "cli.robot_options", "cli.show", "cli.streams"}
+NEUTRAL = {"_core.attitude", "_files", "_folders", "_workers", "_xml", "_wings", "_plot.style", "_plot.text",
+           "cli.files", "cli.options", "cli.robot_options", "cli.show", "cli.streams"}
 WINGS = {wing.name: wing for wing in _wings.WINGS
          if _wings.is_there(wing.name) and all((ROOT / name).exists() for name in wing.outside)}
 
@@ -72,7 +72,7 @@ PUBLIC = [ph, *(getattr(ph, name) for name in ph.__all__ if isinstance(getattr(p
 
 def is_public(module, name):
     """Whether a wing may take a name of a module of the core, or the module itself: it is public, here or elsewhere."""
-    if strip(module) in NEUTRAL or not name:
+    if {strip(module), f"{strip(module)}.{name}"} & NEUTRAL or not name:
         return True
     taken = getattr(importlib.import_module(module), name)
     return any(getattr(public, name, None) is taken and name in getattr(public, "__all__", ()) for public in PUBLIC)

@@ -120,6 +120,11 @@ void conjugate(std::size_t n, const double* q, double* __restrict q_inverse) {
   for (std::size_t i = 0; i < n; ++i) store(polhode::conjugate(load(q + 4 * i)), q_inverse + 4 * i);
 }
 
+void product(std::size_t n, const double* q_AB, std::size_t step_AB, const double* q_BC, std::size_t step_BC,
+             double* __restrict q_AC) {
+  for (std::size_t i = 0; i < n; ++i) store(load(q_AB + step_AB * i) * load(q_BC + step_BC * i), q_AC + 4 * i);
+}
+
 void multiply(std::size_t n, const double* q_AB, std::size_t step_AB, const double* q_BC, std::size_t step_BC,
               double* __restrict q_AC) {
   for (std::size_t i = 0; i < n; ++i) {

@@ -148,4 +148,26 @@ void run(const StepBatch<T>& batch, int threads) {
 void step_bodies(const StepBatch<float>& batch, int threads) { run(batch, threads); }
 void step_bodies(const StepBatch<double>& batch, int threads) { run(batch, threads); }
 
+namespace {
+
+template <class T>
+void multiply_all(std::size_t n, const T* p, const T* q, std::size_t step_q, T* __restrict out) {
+  for (std::size_t i = 0; i < n; ++i, p += 4, q += step_q, out += 4) {
+    out[0] = p[3] * q[0] + q[3] * p[0] + (p[1] * q[2] - p[2] * q[1]);
+    out[1] = p[3] * q[1] + q[3] * p[1] + (p[2] * q[0] - p[0] * q[2]);
+    out[2] = p[3] * q[2] + q[3] * p[2] + (p[0] * q[1] - p[1] * q[0]);
+    out[3] = p[3] * q[3] - (p[0] * q[0] + p[1] * q[1] + p[2] * q[2]);
+  }
+}
+
+}  // namespace
+
+void multiply_attitudes(std::size_t n, const float* q_AB, const float* q_BC, std::size_t step_BC, float* q_AC) {
+  multiply_all(n, q_AB, q_BC, step_BC, q_AC);
+}
+
+void multiply_attitudes(std::size_t n, const double* q_AB, const double* q_BC, std::size_t step_BC, double* q_AC) {
+  multiply_all(n, q_AB, q_BC, step_BC, q_AC);
+}
+
 }  // namespace polhode

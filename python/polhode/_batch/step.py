@@ -63,10 +63,9 @@ def _to_principal(inertia: Any, dtype: np.dtype[Any]) -> tuple[Floats, Floats | 
 
 
 def _multiply(p: Floats, q: Floats) -> Floats:
-    """Return p q of quaternions (..., 4)."""
-    vector = p[..., 3:] * q[..., :3] + q[..., 3:] * p[..., :3] + np.cross(p[..., :3], q[..., :3])
-    scalar = p[..., 3] * q[..., 3] - (p[..., :3] * q[..., :3]).sum(-1)
-    return np.concatenate([vector, scalar[..., None]], -1)
+    """Return p q of quaternions (..., 4), as many as p has."""
+    kernel = _core._multiply_f if p.dtype == SINGLE else _core._multiply_d
+    return kernel(p, q if q.ndim == 1 else np.broadcast_to(q, p.shape))
 
 
 def _rotate(q: Floats, v: Floats) -> Floats:

@@ -1507,6 +1507,38 @@ class Answer:
     @property
     def t(self) -> typing.Any:
         ...
+class _FoundSensitivity:
+    """
+    What `sensitivity` found.
+    """
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
+    @property
+    def attitude(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def columns(self) -> list[str]:
+        ...
+    @property
+    def d_attitude(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def d_omega(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def error(self) -> typing.Any:
+        ...
+    @property
+    def omega(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
+    def runs(self) -> int:
+        ...
+    @property
+    def steps(self) -> int:
+        ...
 class _Summary:
     @staticmethod
     def from_record(quantities: list[typing.Any], times: typing.SupportsInt | typing.SupportsIndex, record: dict[str, typing.Any]) -> _Summary:
@@ -1560,7 +1592,11 @@ def _heavy_top(arg0: typing.Any, arg1: typing.Annotated[numpy.typing.ArrayLike, 
     ...
 def _jacobi(arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     ...
-def _mean_attitude(moments: typing.Any) -> tuple[typing.Any, ...]:
+def _mean_attitude(moments: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+    ...
+def _multiply_d(arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+    ...
+def _multiply_f(arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float32], arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float32]) -> numpy.typing.NDArray[numpy.float32]:
     ...
 def _nome(arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
     ...
@@ -1630,9 +1666,9 @@ def principal_axes(matrices: typing.Any) -> tuple[numpy.typing.NDArray[numpy.flo
     """
     (moments, axes, number of matrices that are not finite); see polhode.inertia.principal_axes.
     """
-def reference(scene: Scene, order: typing.SupportsInt | typing.SupportsIndex, tolerance: typing.SupportsFloat | typing.SupportsIndex, max_steps: typing.SupportsInt | typing.SupportsIndex) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], int]:
+def reference(scene: Scene, order: typing.SupportsInt | typing.SupportsIndex, tolerance: typing.SupportsFloat | typing.SupportsIndex, max_steps: typing.SupportsInt | typing.SupportsIndex) -> typing.Any:
     """
-    omega, attitude and steps of a scene by Taylor series in long double, as a reference.
+    A named tuple of omega, attitude and steps of a scene by Taylor series in long double, as a reference.
     """
 def require_kept(array: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], name: str) -> None:
     """
@@ -1640,9 +1676,9 @@ def require_kept(array: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     """
 def rotor_speed(arg0: Scene, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
     ...
-def sensitivity(scene: Scene, groups: collections.abc.Sequence[str], accuracy: typing.SupportsFloat | typing.SupportsIndex, certify: bool, side: str, max_steps: typing.SupportsInt | typing.SupportsIndex) -> tuple[typing.Any, ...]:
+def sensitivity(scene: Scene, groups: collections.abc.Sequence[str], accuracy: typing.SupportsFloat | typing.SupportsIndex, certify: bool, side: str, max_steps: typing.SupportsInt | typing.SupportsIndex) -> _FoundSensitivity:
     """
-    omega, attitude, their derivatives, the names of the columns, their errors, the steps and the runs.
+    The motion of a scene and its derivatives.
     """
 def shape_records() -> list[typing.Any]:
     """

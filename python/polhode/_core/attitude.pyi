@@ -32,6 +32,12 @@ def gimbal_lock(sequence: typing.Any, quat: typing.Annotated[numpy.typing.ArrayL
 def magnitude(quat: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
     ...
 def multiply(quat_AB: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], quat_BC: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
-    ...
+    """
+    Of unit quaternions, unit.
+    """
 def normalize(quat: typing.Any, scalar_first: bool) -> numpy.typing.NDArray[numpy.float64]:
     ...
+def product(quat_AB: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], quat_BC: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Of any quaternions.
+    """

@@ -12,6 +12,7 @@ from .. import _core
 from .._core import InertiaTensor, InvalidInput
 from .._scene.bodies import body_inertia, body_model
 from .._scene.validation import validate
+from ..inertia import Flaw, check
 from . import distributions
 from .distributions import Floats, Path, Quantity
 from .recipe import EnsembleRecipe, Point
@@ -37,14 +38,6 @@ class Bodies(NamedTuple):
         return int(self.attempts.size)
 
 
-def _multiply(left: Floats, right: Floats) -> Floats:
-    """The product of quaternions (x, y, z, w), shape (n, 4), of which the left one may be single."""
-    ax, ay, az, aw = np.moveaxis(left, -1, 0)
-    bx, by, bz, bw = np.moveaxis(right, -1, 0)
-    return np.stack([aw * bx + ax * bw + ay * bz - az * by, aw * by - ax * bz + ay * bw + az * bx,
-                     aw * bz + ax * by - ay * bx + az * bw, aw * bw - ax * bx - ay * by - az * bz], axis=-1)
-
-
 def _draw(quantity: Quantity, seed: int, first: int, count: int, attempt: int = 0) -> Floats:
     """Draw one quantity of bodies first .. first + count, as it stands in a scene file."""
     rows = _core._draw(quantity.kind, seed, quantity.key, first, count, quantity.parameters, attempt)
@@ -52,19 +45,19 @@ def _draw(quantity: Quantity, seed: int, first: int, count: int, attempt: int = 
         return quantity.scale * rows
     if quantity.kind == "turn":
         assert quantity.base is not None
-        return _multiply(quantity.base, rows)
-    if quantity.base is not None:
-        rows = quantity.base * (1 + rows)
+        turned: Floats = _core.attitude.product(quantity.base, rows)
+        return turned
     if quantity.same:
         rows = np.repeat(rows, 3, axis=1)
+    if quantity.base is not None:
+        rows = quantity.base * (1 + rows)
     return rows[:, 0] if quantity.single else rows
 
 
 def _are_possible(moments: Floats, physical: bool) -> npt.NDArray[np.bool_]:
-    """Return True for moments that some body has: positive, and none above the sum of the others."""
-    a, b, c = moments.T
+    """Return True for moments that some body has: positive, and by `InertiaTensor` none above the sum of the others."""
     fits = np.asarray((np.isfinite(moments) & (moments > 0)).all(axis=1))
-    return fits & (a + b >= c) & (b + c >= a) & (c + a >= b) if physical else fits
+    return fits & (check(moments[:, None] * np.eye(3))[1] & Flaw.TRIANGLE == 0) if physical else fits
 
 
 def _tensor(data: dict[str, Any], values: dict[Path, Any]) -> InertiaTensor | None:

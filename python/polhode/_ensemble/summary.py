@@ -12,7 +12,6 @@ from .. import _core
 from .._attitude.rotation import Rotation
 from .._core import InvalidInput
 from .distributions import Floats
-from .draw import _multiply
 from .recipe import EnsembleRecipe, Wanted
 
 UNITS = {"angle": "rad", "axis_angle": "rad", "omega": "rad s-1", "energy": "J", "function": "1", "attitude": "1"}
@@ -116,7 +115,7 @@ class AttitudeSummary:
         moments = np.where(empty[..., None], np.eye(4)[np.triu_indices(4)], parts["moments"])
         mean, spread = _core._mean_attitude(np.ascontiguousarray(moments))
         if nominal is not None:
-            mean = _multiply(nominal, mean)
+            mean = _core.attitude.product(nominal, mean)
         self.mean: Floats = np.where(empty[..., None], np.nan, mean)
         self.spread: Floats = np.where(empty, np.nan, spread)
 

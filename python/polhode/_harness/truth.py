@@ -98,11 +98,11 @@ def _series(scene: Scene) -> Truth | None:
         fine, *others = (_core.reference(scene, order, 1e-20, MOST_STEPS) for order in ORDERS)
     except (InvalidInput, _core.IntegrationFailure):   # a user's torque, or too stiff for a series
         return None
-    if not all(np.isfinite(part).all() for run in (fine, *others) for part in run[:2]):
+    if not all(np.isfinite(part).all() for run in (fine, *others) for part in (run.omega, run.attitude)):
         return None
     text = f"Taylor series of order {ORDERS[0]} in long double, checked by orders {ORDERS[1]} and {ORDERS[2]}"
-    truth = Truth(fine[0], fine[1], "made", text, 0.0, None, start_rate(scene))
-    apart = max(compute_errors(*other[:2], truth).largest for other in others)
+    truth = Truth(fine.omega, fine.attitude, "made", text, 0.0, None, start_rate(scene))
+    apart = max(compute_errors(other.omega, other.attitude, truth).largest for other in others)
     return truth._replace(uncertainty=4 * max(apart, float(np.finfo(float).eps)))
 
 

@@ -29,6 +29,5 @@ def differentiate(scene: Scene, names: str | Sequence[str], accuracy: float, sid
         body = _core.FreeMotion(scene.inertia, scene.omega, scene.attitude)
         found: Sensitivity = body.sensitivity(scene.times - scene.t0, groups, side)
         return found
-    omega, attitude, d_omega, d_attitude, columns, error, _, _ = _core.sensitivity(
-        scene, list(groups), accuracy, certify, side, max_steps)
-    return Sensitivity(omega, attitude, d_omega, d_attitude, tuple(columns), side, error)
+    made = _core.sensitivity(scene, list(groups), accuracy, certify, side, max_steps)
+    return Sensitivity(made.omega, made.attitude, made.d_omega, made.d_attitude, tuple(made.columns), side, made.error)

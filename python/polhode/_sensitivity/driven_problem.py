@@ -79,7 +79,8 @@ class DrivenState(State):
     def limit_steps(self, times: Array) -> None:
         """Allow twenty times the steps that this state takes."""
         scene = self.make_scene(np.unique(times), False)
-        self.most_steps = 1000 + 20 * _core.sensitivity(scene, ["omega"], ACCURACY, False, "space", self.most_steps)[6]
+        made = _core.sensitivity(scene, ["omega"], ACCURACY, False, "space", self.most_steps)
+        self.most_steps = 1000 + 20 * made.steps
 
     def make_scene(self, times: Array, inertia: bool) -> Scene:
         """Return the scene with these parameters. `inertia`: the moments are among them."""

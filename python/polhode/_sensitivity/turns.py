@@ -5,16 +5,15 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from .. import _core
+
 Array = npt.NDArray[np.float64]
 
 
 def product(p: Array, q: Array) -> Array:
     """Return the Hamilton product of quaternions (..., 4)."""
-    p, q = np.asarray(p), np.asarray(q)
-    px, py, pz, pw = p[..., 0], p[..., 1], p[..., 2], p[..., 3]
-    x, y, z, w = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
-    return np.stack([pw * x + px * w + py * z - pz * y, pw * y - px * z + py * w + pz * x,
-                     pw * z + px * y - py * x + pz * w, pw * w - px * x - py * y - pz * z], axis=-1)
+    out: Array = _core.attitude.product(p, q)
+    return out
 
 
 def conjugate(q: Array) -> Array:

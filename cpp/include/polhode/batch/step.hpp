@@ -21,6 +21,11 @@ struct StepBatch {
   T* attitude = nullptr;         ///< (bodies, 4), principal axes to space, (x, y, z, w), changed in place
 };
 
+/// The Hamilton products q_AB q_BC of `n` quaternions, as they are rounded: the cross product is added last.
+/// @param step_BC  4, or 0 where all have the same q_BC
+void multiply_attitudes(std::size_t n, const float* q_AB, const float* q_BC, std::size_t step_BC, float* q_AC);
+void multiply_attitudes(std::size_t n, const double* q_AB, const double* q_BC, std::size_t step_BC, double* q_AC);
+
 /// Steps all bodies. The bits do not depend on the threads, nor on whether the machine has AVX2 or AVX-512.
 /// A body whose momentum, attitude or torque is not finite comes out as NaN, and no other.
 /// @param threads  at most; 0: as many as the machine has

@@ -34,6 +34,10 @@ void canonical(std::size_t n, const double* q, double* canonical_q);
 
 void conjugate(std::size_t n, const double* q, double* q_inverse);
 
+/// The Hamilton product q_AB q_BC of any quaternions, as it is rounded.
+void product(std::size_t n, const double* q_AB, std::size_t step_AB, const double* q_BC, std::size_t step_BC,
+             double* q_AC);
+
 /// q_AC = q_AB q_BC of unit quaternions, brought back to unit norm.
 void multiply(std::size_t n, const double* q_AB, std::size_t step_AB, const double* q_BC, std::size_t step_BC,
               double* q_AC);
