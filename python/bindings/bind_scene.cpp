@@ -98,6 +98,30 @@ void bind_scene(py::module_& m) {
                                if (scene.want().attitude) list.append("attitude");
                                return py::tuple(list);
                              })
+      .def("torque", [](const Scene& scene, const py::object& t, const py::object& omega, const py::object& attitude) {
+        const Vector3d w = to_vector3(omega, "omega");
+        const Quat unit = to_attitude(attitude, "attitude");
+        const double q[4] = {unit.x, unit.y, unit.z, unit.w};
+        Vector3d tau = Vector3d::Zero();
+        const Matrix3d& I_B = scene.inertia_B().matrix();
+        SeveralTorques{scene.torques()}.add(TorqueInput{to_real(t, "t"), w.data(), q, I_B}, tau.data());
+        return from_vector3(tau);
+      }, py::arg("t"), py::arg("omega"), py::arg("attitude"), R"doc(Return the sum of the torques at one state.
+
+Parameters
+----------
+t : float
+    Time [s].
+omega : array_like, shape (3,)
+    Rates in body axes [rad/s].
+attitude : array_like, shape (4,)
+    Unit quaternion (x, y, z, w).
+
+Returns
+-------
+ndarray, shape (3,)
+    In body axes [N m], without the gyroscopic torque of rotors.
+)doc")
       .def_property_readonly("t0", &Scene::t0)
       .def_property_readonly("name", &Scene::name);
 }

@@ -146,13 +146,6 @@ py::tuple to_tuple(const TorqueValues& values) {
 }
 
 template <class T>
-void bind_traits(py::class_<T>& type) {
-  type.def_property_readonly("traits", [](const T& torque) {
-    return describe_traits(torque.traits());
-  }, "dict: uses_time, uses_attitude, uses_rates, has_potential.");
-}
-
-template <class T>
 void bind_one(py::module_& m) {
   const TorqueRecord& record = T::record();
   static const std::string doc = docstring(record);
@@ -165,6 +158,7 @@ void bind_one(py::module_& m) {
                                [i](const T& torque) { return from_value(torque.values()[i]); });
   }
   bind_traits(type);
+  bind_value(type);
   type.def("__repr__", [&record](const T& torque) {
     std::string text = "polhode.torques." + std::string(record.name) + "(";
     const py::tuple values = to_tuple(torque.values());
@@ -186,6 +180,11 @@ void bind_one(py::module_& m) {
 template <>
 void bind_one<torques::Custom>(py::module_& m) {
   bind_torque_custom(m);
+}
+
+template <>
+void bind_one<torques::Formula>(py::module_& m) {
+  bind_torque_formula(m);
 }
 
 template <>
@@ -244,6 +243,7 @@ AnyTorque to_torque(py::handle value, const std::string& name) {
 void bind_torque(py::module_& m) {
   py::module_ torques = m.def_submodule("torques", "The classes of polhode.torques.");
   for_each_torque([&]<class T>() { bind_one<T>(torques); });
+  bind_formula_symbols(m);
   m.def("torque_records", [] {
     py::list list;
     for_each_torque<LastingTorque>([&]<class T>() { list.append(describe(T::record())); });

@@ -6,6 +6,9 @@
 #include <type_traits>
 
 #include "bind.hpp"
+#include "bind_scene.hpp"
+#include "convert.hpp"
+#include "polhode/core/error.hpp"
 #include "polhode/torque/torques.hpp"
 
 namespace polhode::python {
@@ -75,6 +78,10 @@ void show_references(PyHeapTypeObject* heap_type) {
 /// polhode.torques.Custom: a Python callable, or a compiled function pointer from numba, ctypes or C++.
 void bind_torque_custom(py::module_& m);
 
+/// polhode.torques.Formula, and the symbols of its traces.
+void bind_torque_formula(py::module_& m);
+void bind_formula_symbols(py::module_& m);
+
 /// polhode.torques.During: another torque, within windows of time.
 void bind_torque_during(py::module_& m);
 
@@ -86,6 +93,70 @@ inline py::dict describe_traits(const TorqueTraits& traits) {
   dict["uses_rates"] = traits.uses_rates;
   dict["has_potential"] = traits.has_potential;
   return dict;
+}
+
+template <class T>
+void bind_traits(py::class_<T>& type) {
+  type.def_property_readonly("traits", [](const T& torque) {
+    return describe_traits(torque.traits());
+  }, "dict: uses_time, uses_attitude, uses_rates, has_potential.");
+}
+
+inline bool uses_inertia(const AnyTorque& torque) {
+  const auto* during = std::get_if<torques::During>(&torque);
+  const auto is_one = [](const auto& any) {
+    return std::holds_alternative<torques::GravityGradient>(any) || std::holds_alternative<torques::AngularDamping>(any);
+  };
+  return during != nullptr ? is_one(during->torque()) : is_one(torque);
+}
+
+inline Array compute_value(const AnyTorque& torque, py::handle t, py::handle omega, py::handle attitude,
+                           py::handle inertia) {
+  Matrix3d I_B = Matrix3d::Identity();
+  if (!inertia.is_none()) {
+    I_B = to_inertia(inertia, "inertia").matrix();
+  } else if (uses_inertia(torque)) {
+    throw InvalidInput("inertia", "given", "nothing", "the torque depends on it");
+  }
+  const Vector3d w = to_vector3(omega, "omega");
+  const Quat unit = to_attitude(attitude, "attitude");
+  const double q[4] = {unit.x, unit.y, unit.z, unit.w};
+  Vector3d tau = Vector3d::Zero();
+  const TorqueInput in{to_real(t, "t"), w.data(), q, I_B};
+  std::visit([&](const auto& one) { one.add(in, tau.data()); }, torque);
+  return from_vector3(tau);
+}
+
+constexpr const char* value_doc = R"doc(Return the torque at one state.
+
+Parameters
+----------
+t : float
+    Time [s].
+omega : array_like, shape (3,)
+    Rates in body axes [rad/s].
+attitude : array_like, shape (4,)
+    Unit quaternion (x, y, z, w).
+inertia : InertiaTensor or array_like, optional
+    Of the body, for a torque that depends on it [kg m^2].
+
+Returns
+-------
+ndarray, shape (3,)
+    In body axes [N m].
+)doc";
+
+/// value(t, omega, attitude, inertia=None) of a torque's class.
+template <class T, class... Options>
+void bind_value(py::class_<T, Options...>& type) {
+  type.def("value", [](const T& torque, const py::object& t, const py::object& omega, const py::object& attitude,
+                       const py::object& inertia) {
+    if constexpr (requires { torque.get(); }) {
+      return compute_value(torque.get(), t, omega, attitude, inertia);
+    } else {
+      return compute_value(torque, t, omega, attitude, inertia);
+    }
+  }, py::arg("t"), py::arg("omega"), py::arg("attitude"), py::arg("inertia") = py::none(), value_doc);
 }
 
 }  // namespace polhode::python

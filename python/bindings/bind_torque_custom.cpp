@@ -185,6 +185,7 @@ void bind_torque_custom(py::module_& m) {
   type.def_property_readonly("traits", [](const OwnCustom& own) {
     return describe_traits(own.get().traits());
   });
+  bind_value(type);
   type.def("__repr__", [](const OwnCustom& own) {
     return "polhode.torques.Custom(" + std::string(py::repr(own.function)) + ")";
   });

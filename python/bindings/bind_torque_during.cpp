@@ -79,8 +79,9 @@ InvalidInput
 }  // namespace
 
 void bind_torque_during(py::module_& m) {
-  py::class_<OwnDuring>(m, "During", during_doc, py::custom_type_setup(&show_references<OwnDuring>))
-      .def(py::init(&make_during), py::arg("torque"), py::arg("windows"))
+  py::class_<OwnDuring> type(m, "During", during_doc, py::custom_type_setup(&show_references<OwnDuring>));
+  bind_value(type);
+  type.def(py::init(&make_during), py::arg("torque"), py::arg("windows"))
       .def_property_readonly("torque", [](const OwnDuring& own) { return own.inner; }, "The torque that acts.")
       .def_property_readonly("windows", [](const OwnDuring& own) { return from_windows(own.torque.windows()); },
                              "tuple of (begin, end) [s], in the order of time.")

@@ -9,6 +9,7 @@ _process.require_one_copy(__file__)
 
 from . import _wings
 from . import elliptic as elliptic
+from . import formula as formula
 from . import inertia as inertia
 from . import measured as measured
 from . import mesh as mesh

@@ -13,14 +13,14 @@ import pytest
 import polhode
 
 ROOT = pathlib.Path(__file__).parents[2]
-ORDER = ["core", "math", "attitude", "inertia", "torque", "exact", "ode", "formula", "scene", "method", "solve",
+ORDER = ["core", "math", "attitude", "inertia", "formula", "torque", "exact", "ode", "scene", "method", "solve",
          "derivative", "reference", "batch"]
 MAY_USE = {
     "core": [],
     "math": ["core"],
     "attitude": ["core", "math"],
     "inertia": ["core", "math", "attitude"],
-    "torque": ["core", "math", "attitude"],
+    "torque": ["core", "math", "attitude", "formula"],
     "exact": ["core", "math", "attitude", "inertia"],
     "ode": ["core", "math"],
     "formula": ["core", "math"],

@@ -9,6 +9,7 @@
 #include "polhode/math/detail/functions.hpp"
 #include "polhode/solve/facts.hpp"
 #include "derivative/column_run.hpp"
+#include "solve/ground/formulas.hpp"
 
 namespace polhode {
 namespace {
@@ -89,12 +90,13 @@ void require_formulas(const Scene& scene) {
 
 }  // namespace
 
-MotionSensitivity compute_sensitivity(const Scene& scene, const std::vector<std::string>& groups,
+MotionSensitivity compute_sensitivity(const Scene& given, const std::vector<std::string>& groups,
                                       const SensitivityOptions& options) {
   if (!(options.accuracy > 0.0 && options.accuracy <= 1.0))
     throw InvalidInput("accuracy", "above 0 and at most 1", to_text(options.accuracy));
+  const std::vector<SceneParameter> parameters = find_all(given, groups);   // resolved torques keep their numbers
+  const Scene scene = resolve_formulas(given, AsCustom::no);
   require_formulas(scene);
-  const std::vector<SceneParameter> parameters = find_all(scene, groups);
   const ColumnRun columns(scene, parameters, options.side);
   // The error of a column grows with the turns, as that of a state does.
   const double turns = std::min(std::max(1.0, compute_facts(scene).turns), 1e6);

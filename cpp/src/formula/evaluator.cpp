@@ -13,26 +13,26 @@ Evaluator::Evaluator(const Program& program)
     if (live[static_cast<std::size_t>(i)]) live_.push_back(i);
 }
 
-void Evaluator::operator()(double t, const double* y, const double* parameters, double* outputs) {
-  for (const int node : live_) values_[static_cast<std::size_t>(node)] = compute(node, t, y, parameters);
-  for (const Form& output : program_.outputs) *outputs++ = compute(output);
+void Evaluator::evaluate(double t, const double* y, const double* parameters, double* values, double* outputs) const {
+  for (const int node : live_) values[node] = compute(node, t, y, parameters, values);
+  for (const Form& output : program_.outputs) *outputs++ = compute(output, values);
 }
 
-double Evaluator::compute(const Form& form) const {
+double Evaluator::compute(const Form& form, const double* values) {
   double sum = form.constant;
-  for (const Term& term : form.terms) sum += term.factor * value(term.node);
+  for (const Term& term : form.terms) sum += term.factor * values[term.node];
   return sum;
 }
 
-double Evaluator::compute(int node, double t, const double* y, const double* parameters) const {
+double Evaluator::compute(int node, double t, const double* y, const double* parameters, const double* values) const {
   const Node& n = program_.graph[node];
-  const auto operand = [&](std::size_t i) { return value(n.operands[i]); };
+  const auto operand = [&](std::size_t i) { return values[n.operands[i]]; };
   switch (n.op) {
     case Op::constant: return n.constant;
     case Op::time: return t;
     case Op::state: return y[n.index];
     case Op::parameter: return parameters[n.index];
-    case Op::linear: return compute(program_.graph.linear(node));
+    case Op::linear: return compute(program_.graph.linear(node), values);
     case Op::multiply: return operand(0) * operand(1);
     case Op::divide: return operand(0) / operand(1);
     case Op::root: return std::sqrt(operand(0));

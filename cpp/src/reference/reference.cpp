@@ -9,6 +9,7 @@
 #include "polhode/core/error.hpp"
 #include "polhode/math/detail/double_double.hpp"
 #include "polhode/math/detail/functions.hpp"
+#include "solve/ground/formulas.hpp"
 #include "solve/ground/pieces.hpp"
 
 namespace polhode {
@@ -212,6 +213,10 @@ class LongDoubleSeries {
   void add(const torques::Custom&, Real, int, Real*) const {
     throw InvalidInput("torques", "without Custom torques, which have no series", "Custom");
   }
+  void add(const torques::Formula&, Real, int, Real*) const {
+    throw InvalidInput("torques", "without a Formula that is no torque of the list", "Formula",
+                       "its series are not used yet");
+  }
   void add(const torques::During&, Real, int, Real*) const {}   // pieces have none
 
   const Scene* scene_;
@@ -282,7 +287,8 @@ void follow(const Scene& scene, const ReferenceOptions& options, const std::vect
 
 }  // namespace
 
-Reference compute_reference(const Scene& scene, const ReferenceOptions& options) {
+Reference compute_reference(const Scene& given, const ReferenceOptions& options) {
+  const Scene scene = resolve_formulas(given, AsCustom::no);
   const std::vector<double>& times = scene.times();
   Reference found{std::vector<double>(3 * times.size()), std::vector<double>(4 * times.size()), 0};
   std::vector<std::size_t> order(times.size()), after, before;

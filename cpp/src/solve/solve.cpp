@@ -11,6 +11,7 @@
 #include "solve/ground/custom_check.hpp"
 #include "solve/plan/plan.hpp"
 #include "solve/certify/certify.hpp"
+#include "solve/ground/formulas.hpp"
 #include "solve/ground/options.hpp"
 #include "solve/ground/pieces.hpp"
 
@@ -80,11 +81,15 @@ Motion run_divided(std::shared_ptr<const Decision> decision, const SolveOptions&
 
 }  // namespace
 
-PlannedScene::PlannedScene(const Scene& scene, const SolveOptions& options) : options_(options) {
+PlannedScene::PlannedScene(const Scene& given, const SolveOptions& options) : options_(options) {
   const auto begin = Clock::now();
+  std::vector<std::string> recognised;
+  const Scene scene = resolve_formulas(given, AsCustom::yes, &recognised);
   check_options(scene, options);
   check_torques(scene);
-  decision_ = std::make_shared<const Decision>(decide(scene, options));
+  Decision decision = decide(scene, options);
+  decision.recognised = std::move(recognised);
+  decision_ = std::make_shared<const Decision>(std::move(decision));
   options_.events.clear();
   options_.progress = {};
   if (options.cost_factors != nullptr) {

@@ -60,6 +60,9 @@ def _torque_models() -> list[Any]:
     for record in torques.records():
         if record["key"] == "custom":
             continue   # a function cannot stand in a file
+        if record["key"] == "formula":
+            models.append(_formula_model())
+            continue
         fields: dict[str, Any] = {"kind": (Literal[record["key"]], ...), "during": (kind.windows | None, None)}
         for parameter in record["parameters"]:
             default = ... if parameter["default"] is None else parameter["default"]
@@ -71,6 +74,14 @@ def _torque_models() -> list[Any]:
                 fields[parameter["name"]] = ({"real": kind.number, "vector": kind.vector}[parameter["kind"]], default)
         models.append(model(record["name"], **fields))
     return models
+
+
+def _formula_model() -> Any:
+    """Return the model of a torque that is a formula."""
+    kind = kinds()
+    return model("Formula", kind=(Literal["formula"], ...), torque=(str, ...), let=(dict[str, str], {}),
+                 parameters=(dict[str, kind.number | kind.numbers], {}), recognise=(bool, True),
+                 during=(kind.windows | None, None))
 
 
 def find_scene(source: str | os.PathLike[str]) -> pathlib.Path:
@@ -103,6 +114,11 @@ def _torque(entry: Any) -> Any:
         if (entry.diagonal is None) == (entry.matrix is None):
             raise InvalidInput(f"torques: {entry.kind}: give matrix or diagonal, one of them")
         values["matrix"] = entry.matrix if entry.diagonal is None else entry.diagonal
+    if entry.kind == "formula":
+        reserved = {"function", "text", "let", "recognise"} & set(values["parameters"])
+        if reserved:
+            raise InvalidInput(f"torques: formula: must have parameters of other names than {', '.join(sorted(reserved))}")
+        values = {"text": values.pop("torque"), **values.pop("parameters"), **values}
     torque = getattr(torques, record["name"])(**values)
     return torque if entry.during is None else torques.During(torque, entry.during)
 

@@ -38,7 +38,7 @@ struct MotionSensitivity {
 /// @throws InvalidInput for unknown names, a torque without a formula, gravity gradients of two orbits, or an accuracy
 ///         out of range
 /// @throws IntegrationFailure if a run does not reach its end
-MotionSensitivity compute_sensitivity(const Scene& scene, const std::vector<std::string>& groups,
+MotionSensitivity compute_sensitivity(const Scene& given, const std::vector<std::string>& groups,
                                       const SensitivityOptions& options = {});
 
 }  // namespace polhode

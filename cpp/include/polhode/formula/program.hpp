@@ -85,13 +85,18 @@ class Evaluator {
   explicit Evaluator(Program&&) = delete;
 
   /// @param y  the states by their numbers, the attitude of unit length
-  void operator()(double t, const double* y, const double* parameters, double* outputs);
+  void operator()(double t, const double* y, const double* parameters, double* outputs) {
+    evaluate(t, y, parameters, values_.data(), outputs);
+  }
+  /// The same with memory of the caller's, so that several threads may use one evaluator.
+  /// @param values  one number for each node of the graph
+  void evaluate(double t, const double* y, const double* parameters, double* values, double* outputs) const;
   /// The value that a live node had in the last call.
   double value(int node) const { return values_[static_cast<std::size_t>(node)]; }
 
  private:
-  double compute(int node, double t, const double* y, const double* parameters) const;
-  double compute(const Form& form) const;
+  double compute(int node, double t, const double* y, const double* parameters, const double* values) const;
+  static double compute(const Form& form, const double* values);
 
   const Program& program_;
   std::vector<int> live_;

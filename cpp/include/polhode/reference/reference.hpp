@@ -26,6 +26,6 @@ struct Reference {
 /// The recurrences use Cauchy products. The step follows from the last two terms as in Jorba & Zou 2005, Experimental
 /// Mathematics 14, 99.
 /// @throws InvalidInput for a torque that has no series (a user's function), IntegrationFailure past max_steps
-Reference compute_reference(const Scene& scene, const ReferenceOptions& options = {});
+Reference compute_reference(const Scene& given, const ReferenceOptions& options = {});
 
 }  // namespace polhode

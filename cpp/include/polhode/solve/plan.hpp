@@ -37,7 +37,7 @@ struct Decision;
 class PlannedScene {
  public:
   /// @throws InvalidInput for options that contradict each other, or a method that cannot integrate the scene
-  PlannedScene(const Scene& scene, const SolveOptions& options);
+  PlannedScene(const Scene& given, const SolveOptions& options);
 
   const Plan& plan() const;
   /// The same plan with every candidate evaluated and the reasons in words.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -44,6 +45,8 @@ class Custom {
   }
 
   static const TorqueRecord& record();
+  /// The class that the user made: Custom, or Formula while a formula is integrated.
+  std::string_view name() const { return name_; }
 
   /// The same torque, which may jump or kink at these times [s]. solve() divides the span there.
   /// @throws InvalidInput for a time that is not finite
@@ -82,6 +85,9 @@ class Custom {
     for (int i = 0; i < 4; ++i) unit[i] = s * q[i];
   }
 
+  friend class Formula;
+
+  std::string_view name_ = "Custom";
   Function function_;
   void* data_;
   Claims claims_;

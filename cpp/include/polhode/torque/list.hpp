@@ -6,6 +6,7 @@
 #include "polhode/torque/constant.hpp"
 #include "polhode/torque/custom.hpp"
 #include "polhode/torque/damping.hpp"
+#include "polhode/torque/formula.hpp"
 #include "polhode/torque/gravity.hpp"
 #include "polhode/torque/gravity_gradient.hpp"
 
@@ -17,6 +18,7 @@ using LastingTorque = std::variant<torques::Constant,         //
                                    torques::GravityGradient,  //
                                    torques::Damping,          //
                                    torques::AngularDamping,   //
+                                   torques::Formula,          //
                                    torques::Custom>;
 
 }  // namespace polhode

@@ -26,9 +26,11 @@ Vector3d to_body(const double* q, const Vector3d& v_W) { return rotate({-q[0], -
 std::string compute_series_refusal(const Scene& scene) {
   const torques::GravityGradient* first = nullptr;
   for (const AnyTorque& torque : scene.torques()) {
-    if (std::holds_alternative<torques::Custom>(torque)) {
-      return "a Custom torque, which has no Taylor series (dop853 and rk45 integrate it)";
+    const auto* custom = std::get_if<torques::Custom>(&torque);
+    if (std::holds_alternative<torques::Formula>(torque) || (custom != nullptr && custom->name() == "Formula")) {
+      return "a Formula that is no torque of the list, whose Taylor series are not used yet (dop853 and rk45 integrate it)";
     }
+    if (custom != nullptr) return "a Custom torque, which has no Taylor series (dop853 and rk45 integrate it)";
     if (const auto* gradient = std::get_if<torques::GravityGradient>(&torque)) {
       if (first != nullptr &&
           (gradient->mean_motion() != first->mean_motion() || gradient->phase() != first->phase())) {

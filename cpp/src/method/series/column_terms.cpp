@@ -27,7 +27,8 @@ class TermsBuilder {
     for (int i = 0; i < 3; ++i) terms_.tidal[i] += torque.strength() * (J_[next_axis(next_axis(i))] - J_[next_axis(i)]);
     terms_.orbit_rate = torque.mean_motion();
   }
-  void add(const torques::Custom&) { refuse_custom(); }
+  void add(const torques::Custom& torque) { refuse_custom(torque.name()); }
+  void add(const torques::Formula&) { refuse_custom("Formula"); }
 
   void add_rotors(const Vector3d& h_B) {   // -d x h
     const Vector3d h = R_PB_ * h_B;
@@ -67,7 +68,8 @@ class TermsBuilder {
       put(column, i, field == 0 ? Source::timed_pairs : Source::turned_pairs, i, torque.strength() * gap);
     }
   }
-  void force(int, const torques::Custom&, int, int) { refuse_custom(); }
+  void force(int, const torques::Custom& torque, int, int) { refuse_custom(torque.name()); }
+  void force(int, const torques::Formula&, int, int) { refuse_custom("Formula"); }
 
   // -- the derivative by the inertia --------------------------------------------------------------------------------
   void force_inertia(int column, const Matrix3d& dJ_B) {
@@ -85,6 +87,7 @@ class TermsBuilder {
   void force_inertia(int, const torques::Gravity&, const Matrix3d&) {}
   void force_inertia(int, const torques::Damping&, const Matrix3d&) {}
   void force_inertia(int, const torques::Custom&, const Matrix3d&) {}
+  void force_inertia(int, const torques::Formula&, const Matrix3d&) {}
 
   void force_rotors(int column, const Vector3d& dh_B) {   // dh x w
     const Vector3d h = R_PB_ * dh_B;
@@ -95,9 +98,10 @@ class TermsBuilder {
   }
 
  private:
-  [[noreturn]] static void refuse_custom() {
-    throw InvalidInput("sensitivity", "left out for a scene with a Custom torque", "Custom",
-                       "a function has no formula that could be differentiated");
+  [[noreturn]] static void refuse_custom(std::string_view name) {
+    throw InvalidInput("sensitivity", "left out for a scene with a torque of the user's own", name,
+                       name == "Custom" ? "a function has no formula that could be differentiated"
+                                        : "a formula that is no torque of the list is not differentiated yet");
   }
 
   void put(int column, int component, Source source, int part, double torque) {

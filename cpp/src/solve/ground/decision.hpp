@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "polhode/ode/problem.hpp"
 #include "polhode/solve/closed_form.hpp"
@@ -22,6 +24,7 @@ struct Decision {
   bool looked = false;                     ///< the pilot run looked at the user's own torques over the whole span
   Looks looks = {};                        ///< what it found; the span is divided at its breaks
   bool may_cut = true;                     ///< a run may end early where a torque of the user's own is found to jump
+  std::vector<std::string> recognised = {};   ///< what the formulas are that are torques of the list
   ode::Counts pilot = {};                  ///< what the pilot run of a user's own torque took
 };
 

@@ -70,7 +70,7 @@ void require_provable(const Scene& scene, const SolveOptions& options) {
                        "the bounds on rounding hold for that mode alone: a library or fesetround() changed it");
   }
   if (calls_custom(scene)) {
-    throw InvalidInput("certify='proof'", "left out with torques of the user's own", "a Custom torque",
+    throw InvalidInput("certify='proof'", "left out with torques of the user's own", "a Custom torque or a Formula",
                        "its function gives numbers, and a proof needs bounds on them at every state nearby");
   }
 }

@@ -184,7 +184,7 @@ std::vector<std::string> explain_proof(const Scene& scene) {
 
 }  // namespace
 
-PlanReport explain(const Decision& decision, const SolveOptions& options) {
+PlanReport explain_decision(const Decision& decision, const SolveOptions& options) {
   if (is_by_tolerance(options)) {
     return {.plan = decision.plan, .facts = compute_facts(decision.scene),
             .reasons = {"Tolerances or a fixed step were given with method " + decision.plan.method +
@@ -212,6 +212,14 @@ PlanReport explain(const Decision& decision, const SolveOptions& options) {
   explain_rotors(scene, report);
   if (facts.only_at_end) report.reasons.push_back("Only one sample time is given, so nothing is interpolated.");
   explain_left_out(scene, facts, options, report);
+  return report;
+}
+
+}  // namespace
+
+PlanReport explain(const Decision& decision, const SolveOptions& options) {
+  PlanReport report = explain_decision(decision, options);
+  report.reasons.insert(report.reasons.begin(), decision.recognised.begin(), decision.recognised.end());
   return report;
 }
 

@@ -307,6 +307,7 @@ class BodyEquations::Maker {
   }
 
   void add(const torques::Custom&) {}    // calls_custom() tells of it
+  void add(const torques::Formula&) {}   // nor of it
   void add(const torques::During&) {}    // pieces have no windows
 
   /// v' = v x w of a vector fixed in space, as seen from the body

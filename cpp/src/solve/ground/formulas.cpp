@@ -1,0 +1,118 @@
+#include "solve/ground/formulas.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "polhode/core/error.hpp"
+#include "polhode/formula/recognise.hpp"
+
+namespace polhode {
+namespace {
+
+using formula::KnownTorque;
+using torques::During;
+using torques::Formula;
+
+const Formula* find_formula(const AnyTorque& torque) {
+  const auto* during = std::get_if<During>(&torque);
+  return during != nullptr ? std::get_if<Formula>(&during->torque()) : std::get_if<Formula>(&torque);
+}
+
+LastingTorque make_torque(const KnownTorque& known) {
+  using Kind = KnownTorque::Kind;
+  const Vector3d& v = known.vector;
+  switch (known.kind) {
+    case Kind::constant_in_body: return torques::Constant(v, torques::Constant::Frame::body);
+    case Kind::constant_in_space: return torques::Constant(v, torques::Constant::Frame::space);
+    case Kind::damping: return torques::Damping(known.matrix);
+    case Kind::angular_damping: return torques::AngularDamping(known.rate);
+    case Kind::rotors: {   // v x w
+      Matrix3d C;
+      C << 0, v[2], -v[1], -v[2], 0, v[0], v[1], -v[0], 0;
+      return torques::Damping(C);
+    }
+    case Kind::gravity: return torques::Gravity(1.0, v);
+    case Kind::gravity_gradient: break;
+  }
+  return torques::GravityGradient(known.rate, known.phase);
+}
+
+std::string show(const Vector3d& v) {
+  std::string text = "(";
+  for (int i = 0; i < 3; ++i) text.append(i > 0 ? ", " : "").append(to_text(v[i]));
+  return text += ')';
+}
+
+std::string show(const KnownTorque& known) {
+  using Kind = KnownTorque::Kind;
+  switch (known.kind) {
+    case Kind::constant_in_body: return "Constant(" + show(known.vector) + ")";
+    case Kind::constant_in_space: return "Constant(" + show(known.vector) + ", frame=\"space\")";
+    case Kind::damping: {
+      const Matrix3d& C = known.matrix;
+      if (C == Matrix3d(C.diagonal().asDiagonal())) return "Damping(" + show(C.diagonal()) + ")";
+      return "Damping((" + show(C.row(0)) + ", " + show(C.row(1)) + ", " + show(C.row(2)) + "))";
+    }
+    case Kind::angular_damping: return "AngularDamping(" + to_text(known.rate) + ")";
+    case Kind::rotors: return "the gyroscopic torque of a momentum " + show(known.vector);
+    case Kind::gravity: return "Gravity(weight=1, arm=" + show(known.vector) + ")";
+    case Kind::gravity_gradient: break;
+  }
+  return "GravityGradient(" + to_text(known.rate) + ", " + to_text(known.phase) + ")";
+}
+
+/// The torques of the list whose sum a formula is; none if it is no such sum.
+std::optional<std::vector<KnownTorque>> recognise(const Formula& formula, const Scene& scene) {
+  if (!formula.recognise()) return std::nullopt;
+  formula::Recognition found = formula::recognise(formula.program(), scene.given_inertia_B().matrix());
+  if (!found.is_whole) return std::nullopt;
+  // Free rotors take inertia from the body that moves, so multiples of either tensor are written as matrices there.
+  const bool carried = scene.given_inertia_B().matrix() != scene.inertia_B().matrix();
+  for (KnownTorque& part : found.parts) {
+    if (carried && part.kind == KnownTorque::Kind::gravity_gradient) return std::nullopt;
+    if (!carried || part.kind != KnownTorque::Kind::angular_damping) continue;
+    part.kind = KnownTorque::Kind::damping;
+    part.matrix = part.rate * scene.given_inertia_B().matrix();
+  }
+  return found.parts;
+}
+
+AnyTorque with_window(const AnyTorque& like, LastingTorque torque) {
+  if (const auto* during = std::get_if<During>(&like)) return During(std::move(torque), during->windows());
+  return std::visit([](const auto& one) { return AnyTorque(one); }, torque);
+}
+
+}  // namespace
+
+Scene resolve_formulas(const Scene& scene, AsCustom as_custom, std::vector<std::string>* recognised) {
+  const auto& given = scene.torques();
+  if (std::none_of(given.begin(), given.end(), [](const auto& torque) { return find_formula(torque) != nullptr; }))
+    return scene;
+  SceneParts parts = scene.parts();
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    const AnyTorque torque = given[i];
+    const Formula* formula = find_formula(torque);
+    if (formula == nullptr) continue;
+    const auto known = recognise(*formula, scene);
+    if (!known) {
+      if (as_custom == AsCustom::yes) parts.torques[i] = with_window(torque, formula->as_custom());
+      continue;
+    }
+    std::string names;
+    for (std::size_t k = 0; k < known->size(); ++k) {
+      const AnyTorque part = with_window(torque, make_torque((*known)[k]));
+      if (k == 0) parts.torques[i] = part;
+      else parts.torques.push_back(part);
+      names.append(k > 0 ? " and " : "").append(show((*known)[k]));
+    }
+    if (known->empty()) parts.torques[i] = with_window(torque, torques::Constant(Vector3d::Zero(), torques::Constant::Frame::body));
+    if (recognised != nullptr)
+      recognised->push_back("The formula of torques[" + std::to_string(i) + "] is " +
+                            (known->empty() ? "zero in every state." : names + "."));
+  }
+  return Scene(std::move(parts));
+}
+
+}  // namespace polhode
