@@ -60,7 +60,8 @@ def torques() -> str:
         rows = ((code(p["name"]), p["kind"], p["unit"], p["doc"] + "".join(f", `{c}`" for c in p["choices"]),
                  "required" if p["default"] is None else code(p["default"])) for p in r["parameters"])
         parts.append(f"## {r['name']}\n\nIn a file: `kind = \"{r['key']}\"`. {r['doc']}\n\n"
-                     f"{table(('parameter', 'type', 'unit', 'meaning', 'default'), rows)}\n\nSource: {r['source']}.")
+                     f"{table(('parameter', 'type', 'unit', 'meaning', 'default'), rows)}\n\n"
+                     + (f"Source: {r['source']}." if r["source"] else ""))
     return "\n\n".join(parts)
 
 

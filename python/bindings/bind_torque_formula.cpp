@@ -36,6 +36,7 @@ class Operands {
   Expr operator()(py::handle value) {
     if (!py::isinstance<Traced>(value)) return Expr(to_real(value, "a number of the formula"));
     const Traced& traced = value.cast<const Traced&>();
+    if (!traced.graph) return traced.expr;   // an operation on numbers alone
     if (graph_ && graph_ != traced.graph) throw InvalidInput("Formula", "one of symbols of one trace", "symbols of two");
     graph_ = traced.graph;
     return traced.expr;

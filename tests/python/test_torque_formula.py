@@ -133,7 +133,7 @@ GRAVITY = ("weight * cross(arm, to_body([0, 0, -1]))", dict(weight=1.0, arm=(0.3
 @pytest.mark.parametrize(("text", "parameters", "torque"), [
     (*GRAVITY, Gravity(1, (0.3, 0.2, 0.5))),
     ("[1, 2, 3] / 8", {}, Constant((0.125, 0.25, 0.375))),
-    ("to_body(f)", dict(f=(0.1, 0.2, 0.3)), Constant((0.1, 0.2, 0.3), "space")),
+    ("to_body(f)", dict(f=(0.1, -0.2, 0.3)), Constant((0.1, -0.2, 0.3), "space")),
     ("-c * omega", dict(c=(0.1, 0.3, 0.2)), Damping((0.1, 0.3, 0.2))),
     ("-0.25 * [omega.x, 2 * omega.y, 2.5 * omega.z]", {}, AngularDamping(0.25)),
 ])
@@ -145,7 +145,7 @@ def test_a_formula_that_is_a_torque_of_the_list_has_its_bits(text, parameters, t
     np.testing.assert_array_equal(found.omega, known.omega)
     np.testing.assert_array_equal(found.attitude, known.attitude)
     assert found.plan.method == known.plan.method and found.error == known.error
-    assert type(torque).__name__ + "(" in str(ph.plan(scene(pair[0]), 1e-9).explain())
+    assert any(type(torque).__name__ + "(" in why for why in ph.plan(scene(pair[0]), 1e-9).reasons)
     other = ph.solve(scene(Formula(text=text, recognise=False, **parameters)), accuracy=1e-9)
     if window is None:
         assert other.plan.method in ("dop853", "rk45", "radau")
@@ -218,7 +218,7 @@ def test_refused_arguments(arguments, words):
 
 def test_what_is_not_there_yet_is_refused_in_a_sentence():
     own = scene(Formula(pd, kp=0.2, kd=0.5))
-    for options in (dict(certify="proof"), dict(method="taylor"), dict(sensitivity="omega"), dict(method="exact")):
+    for options in (dict(certify="proof"), dict(method="taylor"), dict(sensitivity="omega")):
         with pytest.raises(ph.InvalidInput, match="Formula|formula"):
             ph.solve(own, accuracy=1e-6, **options)
 
@@ -243,13 +243,13 @@ def test_a_scene_file_holds_a_formula(tmp_path):
     file = tmp_path / "pd.toml"
     file.write_text(f"""
 [body]
-inertia = [1.0, 2.0, 2.5]
+moments = [1.0, 2.0, 2.5]
 [start]
 omega = [0.4, -0.7, 1.1]
 [[torques]]
 kind = "formula"
-torque = "-kp * attitude.xyz * attitude.w - damp"
-let = {{ damp = "kd * omega" }}
+torque = "turn - kd * omega"
+let = {{ turn = "-kp * attitude.xyz * attitude.w" }}
 parameters = {{ kp = 0.2, kd = [0.5, 0.5, 0.4] }}
 [times]
 span = 5.0
@@ -257,7 +257,7 @@ samples = 11
 """)
     assert ph.Scene.load(file).torques[0] == Formula(pd, kp=0.2, kd=(0.5, 0.5, 0.4))
     file.write_text(file.read_text().replace("kd = [", "kz = ["))
-    with pytest.raises(ph.InvalidInput, match="unknown name 'kd'"):
+    with pytest.raises(ph.InvalidInput, match="got 'kd'"):
         ph.Scene.load(file)
 
 

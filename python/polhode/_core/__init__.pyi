@@ -14,6 +14,7 @@ import typing
 from polhode._sensitivity.sensitivity import Sensitivity
 from . import attitude
 from . import torques
+from . import symbols
 class InvalidInput(ValueError):
     pass
 class IntegrationFailure(RuntimeError):
@@ -1385,6 +1386,24 @@ class Scene:
     def __reduce__(self) -> tuple[typing.Any, ...]:
         """
         Return what pickle makes the object from.
+        """
+    def torque(self, t: typing.Any, omega: typing.Any, attitude: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Return the sum of the torques at one state.
+
+        Parameters
+        ----------
+        t : float
+            Time [s].
+        omega : array_like, shape (3,)
+            Rates in body axes [rad/s].
+        attitude : array_like, shape (4,)
+            Unit quaternion (x, y, z, w).
+
+        Returns
+        -------
+        ndarray, shape (3,)
+            In body axes [N m], without the gyroscopic torque of rotors.
         """
     @property
     def attitude(self) -> numpy.typing.NDArray[numpy.float64]:

@@ -4,6 +4,8 @@ The classes of polhode.torques.
 from __future__ import annotations
 import numpy
 import numpy.typing
+import numpy
+import numpy.typing
 import typing
 class Constant:
     """
@@ -43,6 +45,26 @@ class Constant:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
         ...
+    def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Return the torque at one state.
+
+        Parameters
+        ----------
+        t : float
+            Time [s].
+        omega : array_like, shape (3,)
+            Rates in body axes [rad/s].
+        attitude : array_like, shape (4,)
+            Unit quaternion (x, y, z, w).
+        inertia : InertiaTensor or array_like, optional
+            Of the body, for a torque that depends on it [kg m^2].
+
+        Returns
+        -------
+        ndarray, shape (3,)
+            In body axes [N m].
+        """
     @property
     def frame(self) -> typing.Any:
         ...
@@ -92,6 +114,26 @@ class Gravity:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
         ...
+    def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Return the torque at one state.
+
+        Parameters
+        ----------
+        t : float
+            Time [s].
+        omega : array_like, shape (3,)
+            Rates in body axes [rad/s].
+        attitude : array_like, shape (4,)
+            Unit quaternion (x, y, z, w).
+        inertia : InertiaTensor or array_like, optional
+            Of the body, for a torque that depends on it [kg m^2].
+
+        Returns
+        -------
+        ndarray, shape (3,)
+            In body axes [N m].
+        """
     @property
     def arm(self) -> typing.Any:
         ...
@@ -141,6 +183,26 @@ class GravityGradient:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
         ...
+    def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Return the torque at one state.
+
+        Parameters
+        ----------
+        t : float
+            Time [s].
+        omega : array_like, shape (3,)
+            Rates in body axes [rad/s].
+        attitude : array_like, shape (4,)
+            Unit quaternion (x, y, z, w).
+        inertia : InertiaTensor or array_like, optional
+            Of the body, for a torque that depends on it [kg m^2].
+
+        Returns
+        -------
+        ndarray, shape (3,)
+            In body axes [N m].
+        """
     @property
     def mean_motion(self) -> typing.Any:
         ...
@@ -188,6 +250,26 @@ class Damping:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
         ...
+    def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Return the torque at one state.
+
+        Parameters
+        ----------
+        t : float
+            Time [s].
+        omega : array_like, shape (3,)
+            Rates in body axes [rad/s].
+        attitude : array_like, shape (4,)
+            Unit quaternion (x, y, z, w).
+        inertia : InertiaTensor or array_like, optional
+            Of the body, for a torque that depends on it [kg m^2].
+
+        Returns
+        -------
+        ndarray, shape (3,)
+            In body axes [N m].
+        """
     @property
     def matrix(self) -> typing.Any:
         ...
@@ -232,9 +314,124 @@ class AngularDamping:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
         ...
+    def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Return the torque at one state.
+
+        Parameters
+        ----------
+        t : float
+            Time [s].
+        omega : array_like, shape (3,)
+            Rates in body axes [rad/s].
+        attitude : array_like, shape (4,)
+            Unit quaternion (x, y, z, w).
+        inertia : InertiaTensor or array_like, optional
+            Of the body, for a torque that depends on it [kg m^2].
+
+        Returns
+        -------
+        ndarray, shape (3,)
+            In body axes [N m].
+        """
     @property
     def rate(self) -> typing.Any:
         ...
+    @property
+    def traits(self) -> dict[str, typing.Any]:
+        """
+        dict: uses_time, uses_attitude, uses_rates, has_potential.
+        """
+class Formula:
+    """
+    Formula(function=None, *, text=None, let=None, recognise=True, **parameters)
+
+    A torque of your own as a formula: traced once from a Python function, or written as text.
+
+    The function is called when the torque is made, on symbols. No Python runs while a motion is computed. A formula that is
+    a torque of this module (a constant, damping, gravity) is replaced by it when it is solved.
+
+    Parameters
+    ----------
+    function : callable, optional
+        ``function(t, omega, attitude, p)`` returns the torque in body axes, shape (3,) [N m]. omega is in body axes, shape
+        (3,) [rad/s]. attitude is the unit quaternion (x, y, z, w), shape (4,). ``p.kd`` is the parameter kd. The function
+        uses NumPy and `polhode.formula`.
+    text : str, optional
+        The same as text: ``"-kp * attitude.xyz * attitude.w - kd * omega"``. It is given in place of a function.
+    let : dict of str, optional
+        Names for shared parts of a text, in order.
+    recognise : bool
+        Whether the formula may be replaced by torques of this module.
+    **parameters : float or array_like, shape (n,)
+        Named numbers of the formula.
+
+    Raises
+    ------
+    InvalidInput
+        For a text that is no formula. For a function that cannot be traced: the message names the line and what to write
+        instead. For a function whose numbers are not those of its formula. For a torque of another shape than (3,).
+
+    See Also
+    --------
+    polhode.torques.Custom : a function that cannot be traced.
+    """
+    def __eq__(self, arg0: typing.Any) -> bool:
+        ...
+    def __getstate__(self) -> tuple[typing.Any, ...]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, function: typing.Any = None, *, text: typing.Any = None, let: typing.Any = None, recognise: typing.Any = True, **kwargs) -> None:
+        ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
+        ...
+    def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Return the torque at one state.
+
+        Parameters
+        ----------
+        t : float
+            Time [s].
+        omega : array_like, shape (3,)
+            Rates in body axes [rad/s].
+        attitude : array_like, shape (4,)
+            Unit quaternion (x, y, z, w).
+        inertia : InertiaTensor or array_like, optional
+            Of the body, for a torque that depends on it [kg m^2].
+
+        Returns
+        -------
+        ndarray, shape (3,)
+            In body axes [N m].
+        """
+    @property
+    def let(self) -> dict[str, typing.Any]:
+        """
+        dict: names for shared parts of the text.
+        """
+    @property
+    def parameters(self) -> dict[str, typing.Any]:
+        """
+        dict: the named numbers, sorted by name.
+        """
+    @property
+    def recognise(self) -> bool:
+        """
+        bool: whether it may be replaced.
+        """
+    @property
+    def text(self) -> str:
+        """
+        str: the formula as text.
+        """
     @property
     def traits(self) -> dict[str, typing.Any]:
         """
@@ -286,6 +483,26 @@ class Custom:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
         ...
+    def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Return the torque at one state.
+
+        Parameters
+        ----------
+        t : float
+            Time [s].
+        omega : array_like, shape (3,)
+            Rates in body axes [rad/s].
+        attitude : array_like, shape (4,)
+            Unit quaternion (x, y, z, w).
+        inertia : InertiaTensor or array_like, optional
+            Of the body, for a torque that depends on it [kg m^2].
+
+        Returns
+        -------
+        ndarray, shape (3,)
+            In body axes [N m].
+        """
     @property
     def breaks(self) -> tuple[typing.Any, ...]:
         ...
@@ -333,6 +550,26 @@ class During:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
         ...
+    def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Return the torque at one state.
+
+        Parameters
+        ----------
+        t : float
+            Time [s].
+        omega : array_like, shape (3,)
+            Rates in body axes [rad/s].
+        attitude : array_like, shape (4,)
+            Unit quaternion (x, y, z, w).
+        inertia : InertiaTensor or array_like, optional
+            Of the body, for a torque that depends on it [kg m^2].
+
+        Returns
+        -------
+        ndarray, shape (3,)
+            In body axes [N m].
+        """
     @property
     def torque(self) -> typing.Any:
         """

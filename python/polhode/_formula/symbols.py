@@ -22,6 +22,11 @@ class Condition:
     def __init__(self, items: Any) -> None:
         self._items = items
 
+    def __array_function__(self, function: Any, types: Any, args: Any, kwargs: Any) -> Any:
+        if function is not np.where:
+            refuse(f"np.{function.__name__} of a condition", "write np.where(condition, a, b)")
+        return _where(*args, **kwargs)
+
     def __bool__(self) -> bool:
         refuse("the truth of a condition, as in if, and, min() or max()", _BOOL)
 
@@ -44,6 +49,8 @@ def numbers_of(value: Any) -> Any:
     for index, item in np.ndenumerate(array):
         if isinstance(item, Symbol) and item.ndim == 0:
             items[index] = item._items[()]
+        elif isinstance(item, _core.Number):
+            items[index] = item
         elif isinstance(item, (int, float, np.floating, np.integer)):
             items[index] = float(item)
         else:

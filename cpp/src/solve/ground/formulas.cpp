@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -63,6 +64,32 @@ std::string show(const KnownTorque& known) {
   return "GravityGradient(" + to_text(known.rate) + ", " + to_text(known.phase) + ")";
 }
 
+/// All numbers of a formula, without signs.
+std::vector<double> list_constants(const formula::Program& program) {
+  std::vector<double> found;
+  const auto add = [&](const formula::Form& form) {
+    found.push_back(std::abs(form.constant));
+    for (const formula::Term& term : form.terms) found.push_back(std::abs(term.factor));
+  };
+  for (int i = 0; i < program.graph.size(); ++i) {
+    if (program.graph[i].op == formula::Op::linear) add(program.graph.linear(i));
+    if (program.graph[i].op == formula::Op::constant) found.push_back(std::abs(program.graph[i].constant));
+  }
+  for (const formula::Form& output : program.outputs) add(output);
+  return found;
+}
+
+/// Expansion rounds coefficients. One that is a number of the formula within that rounding is that number.
+void restore(const std::vector<double>& constants, double& x) {
+  constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
+  for (const double constant : constants) {
+    if (std::abs(std::abs(x) - constant) <= rounding * constant) {
+      x = std::copysign(constant, x);
+      return;
+    }
+  }
+}
+
 /// The torques of the list whose sum a formula is; none if it is no such sum.
 std::optional<std::vector<KnownTorque>> recognise(const Formula& formula, const Scene& scene) {
   if (!formula.recognise()) return std::nullopt;
@@ -70,7 +97,11 @@ std::optional<std::vector<KnownTorque>> recognise(const Formula& formula, const 
   if (!found.is_whole) return std::nullopt;
   // Free rotors take inertia from the body that moves, so multiples of either tensor are written as matrices there.
   const bool carried = scene.given_inertia_B().matrix() != scene.inertia_B().matrix();
+  const std::vector<double> constants = list_constants(formula.program());
   for (KnownTorque& part : found.parts) {
+    for (double& x : part.vector) restore(constants, x);
+    for (double& x : part.matrix.reshaped()) restore(constants, x);
+    restore(constants, part.rate), restore(constants, part.phase);
     if (carried && part.kind == KnownTorque::Kind::gravity_gradient) return std::nullopt;
     if (!carried || part.kind != KnownTorque::Kind::angular_damping) continue;
     part.kind = KnownTorque::Kind::damping;
