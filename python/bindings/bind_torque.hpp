@@ -105,7 +105,8 @@ void bind_traits(py::class_<T>& type) {
 inline bool uses_inertia(const AnyTorque& torque) {
   const auto* during = std::get_if<torques::During>(&torque);
   const auto is_one = [](const auto& any) {
-    return std::holds_alternative<torques::GravityGradient>(any) || std::holds_alternative<torques::AngularDamping>(any);
+    return std::holds_alternative<torques::GravityGradient>(any) ||
+           std::holds_alternative<torques::AngularDamping>(any);
   };
   return during != nullptr ? is_one(during->torque()) : is_one(torque);
 }

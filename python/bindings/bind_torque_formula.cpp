@@ -37,7 +37,7 @@ class Operands {
     if (!py::isinstance<Traced>(value)) return Expr(to_real(value, "a number of the formula"));
     const Traced& traced = value.cast<const Traced&>();
     if (!traced.graph) return traced.expr;   // an operation on numbers alone
-    if (graph_ && graph_ != traced.graph) throw InvalidInput("Formula", "one of symbols of one trace", "symbols of two");
+    if (graph_ && graph_ != traced.graph) throw InvalidInput("Formula", "of the symbols of one trace", "those of two");
     graph_ = traced.graph;
     return traced.expr;
   }
@@ -131,8 +131,8 @@ Formula make_formula(const py::object& function, const py::object& text, const p
                      const py::object& recognise, const py::kwargs& parameters) {
   const bool may = to_choice(recognise);
   if (parameters.contains("states")) {
-    throw InvalidInput("Formula.states", "left out", "it", "states of a formula are not supported yet; keep them in the "
-                       "function of a Custom torque");
+    throw InvalidInput("Formula.states", "left out", "it",
+                       "states of a formula are not supported yet; keep them in the function of a Custom torque");
   }
   if (function.is_none() == text.is_none())
     throw InvalidInput("Formula", "given a function or text=, one of them", function.is_none() ? "neither" : "both");
@@ -154,7 +154,8 @@ py::tuple get_state(const Formula& formula) {
   const Text& text = formula.text();
   py::list let, parameters;
   for (const auto& [name, shared] : text.let) let.append(py::make_tuple(name, shared));
-  for (const Input& input : text.parameters) parameters.append(py::make_tuple(input.name, py::tuple(py::cast(input.values))));
+  for (const Input& input : text.parameters)
+    parameters.append(py::make_tuple(input.name, py::tuple(py::cast(input.values))));
   return py::make_tuple(text.torque, py::tuple(let), py::tuple(parameters), formula.recognise());
 }
 
@@ -238,7 +239,7 @@ void bind_operator(py::module_& m, const char* name, Function function) {
 void bind_symbols(py::module_& m) {
   py::class_<Text>(m, "Text").def("__eq__", [](const Text& a, const py::object& b) {
     return py::isinstance<Text>(b) && a == b.cast<const Text&>();
-  });
+  }).def("__hash__", [](const Text& text) { return py::hash(py::str(text.torque)); });
   py::class_<Traced>(m, "Number").def_property_readonly("constant", [](const Traced& traced) -> py::object {
     if (!traced.expr.form().is_constant()) return py::none();
     return py::float_(traced.expr.form().constant);
@@ -328,7 +329,9 @@ void bind_torque_formula(py::module_& m) {
     return py::isinstance<Formula>(b) && a == b.cast<const Formula&>();
   });
   type.def("__hash__", [](const Formula& formula) { return py::hash(get_state(formula)); });
-  type.def(py::pickle(&get_state, [](const py::tuple& state) { return from_state("Formula", state, 4, &from_state_of); }));
+  type.def(py::pickle(&get_state, [](const py::tuple& state) {
+    return from_state("Formula", state, 4, &from_state_of);
+  }));
 }
 
 void bind_formula_symbols(py::module_& m) {

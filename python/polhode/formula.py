@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from ._core import InvalidInput
 from ._core import symbols as _core
 from ._formula import symbols as _symbols
 
@@ -13,7 +14,31 @@ __all__ = ["clip", "norm", "to_body", "to_space", "where"]
 
 
 def _is_traced(*values: Any) -> bool:
-    return any(isinstance(v, _symbols.Symbol) or np.asarray(v).dtype == object for v in values)
+    for value in values:
+        if isinstance(value, _symbols.Symbol):
+            return True
+        try:
+            items = np.asarray(value)
+        except Exception:   # refused where it is used
+            continue
+        if items.dtype == object and any(isinstance(item, _symbols.Symbol) for item in items.ravel()):
+            return True
+    return False
+
+
+def _numbers(value: Any, name: str, *shape: int) -> Any:
+    try:
+        array = np.asarray(value, float)
+    except Exception:
+        raise InvalidInput(f"{name}: must be real numbers, got {type(value).__name__}") from None
+    if shape and array.shape != shape:
+        raise InvalidInput(f"{name}: must have shape {shape}, got {array.shape}")
+    return array
+
+
+def _require(value: Any, name: str, count: int) -> None:
+    if _symbols.numbers_of(value).shape != (count,):
+        raise InvalidInput(f"{name}: must have shape ({count},), got {_symbols.numbers_of(value).shape}")
 
 
 def _rotation(q: Any) -> list[list[Any]]:
@@ -39,9 +64,11 @@ def to_body(attitude: Any, v: Any) -> Any:
         In body axes.
     """
     if _is_traced(attitude, v):
+        _require(attitude, "attitude", 4)
+        _require(v, "v", 3)
         q, items = _symbols.numbers_of(attitude), _symbols.numbers_of(v)
-        return np.stack([_symbols.Symbol(item) for item in _core.to_body(list(q), list(items))])
-    R, vector = _rotation(np.asarray(attitude, float)), np.asarray(v, float)
+        return _symbols.joined(_core.to_body(list(q), list(items)))
+    R, vector = _rotation(_numbers(attitude, "attitude", 4)), _numbers(v, "v", 3)
     return np.array([sum(R[i][j] * vector[i] for i in range(3)) for j in range(3)])
 
 
@@ -60,10 +87,13 @@ def to_space(attitude: Any, v: Any) -> Any:
     ndarray or symbols, shape (3,)
         In space axes.
     """
-    traced = _is_traced(attitude, v)
-    R = _rotation(attitude if traced else np.asarray(attitude, float))
+    if not _is_traced(attitude, v):
+        attitude, v = _numbers(attitude, "attitude", 4), _numbers(v, "v", 3)
+    _require(attitude, "attitude", 4)
+    _require(v, "v", 3)
+    R = _rotation(attitude)
     rows = [sum(R[i][j] * v[j] for j in range(3)) for i in range(3)]
-    return np.stack(rows)
+    return np.array(rows) if not _is_traced(*rows) else _symbols.joined([_symbols.numbers_of(row)[()] for row in rows])
 
 
 def norm(v: Any, smooth: float = 0.0) -> Any:
@@ -83,7 +113,7 @@ def norm(v: Any, smooth: float = 0.0) -> Any:
     """
     if _is_traced(v):
         return _symbols.norm(v, smooth)
-    vector = np.asarray(v, float)
+    vector, smooth = _numbers(v, "v").ravel(), float(_numbers([smooth], "smooth", 1)[0])
     return float(np.sqrt(vector @ vector + smooth * smooth))
 
 
@@ -104,7 +134,10 @@ def where(condition: Any, a: Any, b: Any) -> Any:
     """
     if isinstance(condition, _symbols.Condition) or _is_traced(a, b):
         return _symbols._where(condition, a, b)
-    return np.where(condition, a, b)
+    try:
+        return np.where(condition, a, b)
+    except Exception as error:
+        raise InvalidInput(f"where: must have arrays that fit, got what numpy.where refuses: {error}") from None
 
 
 def clip(a: Any, low: Any, high: Any) -> Any:
@@ -120,4 +153,9 @@ def clip(a: Any, low: Any, high: Any) -> Any:
     ndarray or symbols
         min(max(a, low), high).
     """
-    return _symbols._clip(a, low, high) if _is_traced(a, low, high) else np.clip(a, low, high)
+    if _is_traced(a, low, high):
+        return _symbols._clip(a, low, high)
+    try:
+        return np.clip(a, low, high)
+    except Exception as error:
+        raise InvalidInput(f"clip: must have arrays that fit, got what numpy.clip refuses: {error}") from None

@@ -267,7 +267,7 @@ def test_every_public_name(name):
     SMOKE[name]()   # a KeyError: a new name wants its smoke test here
 
 
-@pytest.mark.parametrize("module", ["elliptic", "inertia", "shapes", "torques"])
+@pytest.mark.parametrize("module", ["elliptic", "formula", "inertia", "shapes", "torques"])
 def test_every_public_module_has_what_it_lists(module):
     names = importlib.import_module(f"polhode.{module}").__all__
     assert names and all(getattr(getattr(ph, module), name).__doc__ for name in names)
@@ -278,6 +278,9 @@ def test_shapes_torques_and_elliptic_functions():
     assert np.allclose(ph.elliptic.K(0.5), 1.8540746773013719)   # Abramowitz and Stegun, table 17.1
     fired = ph.torques.During(ph.torques.Constant((0, 0, 0.52)), [(0.25, 0.75)])
     assert np.allclose(ph.solve(scene(torques=[fired], omega=(0, 0, 0)), 1e-9).omega[:, 2], (0, 0, 0.25, 0.5, 0.5))
+    braked = ph.torques.Formula(lambda t, omega, attitude, p: -p.c * omega / ph.formula.norm(omega), c=0.1)
+    assert np.allclose(braked.value(0, (0, 0, 2), (0, 0, 0, 1)), (0, 0, -0.1))
+    assert np.allclose(scene(torques=[braked]).torque(0, (0, 0, 2), (0, 0, 0, 1)), (0, 0, -0.1))
     pushed = ph.solve(scene(torques=[ph.torques.Constant((0, 0, 0.52)), ph.torques.Damping((0, 0, 0))],
                             omega=(0, 0, 0)))
     assert np.allclose(pushed.omega[:, 2], TIMES)
@@ -305,7 +308,7 @@ def test_a_late_module_is_there_when_it_is_asked_for(name):
 
 
 def test_all_names_what_is_meant_to_be_public():
-    modules = {"elliptic", "inertia", "measured", "mesh", "shapes", "torques"}
+    modules = {"elliptic", "formula", "inertia", "measured", "mesh", "shapes", "torques"}
     assert set(ph.__all__) == modules | set(SMOKE) and set(ph.__all__) <= set(dir(ph))
     with pytest.raises(AttributeError, match="module 'polhode' has no attribute 'nonsense'"):
         ph.nonsense

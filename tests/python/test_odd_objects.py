@@ -134,6 +134,15 @@ DOORS = {
     "torques.During": (T.During, dict(torque=T.Constant(W), windows=[(0, 1)])),
     "torques.Constant": (T.Constant, dict(torque=W, frame="body")),
     "torques.Gravity": (T.Gravity, dict(weight=1.0, arm=W)), "torques.Custom": (T.Custom, dict(function=len)),
+    "torques.Formula": (T.Formula, dict(text="k * omega", let={"u": "k * t"}, recognise=True, k=1.0)),
+    "torques.Formula, function": (T.Formula, dict(function=lambda t, omega, attitude, p: omega)),
+    "formula.to_body": (ph.formula.to_body, dict(attitude=Q, v=W)),
+    "formula.to_space": (ph.formula.to_space, dict(attitude=Q, v=W)),
+    "formula.norm": (ph.formula.norm, dict(v=W, smooth=0.0)),
+    "formula.where": (ph.formula.where, dict(condition=True, a=W, b=W)),
+    "formula.clip": (ph.formula.clip, dict(a=W, low=0.0, high=1.0)),
+    "Scene.torque": (SCENE.torque, dict(t=0.0, omega=W, attitude=Q)),
+    "torques.Gravity.value": (T.Gravity(1.0, W).value, dict(t=0.0, omega=W, attitude=Q, inertia=None)),
     "torques.Damping": (T.Damping, dict(matrix=np.eye(3))), "load": (ph.load, dict(path="x.npz")),
 }
 # What takes nothing but self, a file, or the user's own data is left out; the rest must stand above.

@@ -54,7 +54,8 @@ SMOOTH = [case for case in CASES if case[0] is not limited]
 
 
 def scene(torque, **changes):
-    return ph.Scene(**{"inertia": INERTIA, "omega": OMEGA, "attitude": Q, "torques": [torque], "times": TIMES, **changes})
+    given = {"inertia": INERTIA, "omega": OMEGA, "attitude": Q, "torques": [torque], "times": TIMES}
+    return ph.Scene(**{**given, **changes})
 
 
 def arrays(parameters):
@@ -203,10 +204,13 @@ def test_what_cannot_be_traced_names_the_line(function, words):
 
 
 @pytest.mark.parametrize(("arguments", "words"), [
-    (dict(), "neither"), (dict(function=pd, text="omega"), "both"), (dict(text=3), "text"), (dict(text="k * omega"), "k"),
-    (dict(text="omega.x"), "3|component"), (dict(text="omega", let=[1]), "let"), (dict(text="omega", states=1), "states"),
+    (dict(), "neither"), (dict(function=pd, text="omega"), "both"), (dict(text=3), "text"),
+    (dict(text="k * omega"), "k"),
+    (dict(text="omega.x"), "3|component"), (dict(text="omega", let=[1]), "let"),
+    (dict(text="omega", states=1), "states"),
     (dict(text="omega", recognise=1), "recognise"), (dict(text="omega", k="a"), "Formula.k"),
-    (dict(text="omega", k=np.nan), "Formula.k"), (dict(text="omega", k=np.eye(3)), "rows"), (dict(function=3), "callable"),
+    (dict(text="omega", k=np.nan), "Formula.k"), (dict(text="omega", k=np.eye(3)), "rows"),
+    (dict(function=3), "callable"), (dict(function=len), "callable as"),
     (dict(text="omega", omega=1.0), "omega"), (dict(text="(" * 5000 + "omega" + ")" * 5000), "10000|depth"),
     (dict(text="__import__('os')"), "column"), (dict(text="omega\x00"), "column"), (dict(text="\ud800"), "UTF-8"),
     (dict(text="omega / 0"), "0|finite"), (dict(text="1e999 * omega"), "float64"), (dict(function=pd, let={}), "let"),
@@ -229,7 +233,8 @@ def test_formulas_in_motions_windows_rotors_and_many(tmp_path):
     given = scene([During(torque, [(1, 3)])][0], rotors=[rotor])
     motion = ph.solve(given, accuracy=1e-8, dense=True)
     assert len(motion.plan.pieces) == 3 and motion.success
-    same = ph.solve(given.replace(torques=[During(Custom(lambda t, w, q: torque.value(t, w, q)), [(1, 3)])]), accuracy=1e-8)
+    own = During(Custom(lambda t, w, q: torque.value(t, w, q)), [(1, 3)])
+    same = ph.solve(given.replace(torques=[own]), accuracy=1e-8)
     np.testing.assert_allclose(motion.omega, same.omega, atol=1e-8)
     event = ph.Event(lambda t, omega, attitude: omega[2] - 0.9)
     assert len(ph.solve(scene(torque), 1e-8, events=[event]).events) >= 0

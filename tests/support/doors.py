@@ -3,8 +3,8 @@
 import importlib
 import types
 
-MODULES = ("polhode", *(f"polhode.{name}" for name in ("elliptic", "inertia", "measured", "mesh", "shapes", "torques",
-                                                      "recipe", "report", "schema", "charts", "atlas")))
+MODULES = ("polhode", *(f"polhode.{name}" for name in ("elliptic", "formula", "inertia", "measured", "mesh", "shapes",
+                                                      "torques", "recipe", "report", "schema", "charts", "atlas")))
 
 
 def public():

@@ -55,6 +55,7 @@ def torque_signatures(text: str) -> str:
         head, body = text[:start], text[start:]
         text = head + body.replace("(self, *args, **kwargs)", f"({', '.join(['self', *parameters])})",
                                    1) if parameters else text
+    text = text.replace("**kwargs) -> None", "**parameters: numpy.typing.ArrayLike) -> None")   # of Formula
     return text.replace("import typing\n", "import numpy\nimport numpy.typing\nimport typing\n",
                         1) if "numpy." in text else text
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import collections.abc
 import typing
 class Text:
-    __hash__: typing.ClassVar[None] = None
     def __eq__(self, arg0: typing.Any) -> bool:
+        ...
+    def __hash__(self) -> int:
         ...
 class Number:
     @property

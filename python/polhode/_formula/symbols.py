@@ -10,6 +10,7 @@ import numpy as np
 from .._core import symbols as _core
 from .places import refuse
 
+_np: Any = np   # NumPy with symbols, of which its type hints know nothing
 _BOOL = ("write np.where(condition, a, b), np.clip, np.minimum or np.maximum, and np.stack([...]) for np.array([...]) "
          "within these")
 
@@ -33,7 +34,7 @@ class Condition:
     def __and__(self, other: Any) -> Any:
         refuse("a combination of conditions", "write one np.where within another")
 
-    __or__ = __rand__ = __ror__ = __xor__ = __invert__ = __and__   # type: ignore[assignment]
+    __or__ = __rand__ = __ror__ = __xor__ = __invert__ = __and__
 
 
 def numbers_of(value: Any) -> Any:
@@ -56,6 +57,13 @@ def numbers_of(value: Any) -> Any:
         else:
             refuse(f"an array that holds {type(item).__name__}", "compute with arrays of numbers")
     return items
+
+
+def joined(items: list[Any]) -> Symbol:
+    """Return a vector of numbers of the core."""
+    box = np.empty(len(items), object)
+    box[:] = items
+    return Symbol(box)
 
 
 def _each(function: Callable[..., Any], *values: Any) -> Symbol:
@@ -151,8 +159,8 @@ def _clip(a: Any, a_min: Any = None, a_max: Any = None, **limits: Any) -> Symbol
         refuse(f"np.clip with {', '.join(limits)}", "write np.clip(a, low, high)")
     made = a if isinstance(a, Symbol) else Symbol(numbers_of(a))
     if low is not None:
-        made = np.maximum(made, low)
-    return made if high is None else np.minimum(made, high)
+        made = _np.maximum(made, low)
+    return made if high is None else _np.minimum(made, high)
 
 
 def _cross(a: Any, b: Any) -> Symbol:
@@ -259,70 +267,70 @@ class Symbol:
         refuse("a number from a symbol, as by float(), math.sin() or an assignment into an array of floats",
                "write np.sin and the like, and np.stack([...]) of components")
 
-    __int__ = __index__ = __complex__ = __float__   # type: ignore[assignment]
+    __int__ = __index__ = __complex__ = __float__
 
     def __add__(self, other: Any) -> Any:
-        return np.add(self, other)
+        return _np.add(self, other)
 
     def __radd__(self, other: Any) -> Any:
-        return np.add(other, self)
+        return _np.add(other, self)
 
     def __sub__(self, other: Any) -> Any:
-        return np.subtract(self, other)
+        return _np.subtract(self, other)
 
     def __rsub__(self, other: Any) -> Any:
-        return np.subtract(other, self)
+        return _np.subtract(other, self)
 
     def __mul__(self, other: Any) -> Any:
-        return np.multiply(self, other)
+        return _np.multiply(self, other)
 
     def __rmul__(self, other: Any) -> Any:
-        return np.multiply(other, self)
+        return _np.multiply(other, self)
 
     def __truediv__(self, other: Any) -> Any:
-        return np.divide(self, other)
+        return _np.divide(self, other)
 
     def __rtruediv__(self, other: Any) -> Any:
-        return np.divide(other, self)
+        return _np.divide(other, self)
 
     def __pow__(self, other: Any) -> Any:
-        return np.power(self, other)
+        return _np.power(self, other)
 
     def __rpow__(self, other: Any) -> Any:
-        return np.power(other, self)
+        return _np.power(other, self)
 
     def __matmul__(self, other: Any) -> Any:
-        return np.matmul(self, other)
+        return _np.matmul(self, other)
 
     def __rmatmul__(self, other: Any) -> Any:
-        return np.matmul(other, self)
+        return _np.matmul(other, self)
 
     def __neg__(self) -> Any:
-        return np.negative(self)
+        return _np.negative(self)
 
     def __pos__(self) -> Any:
         return self
 
     def __abs__(self) -> Any:
-        return np.absolute(self)
+        return _np.absolute(self)
 
     def __lt__(self, other: Any) -> Any:
-        return np.less(self, other)
+        return _np.less(self, other)
 
     def __gt__(self, other: Any) -> Any:
-        return np.greater(self, other)
+        return _np.greater(self, other)
 
     def __le__(self, other: Any) -> Any:
-        return np.less_equal(self, other)
+        return _np.less_equal(self, other)
 
     def __ge__(self, other: Any) -> Any:
-        return np.greater_equal(self, other)
+        return _np.greater_equal(self, other)
 
     def __eq__(self, other: object) -> Any:
-        return np.equal(self, other)   # type: ignore[call-overload]
+        return _np.equal(self, other)
 
     def __ne__(self, other: object) -> Any:
-        return np.not_equal(self, other)   # type: ignore[call-overload]
+        return _np.not_equal(self, other)
 
     def sum(self, axis: Any = None) -> Any:
         return _total(self, axis)
@@ -335,28 +343,28 @@ class Symbol:
 
     # What NumPy calls on the entries of an array that np.array made of symbols.
     def sqrt(self) -> Any:
-        return np.sqrt(self)
+        return _np.sqrt(self)
 
     def exp(self) -> Any:
-        return np.exp(self)
+        return _np.exp(self)
 
     def log(self) -> Any:
-        return np.log(self)
+        return _np.log(self)
 
     def sin(self) -> Any:
-        return np.sin(self)
+        return _np.sin(self)
 
     def cos(self) -> Any:
-        return np.cos(self)
+        return _np.cos(self)
 
     def tan(self) -> Any:
-        return np.tan(self)
+        return _np.tan(self)
 
     def tanh(self) -> Any:
-        return np.tanh(self)
+        return _np.tanh(self)
 
     def arctan(self) -> Any:
-        return np.arctan(self)
+        return _np.arctan(self)
 
 
 class SymbolArray(Symbol):

@@ -79,8 +79,9 @@ def _torque_models() -> list[Any]:
 def _formula_model() -> Any:
     """Return the model of a torque that is a formula."""
     kind = kinds()
+    values: Any = Union[kind.number, kind.numbers]
     return model("Formula", kind=(Literal["formula"], ...), torque=(str, ...), let=(dict[str, str], {}),
-                 parameters=(dict[str, kind.number | kind.numbers], {}), recognise=(bool, True),
+                 parameters=(dict[str, values], {}), recognise=(bool, True),
                  during=(kind.windows | None, None))
 
 
@@ -117,7 +118,7 @@ def _torque(entry: Any) -> Any:
     if entry.kind == "formula":
         reserved = {"function", "text", "let", "recognise"} & set(values["parameters"])
         if reserved:
-            raise InvalidInput(f"torques: formula: must have parameters of other names than {', '.join(sorted(reserved))}")
+            raise InvalidInput(f"torques: formula: must not name a parameter {', '.join(sorted(reserved))}")
         values = {"text": values.pop("torque"), **values.pop("parameters"), **values}
     torque = getattr(torques, record["name"])(**values)
     return torque if entry.during is None else torques.During(torque, entry.during)

@@ -21,7 +21,7 @@ def differentiate(scene: Scene, names: str | Sequence[str], accuracy: float, sid
     """
     if not is_one_of(side, ("space", "body")):
         raise InvalidInput(f"side: must be 'space' or 'body', got {side!r}")
-    groups = to_names(names) if names and isinstance(names, (str, Sequence)) else ()
+    groups = to_names(names) if isinstance(names, (str, Sequence)) and names else ()
     if not groups or not all(isinstance(name, str) for name in groups):
         raise InvalidInput("sensitivity: must be names such as 'omega', 'inertia' or 'torques.0.weight', "
                            f"got {names!r}")

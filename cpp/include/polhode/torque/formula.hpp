@@ -13,7 +13,7 @@ namespace polhode::torques {
 
 /// A user's own torque as a formula: from text, or traced from a generic callable. Copies share the formula.
 ///
-/// What it depends on follows from its structure. solve() replaces a formula that is a torque of the list by that torque.
+/// What it depends on follows from its structure. solve() replaces a formula that is a torque of the list by it.
 class Formula {
  public:
   /// @param recognise  whether solve() may replace it
@@ -21,7 +21,8 @@ class Formula {
   explicit Formula(const formula::Text& text, bool recognise = true);
   explicit Formula(const formula::Program& program, bool recognise = true);
 
-  /// From a generic callable, called once: `[](const auto& in) { return in.omega * -in.p("kd"); }`. See TorqueArguments.
+  /// From a generic callable, called once: `[](const auto& in) { return in.omega * -in.p("kd"); }`, where `in` is a
+  /// formula::TorqueArguments.
   template <class Callable>
   static Formula from(const Callable& callable, std::vector<formula::Input> parameters = {}, bool recognise = true) {
     return Formula(formula::trace(callable, std::move(parameters)), recognise);

@@ -138,7 +138,7 @@ Scene resolve_formulas(const Scene& scene, AsCustom as_custom, std::vector<std::
       else parts.torques.push_back(part);
       names.append(k > 0 ? " and " : "").append(show((*known)[k]));
     }
-    if (known->empty()) parts.torques[i] = with_window(torque, torques::Constant(Vector3d::Zero(), torques::Constant::Frame::body));
+    if (known->empty()) parts.torques[i] = with_window(torque, torques::Constant(Vector3d::Zero()));
     if (recognised != nullptr)
       recognised->push_back("The formula of torques[" + std::to_string(i) + "] is " +
                             (known->empty() ? "zero in every state." : names + "."));
