@@ -141,7 +141,7 @@ DOORS = {
     "formula.norm": (ph.formula.norm, dict(v=W, smooth=0.0)),
     "formula.where": (ph.formula.where, dict(condition=True, a=W, b=W)),
     "formula.clip": (ph.formula.clip, dict(a=W, low=0.0, high=1.0)),
-    "Scene.torque": (SCENE.torque, dict(t=0.0, omega=W, attitude=Q)),
+    "Scene, torque": (SCENE.torque, dict(t=0.0, omega=W, attitude=Q)),
     "torques.Gravity.value": (T.Gravity(1.0, W).value, dict(t=0.0, omega=W, attitude=Q, inertia=None)),
     "torques.Damping": (T.Damping, dict(matrix=np.eye(3))), "load": (ph.load, dict(path="x.npz")),
 }

@@ -64,7 +64,7 @@ def trace(function: Callable[..., Any], parameters: dict[str, Any]) -> Any:
     first, second = _call(function, parameters), _call(function, parameters)
     if first != second:
         raise InvalidInput("Formula.function: must give the same formula each time, got two that differ; random "
-                           "numbers and hidden states cannot be traced: draw them before, or use polhode.torques.Custom")
+                           "numbers and hidden states cannot be traced: draw before, or use polhode.torques.Custom")
     return first
 
 
