@@ -949,6 +949,167 @@ class DampedFree:
         """
         Bound on the angle of rotation from t = 0 on, abs(omega) / c [rad]; infinite for c <= 0.
         """
+class Pendulum:
+    """
+    The plane pendulum: any body on a pivot under gravity that swings about one body axis.
+
+    In closed form at any time and at every energy: swings of any size, rotation over the top, the separatrix between them,
+    rest. The axis may be any of the three body axes. It must be principal, horizontal and at right angles to the arm, and
+    omega must lie along it. These conditions are tested exactly. The error against the exact motion of the same float64
+    input is a few units of rounding at every time.
+
+    Parameters
+    ----------
+    inertia : InertiaTensor, or array_like of shape (3,)
+        About the pivot, in body axes [kg m^2]; three numbers are principal moments in the given axes, in any order.
+    weight : float
+        m g [N]. Gravity points along -z of space.
+    arm : array_like, shape (3,)
+        From the pivot to the centre of mass, in body axes [m].
+    omega : array_like, shape (3,)
+        Angular velocity at t = 0, in body axes [rad/s].
+    attitude : array_like of shape (4,), or a Rotation
+        Body to space at t = 0, (x, y, z, w).
+
+    Raises
+    ------
+    InvalidInput
+        Not finite, a body no mass makes, an attitude that is not unit, or no plane pendulum, with the reason.
+
+    Notes
+    -----
+    E. T. Whittaker, "Analytical Dynamics" (1937), section 44; see docs/pendulum.md.
+    """
+    @staticmethod
+    def _repr_html_(form: typing.Any) -> str:
+        """
+        Return the start and the properties of a closed form.
+        """
+    def __eq__(self: Pendulum, arg0: object) -> bool:
+        ...
+    def __getstate__(self: Pendulum) -> tuple[InertiaTensor, float, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        ...
+    def __hash__(self: Pendulum) -> int:
+        ...
+    def __init__(self: Pendulum, inertia: typing.Any, weight: typing.Any, arm: typing.Any, omega: typing.Any, attitude: typing.Any = (0, 0, 0, 1)) -> None:
+        ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
+    def __repr__(self: Pendulum) -> str:
+        ...
+    def __setstate__(self: Pendulum, arg0: tuple[typing.Any, ...]) -> None:
+        ...
+    def animate(self, t: typing.Any = None, *, body: typing.Any = 'box', axis: typing.Any = None) -> polhode._wings.Film:
+        """
+        Make a film of the motion: the body turns, beside the polhode on the ellipsoid of its energy.
+
+        Parameters
+        ----------
+        t : array_like, shape (n,), or float, optional
+            As for `plot`: the times, or the end of the span [s].
+        body, axis
+            As for :meth:`Motion.animate`.
+
+        Returns
+        -------
+        Film
+            A notebook plays it; ``.save(path)`` writes .html, .gif or .mp4.
+
+        Raises
+        ------
+        InvalidInput
+            As :meth:`Motion.animate`.
+        """
+    def at(self: Pendulum, t: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        """
+        Angular velocity and attitude at the given times.
+
+        Parameters
+        ----------
+        t : array_like, any shape
+            Times [s], negative ones too, up to 1e25 rad.
+
+        Returns
+        -------
+        omega : ndarray, shape (..., 3)
+            In body axes [rad/s].
+        attitude : ndarray, shape (..., 4)
+            Body to space, unit, (x, y, z, w).
+
+        Raises
+        ------
+        InvalidInput
+            A time that is not finite, or too long for its phase to have digits.
+        """
+    def plot(self, t: typing.Any = None, *parts: str, ax: matplotlib.axes.Axes | None = None, marks: typing.Any = None, dark: bool = False) -> matplotlib.figure.Figure:
+        """
+        Draw the motion.
+
+        Parameters
+        ----------
+        t : array_like, shape (n,), or float, optional
+            The times, or the end of the span that starts at 0 [s]. By default two periods, or ten turns where a period is
+            endless or long. A part's name may stand in its place.
+        *parts, ax, marks, dark
+            As for :meth:`Motion.plot`.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            A notebook shows it.
+
+        Raises
+        ------
+        InvalidInput
+            As :meth:`Motion.plot`.
+        """
+    @property
+    def arm(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3,) from the pivot to the centre of mass, in body axes [m].
+        """
+    @property
+    def attitude(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (4,) attitude at t = 0.
+        """
+    @property
+    def axis(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3,) the axis of rotation in body axes, with omega along it.
+        """
+    @property
+    def frequency(self) -> float:
+        """
+        Angular frequency of small swings, sqrt(m g r / I) [rad/s].
+        """
+    @property
+    def inertia(self) -> InertiaTensor:
+        """
+        The InertiaTensor about the pivot.
+        """
+    @property
+    def kind(self) -> str:
+        """
+        'rest', 'swinging', 'rotating' or 'separatrix'.
+        """
+    @property
+    def omega(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3,) omega at t = 0, in body axes [rad/s].
+        """
+    @property
+    def period(self) -> float:
+        """
+        Period of the rate [s]: infinite on the separatrix, 0 at rest.
+        """
+    @property
+    def weight(self) -> float:
+        """
+        m g [N].
+        """
 class HeavyTop:
     """
     Lagrange's top: a symmetric body held at a point of its axis, under gravity.
@@ -1133,167 +1294,6 @@ class HeavyTop:
     def weight_arm(self) -> float:
         """
         Signed along the symmetry axis [N m].
-        """
-class Pendulum:
-    """
-    The plane pendulum: any body on a pivot under gravity that swings about one body axis.
-
-    In closed form at any time and at every energy: swings of any size, rotation over the top, the separatrix between them,
-    rest. The axis may be any of the three body axes. It must be principal, horizontal and at right angles to the arm, and
-    omega must lie along it. These conditions are tested exactly. The error against the exact motion of the same float64
-    input is a few units of rounding at every time.
-
-    Parameters
-    ----------
-    inertia : InertiaTensor, or array_like of shape (3,)
-        About the pivot, in body axes [kg m^2]; three numbers are principal moments in the given axes, in any order.
-    weight : float
-        m g [N]. Gravity points along -z of space.
-    arm : array_like, shape (3,)
-        From the pivot to the centre of mass, in body axes [m].
-    omega : array_like, shape (3,)
-        Angular velocity at t = 0, in body axes [rad/s].
-    attitude : array_like of shape (4,), or a Rotation
-        Body to space at t = 0, (x, y, z, w).
-
-    Raises
-    ------
-    InvalidInput
-        Not finite, a body no mass makes, an attitude that is not unit, or no plane pendulum, with the reason.
-
-    Notes
-    -----
-    E. T. Whittaker, "Analytical Dynamics" (1937), section 44; see docs/pendulum.md.
-    """
-    @staticmethod
-    def _repr_html_(form: typing.Any) -> str:
-        """
-        Return the start and the properties of a closed form.
-        """
-    def __eq__(self: Pendulum, arg0: object) -> bool:
-        ...
-    def __getstate__(self: Pendulum) -> tuple[InertiaTensor, float, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
-        ...
-    def __hash__(self: Pendulum) -> int:
-        ...
-    def __init__(self: Pendulum, inertia: typing.Any, weight: typing.Any, arm: typing.Any, omega: typing.Any, attitude: typing.Any = (0, 0, 0, 1)) -> None:
-        ...
-    def __reduce__(self) -> tuple[typing.Any, ...]:
-        """
-        Return what pickle makes the object from.
-        """
-    def __repr__(self: Pendulum) -> str:
-        ...
-    def __setstate__(self: Pendulum, arg0: tuple[typing.Any, ...]) -> None:
-        ...
-    def animate(self, t: typing.Any = None, *, body: typing.Any = 'box', axis: typing.Any = None) -> polhode._wings.Film:
-        """
-        Make a film of the motion: the body turns, beside the polhode on the ellipsoid of its energy.
-
-        Parameters
-        ----------
-        t : array_like, shape (n,), or float, optional
-            As for `plot`: the times, or the end of the span [s].
-        body, axis
-            As for :meth:`Motion.animate`.
-
-        Returns
-        -------
-        Film
-            A notebook plays it; ``.save(path)`` writes .html, .gif or .mp4.
-
-        Raises
-        ------
-        InvalidInput
-            As :meth:`Motion.animate`.
-        """
-    def at(self: Pendulum, t: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
-        """
-        Angular velocity and attitude at the given times.
-
-        Parameters
-        ----------
-        t : array_like, any shape
-            Times [s], negative ones too, up to 1e25 rad.
-
-        Returns
-        -------
-        omega : ndarray, shape (..., 3)
-            In body axes [rad/s].
-        attitude : ndarray, shape (..., 4)
-            Body to space, unit, (x, y, z, w).
-
-        Raises
-        ------
-        InvalidInput
-            A time that is not finite, or too long for its phase to have digits.
-        """
-    def plot(self, t: typing.Any = None, *parts: str, ax: matplotlib.axes.Axes | None = None, marks: typing.Any = None, dark: bool = False) -> matplotlib.figure.Figure:
-        """
-        Draw the motion.
-
-        Parameters
-        ----------
-        t : array_like, shape (n,), or float, optional
-            The times, or the end of the span that starts at 0 [s]. By default two periods, or ten turns where a period is
-            endless or long. A part's name may stand in its place.
-        *parts, ax, marks, dark
-            As for :meth:`Motion.plot`.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            A notebook shows it.
-
-        Raises
-        ------
-        InvalidInput
-            As :meth:`Motion.plot`.
-        """
-    @property
-    def arm(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        (3,) from the pivot to the centre of mass, in body axes [m].
-        """
-    @property
-    def attitude(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        (4,) attitude at t = 0.
-        """
-    @property
-    def axis(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        (3,) the axis of rotation in body axes, with omega along it.
-        """
-    @property
-    def frequency(self) -> float:
-        """
-        Angular frequency of small swings, sqrt(m g r / I) [rad/s].
-        """
-    @property
-    def inertia(self) -> InertiaTensor:
-        """
-        The InertiaTensor about the pivot.
-        """
-    @property
-    def kind(self) -> str:
-        """
-        'rest', 'swinging', 'rotating' or 'separatrix'.
-        """
-    @property
-    def omega(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        (3,) omega at t = 0, in body axes [rad/s].
-        """
-    @property
-    def period(self) -> float:
-        """
-        Period of the rate [s]: infinite on the separatrix, 0 at rest.
-        """
-    @property
-    def weight(self) -> float:
-        """
-        m g [N].
         """
 class Rotor:
     """

@@ -182,8 +182,6 @@ std::vector<std::string> explain_proof(const Scene& scene) {
   return reasons;
 }
 
-}  // namespace
-
 PlanReport explain_decision(const Decision& decision, const SolveOptions& options) {
   if (is_by_tolerance(options)) {
     return {.plan = decision.plan, .facts = compute_facts(decision.scene),
