@@ -286,7 +286,7 @@ PROMISED = {"ensemble": 1.5}
 OUT = {
     "sets up one body, in microseconds": (
         "DampedFree", "FreeMotion", "Gyrostat", "HeavyTop", "Pendulum", "DampedFree.slowed_time", "Event", "Rotor",
-        "InertiaTensor", "MassProperties", "PrincipalAxes", "shapes.", "torques.", "generalised_forces",
+        "InertiaTensor", "MassProperties", "PrincipalAxes", "shapes.", "torques.", "formula.", "generalised_forces",
         "inertia.check", "inertia.diagnose", "inertia.equivalent_box", "inertia.equivalent_ellipsoid",
         "inertia.Diagnosis", "inertia.Finding", "inertia.Flaw"),
     "holds a result, or is an exception": (

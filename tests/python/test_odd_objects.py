@@ -150,7 +150,7 @@ OUT = ("Ensemble", "FitResult", "Lyapunov", "Motion", "Motions", "Plan", "Sensit
        "MassProperties",
        "InertiaTensor", "IntegrationFailure", "InvalidInput", "animate", "plot", "inv", "magnitude", "as_matrix",
        "as_mrp", "atlas", "charts", "recipe", "report", "schema", "shapes", "ensemble", "methods", "build_info",
-       "cmake_prefix", "measured", "inertia", "records", "AngularDamping", "GravityGradient")
+       "cmake_prefix", "measured", "inertia", "records", "AngularDamping", "GravityGradient", "value")
 
 
 def test_every_public_callable_is_tried_or_left_out():

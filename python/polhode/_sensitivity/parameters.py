@@ -40,7 +40,7 @@ def find(scene: Scene, group: str) -> tuple[str, int, str]:
         index, field = among[0], parts[1]
     holder = _inner(kinds[what][index])
     value = getattr(holder, field, None)
-    fits = field in ("momentum", "inertia", "speed") if what == "rotors" else field not in ("traits", "windows")
+    fits = field in ("momentum", "inertia", "speed") if what == "rotors" else field not in ("traits", "value", "windows")
     if not fits or value is None or isinstance(value, str):
         raise InvalidInput(f"fit: {group!r} is no number of {holder!r}; ends of windows are not fitted")
     return what, index, field
@@ -65,7 +65,7 @@ def put(scene: Scene, group: str, value: Array) -> Scene:
         given = {name: getattr(holder, name) for name in names if getattr(holder, name) is not None}
         made: Any = Rotor(**{**given, **({"during": holder.during} if holder.during else {}), field: new})
     else:
-        fields = [name for name in dir(holder) if not name.startswith("_") and name != "traits"]
+        fields = [name for name in dir(holder) if not name.startswith("_") and name not in ("traits", "value")]
         made = type(holder)(**{**{name: getattr(holder, name) for name in fields}, field: new})
         if isinstance(items[index], torques.During):
             made = torques.During(made, items[index].windows)
