@@ -17,7 +17,8 @@ import polhode as ph
 ROOT = Path(__file__).parents[2]
 API = sorted((ROOT / "docs/reference/python").glob("*.md"))
 MODULES = ("polhode", "polhode.inertia", "polhode.inertia.robots", "polhode.shapes", "polhode.torques", "polhode.mesh",
-           "polhode.elliptic", "polhode.formula", "polhode.measured", "polhode.charts", "polhode.atlas", "polhode.report",
+           "polhode.elliptic", "polhode.formula",
+           "polhode.measured", "polhode.charts", "polhode.atlas", "polhode.report",
            "polhode.recipe", "polhode.schema")
 
 

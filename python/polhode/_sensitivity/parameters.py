@@ -40,7 +40,8 @@ def find(scene: Scene, group: str) -> tuple[str, int, str]:
         index, field = among[0], parts[1]
     holder = _inner(kinds[what][index])
     value = getattr(holder, field, None)
-    fits = field in ("momentum", "inertia", "speed") if what == "rotors" else field not in ("traits", "value", "windows")
+    others = ("traits", "value", "windows")
+    fits = field in ("momentum", "inertia", "speed") if what == "rotors" else field not in others
     if not fits or value is None or isinstance(value, str):
         raise InvalidInput(f"fit: {group!r} is no number of {holder!r}; ends of windows are not fitted")
     return what, index, field
