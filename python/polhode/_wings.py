@@ -78,7 +78,7 @@ HOME = pathlib.Path(__file__).parent
 
 
 class MissingWing(InvalidInput, ImportError):
-    """What is asked for belongs to a wing that is not installed."""
+    """A name belongs to a wing that is not installed."""
 
 
 def is_there(name: str) -> bool:

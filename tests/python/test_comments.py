@@ -15,7 +15,7 @@ FILES = {
 READ = {"cpp": comments.read_cpp, "python": comments.read_python}
 MEAN = 12.0   # words a sentence; 11.4 in C++ and 11.1 in Python
 # How often each idiom is still found. A number may only become smaller, and no word may be added.
-LEFT = {"whatever": 3, "tells": 2, "nobody": 1, "asked for": 1, "worth": 1}
+LEFT = {"whatever": 3, "tells": 2, "nobody": 1, "worth": 1}
 IDIOM = re.compile(
     r"\b(told|tells|nobody|whatever|heard|worth|birth|dear|poor|poisons?|poisoned|crew|landed|seat|scout|shake|"
     r"at the door|loose run|asked for|by itself|what is no number|anyhow|hand(s|ed)? over)\b", re.IGNORECASE)

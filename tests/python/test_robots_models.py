@@ -132,8 +132,8 @@ def test_what_only_mujoco_makes_is_read_through_it(write):
 
 def test_a_file_is_given_to_mujoco_only_if_its_folders_are_allowed(write):
     """MuJoCo opens what the file names, so the folders of its meshes are looked at before."""
-    from polhode.inertia.robots import by_mujoco
     from polhode._xml import parse
+    from polhode.inertia.robots import by_mujoco
 
     write("part.stl", _binary(CORNERS, SIDES))
     text = '<mujoco><compiler {}="{}"/><asset><mesh file="part.stl"/></asset></mujoco>'

@@ -8,12 +8,12 @@ import pytest
 from test_robots import CORNERS, SIDES, call, judged, sdf, stl, tensor
 
 import polhode as ph
+from polhode._xml import parse_bytes
 from polhode.inertia import robots
 from polhode.inertia.evidence import Geometry, single
 from polhode.inertia.robots.causes import Candidate, Known, choose, tally
 from polhode.inertia.robots.meshes import convex_hull
 from polhode.inertia.robots.paths import Search
-from polhode._xml import parse_bytes
 
 BLOCK = ph.shapes.box(12.0, (0.1, 0.2, 0.3))
 GOOD = f'<mass value="12"/>{tensor(BLOCK.inertia.matrix)}'

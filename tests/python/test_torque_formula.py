@@ -246,7 +246,7 @@ def test_formulas_in_motions_windows_rotors_and_many(tmp_path):
 
 def test_a_scene_file_holds_a_formula(tmp_path):
     file = tmp_path / "pd.toml"
-    file.write_text(f"""
+    file.write_text("""
 [body]
 moments = [1.0, 2.0, 2.5]
 [start]
@@ -254,8 +254,8 @@ omega = [0.4, -0.7, 1.1]
 [[torques]]
 kind = "formula"
 torque = "turn - kd * omega"
-let = {{ turn = "-kp * attitude.xyz * attitude.w" }}
-parameters = {{ kp = 0.2, kd = [0.5, 0.5, 0.4] }}
+let = { turn = "-kp * attitude.xyz * attitude.w" }
+parameters = { kp = 0.2, kd = [0.5, 0.5, 0.4] }
 [times]
 span = 5.0
 samples = 11

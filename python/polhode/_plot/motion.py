@@ -14,9 +14,10 @@ from .panels import DRAW, WITHOUT_ATTITUDE, Drawing, angles
 from .track import Track, of_motion, to_times
 
 if TYPE_CHECKING:
-    from .._wings import Film
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from .._wings import Film
 
 PARTS = tuple(DRAW)
 

@@ -79,7 +79,7 @@ def _torque_models() -> list[Any]:
 def _formula_model() -> Any:
     """Return the model of a torque that is a formula."""
     kind = kinds()
-    values: Any = Union[kind.number, kind.numbers]
+    values: Any = Union[kind.number, kind.numbers]   # noqa: UP007
     return model("Formula", kind=(Literal["formula"], ...), torque=(str, ...), let=(dict[str, str], {}),
                  parameters=(dict[str, values], {}), recognise=(bool, True),
                  during=(kind.windows | None, None))

@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .._workers import Worker, command
 from .._scene.scene import Scene
+from .._workers import Worker, command
 from .candidate import Answer, Candidate, Failure, Run
 from .candidates import candidates
 

@@ -190,7 +190,7 @@ def calibrate(as_json: Json = False) -> int:
 
 @_command
 def methods(as_json: Json = False) -> int:
-    """List all methods; last, the steps of game engines for comparison."""
+    """List all methods; last, those for comparison."""
     records = method_records()
     if as_json:
         write_json(records)

@@ -16,7 +16,6 @@ from rich.text import Text
 
 if TYPE_CHECKING:
     from .._solve.motion import Motion
-    from ..charts.measure import Point, SceneResult
 
 UNCUT = 100_000
 

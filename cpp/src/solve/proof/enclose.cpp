@@ -63,7 +63,7 @@ class Run {
     TaylorStep step(system, options_.step);
     step.expect_rate(largest_rate_);
     const Interval end = distance(piece.end);
-    if (end.is_zero()) {   // the start itself is asked for
+    if (end.is_zero()) {   // a sample at the start itself
       step.expand(state_);
       if (!step.bound(0x1p-60, errors_)) return end_here(Status::failed, "the start cannot be enclosed");
       take_samples(step, 0x1p-60);
