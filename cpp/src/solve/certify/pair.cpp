@@ -7,6 +7,8 @@
 #include "polhode/math/detail/functions.hpp"
 #include "solve/plan/candidates.hpp"
 #include "solve/ground/distance.hpp"
+#include "solve/ground/options.hpp"
+#include "solve/ground/pilot.hpp"
 #include "solve/run/perturb.hpp"
 
 namespace polhode {

@@ -1,7 +1,5 @@
 #include "polhode/solve/closed_form.hpp"
 
-#include <ranges>
-
 #include "solve/form/forms.hpp"
 #include "solve/form/parts.hpp"
 
@@ -29,7 +27,9 @@ std::shared_ptr<const ClosedForm> find_closed_form(const Scene& scene, const Fac
 
 std::string explain_no_closed_form(const Scene& scene, const Facts& facts) {
   std::string reasons;
-  for (const ClosedFormRecord* record : std::views::reverse(closed_forms())) {
+  const std::span<const ClosedFormRecord* const> forms = closed_forms();
+  for (auto form = forms.rbegin(); form != forms.rend(); ++form) {
+    const ClosedFormRecord* record = *form;
     if (record->is_near == nullptr || !record->is_near(scene, facts)) continue;
     if (!reasons.empty()) reasons.append(". No ").append(record->name).append(": ");
     reasons += record->refuse(scene, facts, Words::yes).why;
