@@ -4,7 +4,7 @@
 #include "core/choose_level.hpp"
 #include "batch/lane_method.hpp"
 #include "batch/lanes/taylor_block.hpp"
-#include "method/series/body_series.hpp"
+#include "method/series/formula_series.hpp"
 #include "polhode/core/simd.hpp"
 #include "polhode/math/detail/functions.hpp"
 #include "polhode/ode/taylor.hpp"
@@ -151,7 +151,8 @@ std::unique_ptr<LaneIntegrator> TaylorLaneProblem::make_integrator(const ode::To
 }  // namespace
 
 const LaneMethod taylor_lanes{
-    ode::Taylor::record, [](const Scene& scene) { return compute_series_refusal(scene).empty(); },
+    ode::Taylor::record,
+    [](const Scene& scene) { return !needs_formula_series(scene) && compute_series_refusal(scene).empty(); },
     [](const Scene& scene) -> std::unique_ptr<LaneProblem> { return std::make_unique<TaylorLaneProblem>(scene); }};
 
 }  // namespace polhode

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "method/series/body_series.hpp"
+#include "method/series/formula_series.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/math/detail/functions.hpp"
 #include "polhode/solve/facts.hpp"
@@ -84,7 +84,10 @@ void require_formulas(const Scene& scene) {
   SceneParts parts = scene.parts();
   for (AnyTorque& torque : parts.torques)
     torque = std::visit([](const auto& one) { return AnyTorque(one); }, drop_windows(torque));
-  if (const std::string why = compute_series_refusal(Scene(std::move(parts))); !why.empty())
+  const Scene lasting(std::move(parts));
+  const std::string why = needs_formula_series(lasting) ? "a Formula that is no torque of the list"
+                                                        : compute_series_refusal(lasting);
+  if (!why.empty())
     throw InvalidInput("sensitivity", "left out for a torque without a formula that can be differentiated", why);
 }
 

@@ -52,6 +52,7 @@ Program expand_rotations(const Program& program, bool but_carried) {
   Rewriter rewriter(program.graph, made.graph, change);
   own = &rewriter;
   for (const Form& output : program.outputs) made.outputs.push_back(rewriter(output));
+  for (const Form& rate : program.rates) made.rates.push_back(rewriter(rate));
   return rewrite(made);
 }
 

@@ -128,7 +128,9 @@ bool is_same(const Program& a, const Program& b) {
 Program rewrite(const Program& program, const Change& change) {
   Program made{{}, program.parameters, program.states, {}};
   Rewriter rewriter(program.graph, made.graph, change);
-  const std::vector<bool> live = find_live(program.graph, program.outputs);
+  std::vector<Form> needed = program.outputs;
+  needed.insert(needed.end(), program.rates.begin(), program.rates.end());
+  const std::vector<bool> live = find_live(program.graph, needed);
   // An order that does not depend on which input was named first, because the order of terms decides bits.
   std::vector<std::array<int, 3>> inputs;   // kind, number, node
   for (int i = 0; i < program.graph.size(); ++i) {
@@ -144,7 +146,28 @@ Program rewrite(const Program& program, const Change& change) {
     made.outputs.push_back(rewriter(output));
     require_finite(made.outputs.back());
   }
+  for (const Form& rate : program.rates) made.rates.push_back(rewriter(rate));
   return made;
+}
+
+std::vector<Form> embed(const Program& program, Graph& to, const std::vector<Form>& states, const Matrix3d* turn) {
+  Rewriter* own = nullptr;
+  const Change change = [&](int node, Graph& graph) -> std::optional<Form> {
+    const Node& n = program.graph[node];
+    if (n.op == Op::state) return states[static_cast<std::size_t>(n.index)];
+    if (n.op != Op::to_body || turn == nullptr) return std::nullopt;
+    std::array<Form, 3> v;
+    for (std::size_t i = 0; i < 3; ++i) v[i] = (*own)(Form::of(n.operands[i]));
+    const std::array<Form, 3> seen = graph.to_body(v);
+    Form sum;
+    for (int j = 0; j < 3; ++j) sum = sum + seen[static_cast<std::size_t>(j)] * (*turn)(n.index, j);
+    return sum;
+  };
+  Rewriter rewriter(program.graph, to, change);
+  own = &rewriter;
+  std::vector<Form> outputs;
+  for (const Form& output : program.outputs) outputs.push_back(rewriter(output));
+  return outputs;
 }
 
 Program bind_parameters(const Program& program, const std::vector<double>& values) {

@@ -20,7 +20,10 @@ class Tape::Builder {
       const Node& n = graph_[node];
       return n.op == Op::to_body || ((n.op == Op::sine || n.op == Op::cosine) && find_wave(graph_, n.operands[0]));
     };
-    const std::vector<bool> live = find_live(graph_, system.outputs, is_known);
+    std::vector<Form> needed = system.outputs;
+    needed.insert(needed.end(), system.rates.begin(), system.rates.end());
+    rates_ = &system.rates;
+    const std::vector<bool> live = find_live(graph_, needed, is_known);
     for (int i = 0; i < graph_.size(); ++i)
       if (live[static_cast<std::size_t>(i)]) forms_[static_cast<std::size_t>(i)] = make(i);
     for (std::size_t i = 0; i < system.outputs.size(); ++i) {
@@ -57,6 +60,14 @@ class Tape::Builder {
   Form translate(const Form& form) const {
     Form sum(form.constant);
     for (const Term& term : form.terms) sum = sum + forms_[static_cast<std::size_t>(term.node)] * term.factor;
+    return sum;
+  }
+
+  /// The same of states alone, before nodes are made.
+  Form translate_early(const Form& form) const {
+    Form sum(form.constant);
+    for (const Term& term : form.terms)
+      sum = sum + Form::of(tape_.state_slots_[static_cast<std::size_t>(graph_[term.node].index)].slot) * term.factor;
     return sum;
   }
 
@@ -180,6 +191,8 @@ class Tape::Builder {
           known.rate == vector.rate)
         return carried_slots_[i];
     }
+    std::array<int, 3> w{first_rate, first_rate + 1, first_rate + 2};
+    for (std::size_t i = 0; i < rates_->size(); ++i) w[i] = slot_of(translate_early((*rates_)[i]));
     if (tape_.states_ < first_extra) throw InvalidInput("formula", "the attitude among the states", "fewer states");
     const int first = next_slot();
     for (int part = 0; part < (rotates ? 2 : 1); ++part) {
@@ -194,7 +207,8 @@ class Tape::Builder {
       const int own = first + 3 * part, other = first + 3 * (1 - part);
       for (int i = 0; i < 3; ++i) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
-        Form rate = Form::of(product(own + j, first_rate + k)) - Form::of(product(own + k, first_rate + j));
+        Form rate = Form::of(product(own + j, w[static_cast<std::size_t>(k)])) -
+                    Form::of(product(own + k, w[static_cast<std::size_t>(j)]));
         if (rotates) rate = rate + Form::of(other + i) * (part == 0 ? vector.rate : -vector.rate);
         tape_.state_slots_[static_cast<std::size_t>(tape_.slots_[static_cast<std::size_t>(own + i)].index)].rate = rate;
       }
@@ -204,6 +218,7 @@ class Tape::Builder {
 
   Tape& tape_;
   const Graph& graph_;
+  const std::vector<Form>* rates_ = nullptr;
   std::vector<Form> forms_, linear_;   // of slots: of each node; those that have a slot
   std::vector<int> linear_slots_, carried_slots_;
   std::map<std::pair<int, int>, int> products_;

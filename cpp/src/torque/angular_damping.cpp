@@ -1,6 +1,7 @@
 #include "polhode/torque/angular_damping.hpp"
 
 #include "checks.hpp"
+#include "polhode/formula/trace.hpp"
 
 namespace polhode::torques {
 
@@ -19,6 +20,10 @@ const TorqueRecord& AngularDamping::record() {
 
 AngularDamping AngularDamping::from_values(std::span<const TorqueValue> values) {
   return AngularDamping(std::get<double>(values[0]));
+}
+
+formula::Program AngularDamping::law(const Matrix3d& inertia_B) const {
+  return formula::trace([&](const auto& in) { return -rate_ * formula::apply_matrix(inertia_B, in.omega); });
 }
 
 }  // namespace polhode::torques

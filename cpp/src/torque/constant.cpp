@@ -1,6 +1,7 @@
 #include "polhode/torque/constant.hpp"
 
 #include "checks.hpp"
+#include "polhode/formula/trace.hpp"
 
 namespace polhode::torques {
 
@@ -26,5 +27,12 @@ Constant Constant::from_values(std::span<const TorqueValue> values) {
 }
 
 TorqueValues Constant::values() const { return {torque_, std::string(frame_ == Frame::body ? "body" : "space")}; }
+
+formula::Program Constant::law(const Matrix3d&) const {
+  return formula::trace([&](const auto& in) {
+    const auto torque = formula::make_vector<formula::Expr>(torque_);
+    return frame_ == Frame::body ? torque : to_body(in.attitude, torque);
+  });
+}
 
 }  // namespace polhode::torques

@@ -1,6 +1,7 @@
 #include "polhode/torque/damping.hpp"
 
 #include "checks.hpp"
+#include "polhode/formula/trace.hpp"
 
 namespace polhode::torques {
 
@@ -17,5 +18,9 @@ const TorqueRecord& Damping::record() {
 }
 
 Damping Damping::from_values(std::span<const TorqueValue> values) { return Damping(std::get<Matrix3d>(values[0])); }
+
+formula::Program Damping::law(const Matrix3d&) const {
+  return formula::trace([&](const auto& in) { return -formula::apply_matrix(matrix_, in.omega); });
+}
 
 }  // namespace polhode::torques

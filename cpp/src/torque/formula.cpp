@@ -70,6 +70,8 @@ const formula::Text& Formula::text() const { return parts_->text; }
 const std::vector<formula::Input>& Formula::parameters() const { return parts_->text.parameters; }
 const formula::Program& Formula::program() const { return parts_->program; }
 
+bool Formula::has_switches() const { return parts_->facts.has_switches; }
+
 TorqueTraits Formula::traits() const {
   const formula::Facts& facts = parts_->facts;
   const auto& outputs = parts_->program.outputs;

@@ -1,6 +1,7 @@
 #include "polhode/torque/gravity.hpp"
 
 #include "checks.hpp"
+#include "polhode/formula/trace.hpp"
 
 namespace polhode::torques {
 
@@ -24,6 +25,13 @@ const TorqueRecord& Gravity::record() {
 
 Gravity Gravity::from_values(std::span<const TorqueValue> values) {
   return Gravity(std::get<double>(values[0]), std::get<Vector3d>(values[1]));
+}
+
+formula::Program Gravity::law(const Matrix3d&) const {
+  return formula::trace([&](const auto& in) {
+    const auto vertical = to_body(in.attitude, formula::make_vector<formula::Expr>(Vector3d::UnitZ()));
+    return -cross(formula::make_vector<formula::Expr>(moment_), vertical);
+  });
 }
 
 }  // namespace polhode::torques

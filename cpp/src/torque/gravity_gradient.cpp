@@ -1,6 +1,7 @@
 #include "polhode/torque/gravity_gradient.hpp"
 
 #include "checks.hpp"
+#include "polhode/formula/trace.hpp"
 
 namespace polhode::torques {
 
@@ -24,6 +25,15 @@ const TorqueRecord& GravityGradient::record() {
 
 GravityGradient GravityGradient::from_values(std::span<const TorqueValue> values) {
   return GravityGradient(std::get<double>(values[0]), std::get<double>(values[1]));
+}
+
+formula::Program GravityGradient::law(const Matrix3d& inertia_B) const {
+  return formula::trace([&](const auto& in) {
+    const auto angle = mean_motion_ * in.t + phase_;
+    const formula::Vec<formula::Expr, 3> radial{{cos(angle), sin(angle), 0.0}};
+    const auto u = to_body(in.attitude, radial);
+    return strength() * cross(u, formula::apply_matrix(inertia_B, u));
+  });
 }
 
 }  // namespace polhode::torques

@@ -1,10 +1,27 @@
 #include "polhode/torque/torques.hpp"
 
+#include "polhode/core/error.hpp"
+#include "polhode/formula/program.hpp"
+
 namespace polhode {
 
 void SeveralTorques::add(const TorqueInput& in, double* tau_B) const {
   for (const AnyTorque& torque : torques) std::visit([&](const auto& one) { one.add(in, tau_B); }, torque);
   if (!rotor_momentum.isZero(0.0)) add_rotors(rotor_momentum.data(), in.omega, tau_B);
+}
+
+formula::Program make_law(const AnyTorque& torque, const Matrix3d& inertia_B) {
+  return std::visit(
+      [&](const auto& any) -> formula::Program {
+        if constexpr (requires { any.law(inertia_B); }) {
+          return any.law(inertia_B);
+        } else if constexpr (requires { any.windows(); any.torque(); }) {
+          return make_law(std::visit([](const auto& one) { return AnyTorque(one); }, any.torque()), inertia_B);
+        } else {
+          throw InvalidInput("torques", "formulas", std::string(any.record().name));
+        }
+      },
+      torque);
 }
 
 TorqueTraits traits(const AnyTorque& torque) {

@@ -252,10 +252,10 @@ TEST_CASE("the series kernels of every level agree, and avx2 and avx512 bit for 
     for (const SimdLevel level : {SimdLevel::baseline, SimdLevel::avx2, SimdLevel::avx512}) {
       if (level > simd_level()) continue;
       double* mine = out[static_cast<int>(level)];
-      series_kernels(level).evaluate(rows, order, base, rest, s, 7, mine);
+      series_kernels(level).evaluate(rows, order, series_width, base, rest, s, 7, mine);
       for (int p = 0; p < 7; ++p) {
         double alone[series_width];
-        series_kernels(level).evaluate(rows, order, base, rest, s + p, 1, alone);
+        series_kernels(level).evaluate(rows, order, series_width, base, rest, s + p, 1, alone);
         for (int i = 0; i < series_width; ++i) {
           double sum = 0.0;
           for (int k = order; k >= 1; --k) sum = s[p] * (rows[series_width * k + i] + sum);

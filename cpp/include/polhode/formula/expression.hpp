@@ -130,6 +130,9 @@ Vec<T, 3> cross(const Vec<T, 3>& a, const Vec<T, 3>& b) {
 template <class T, std::size_t n>
 T norm(const Vec<T, n>& v, double smooth = 0.0) { return sqrt(dot(v, v) + T(smooth * smooth)); }
 
+template <class T>
+Vec<T, 3> make_vector(const Vector3d& v) { return {{T(v[0]), T(v[1]), T(v[2])}}; }
+
 /// M v of a constant matrix.
 template <class T>
 Vec<T, 3> apply_matrix(const Matrix3d& M, const Vec<T, 3>& v) {

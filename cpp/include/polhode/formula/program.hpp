@@ -36,6 +36,8 @@ struct Program {
   std::vector<Input> parameters;
   std::vector<Input> states;     ///< those of the formula, from first_extra on
   std::vector<Form> outputs;
+  /// w in the axes that vectors of to_body are seen from, where the first three states are other variables than w.
+  std::vector<Form> rates = {};
 };
 
 /// What a node becomes in the new graph; nothing: the same operation on the changed operands.
@@ -74,6 +76,11 @@ Program bind_parameters(const Program& program, const std::vector<double>& value
 /// Components of R_WB^T v become polynomials in the attitude.
 /// @param but_carried  not those of a vector that a tape carries
 Program expand_rotations(const Program& program, bool but_carried = false);
+
+/// Copies a program's nodes into `to`, which gets its outputs as forms. States become other forms: the first seven of
+/// `states` are the body's, and the program's own follow.
+/// @param turn  makes a vector seen from the axes of `to` one seen from the program's; null if they are the same
+std::vector<Form> embed(const Program& program, Graph& to, const std::vector<Form>& states, const Matrix3d* turn);
 
 /// The equations of a body with a torque: w' = I^-1 (tau - w x I w), q' = q w / 2, and the rates of its states.
 Program make_body_equations(const Program& torque, const Matrix3d& inertia_B);

@@ -68,6 +68,20 @@ class Table {
   /// Instructions that move numbers between lanes in one row: what the packing keeps small.
   int count_picks() const { return static_cast<int>(parts_.picks.size()); }
 
+  /// A copy with other numbers in place of those of forms, waves and carried vectors; exponents stay.
+  template <class Change>
+  Table with_constants(const Change& change) const {
+    Table other = *this;
+    other.tape_.change_constants(change);
+    const auto change_all = [&](auto& numbers) {
+      for (double& number : numbers) number = change(number);
+    };
+    for (Stage& stage : other.parts_.stages) change_all(stage.constant);
+    for (Stage& stage : other.parts_.rates) change_all(stage.constant);
+    for (Pick& pick : other.parts_.picks) change_all(pick.factor);
+    return other;
+  }
+
   /// Rounding of a level: fused with AVX2 and AVX-512.
   static Rounding rounding(SimdLevel level) { return level == SimdLevel::baseline ? Rounding::plain : Rounding::fused; }
 

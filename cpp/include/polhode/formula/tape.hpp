@@ -102,6 +102,23 @@ class Tape {
   /// Starts of the state slots: given states, time, constants, and what is carried.
   void start(math::DD t, const double* y, double* values) const;
 
+  /// Replaces each number of forms, waves and carried vectors by `change` of it.
+  template <class Change>
+  void change_constants(const Change& change) {
+    const auto change_form = [&](Form& form) {
+      form.constant = change(form.constant);
+      for (Term& term : form.terms) term.factor = change(term.factor);
+    };
+    for (auto* forms : {&forms_, &extras_})
+      for (Form& form : *forms) change_form(form);
+    for (StateSlot& state : state_slots_) state.value = change(state.value), change_form(state.rate);
+    for (Wave& wave : waves_) wave.phase = change(wave.phase), wave.rate = change(wave.rate);
+    for (CarriedVector& vector : carried_) {
+      for (int i = 0; i < 3; ++i) vector.cosine[i] = change(vector.cosine[i]), vector.sine[i] = change(vector.sine[i]);
+      vector.phase = change(vector.phase), vector.rate = change(vector.rate);
+    }
+  }
+
   /// The same forms with their terms in another order, which decides their bits.
   void set_forms(std::vector<Form> forms, std::vector<Form> rates, std::vector<Form> extras);
 

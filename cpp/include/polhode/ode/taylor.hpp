@@ -15,13 +15,21 @@
 
 namespace polhode::ode {
 
-/// y' = f(t, y) whose Taylor coefficients are known by recurrences. A state is y, `dimension` <= series_width numbers,
-/// and `carry`, the rounding errors of y.
+/// A problem whose rows are wider than series_width: it has `width()` numbers, a multiple of eight, up to `most_width`,
+/// and `count_blocks()` of its blocks are used.
+template <class P>
+concept WideProblem = requires(const P& problem) {
+  { P::most_width } -> std::convertible_to<int>;
+  { problem.width() } -> std::convertible_to<int>;
+  { problem.count_blocks() } -> std::convertible_to<int>;
+};
+
+/// y' = f(t, y) whose Taylor coefficients are known by recurrences. A state is y, `dimension` <= series_width numbers
+/// or those of a WideProblem, and `carry`, the rounding errors of y.
 template <class P>
 concept SeriesProblem =
     requires(const P& problem, math::DD t, double unit, const double* y, int order, long step, double* out) {
-      { P::dimension } -> std::convertible_to<int>;
-      /// Rows 0..order of series_width numbers: the coefficients of y(t + unit s) in powers of s.
+      /// Rows 0..order of the width's numbers: the coefficients of y(t + unit s) in powers of s.
       problem.compute_series(t, unit, y, y, order, out);
       /// Sizes of a row's blocks. Quantities with different units belong to different blocks.
       { P::blocks } -> std::convertible_to<int>;
@@ -34,6 +42,23 @@ concept SeriesProblem =
       /// Restores known invariants of state and carry. Called after each step; steps are numbered from 0.
       problem.correct(t, step, out, out);
     };
+
+/// Numbers of a row: known to the compiler for a body without further states.
+template <SeriesProblem P>
+constexpr int get_width(const P& problem) {
+  if constexpr (WideProblem<P>) return problem.width();
+  else return series_width;
+}
+template <SeriesProblem P>
+constexpr int get_dimension(const P& problem) {
+  if constexpr (WideProblem<P>) return problem.width();
+  else return P::dimension;
+}
+template <SeriesProblem P>
+constexpr int find_most_width() {
+  if constexpr (WideProblem<P>) return P::most_width;
+  else return series_width;
+}
 
 /// The Taylor series of the solution. Order and step follow Jorba & Zou 2005, Experimental Mathematics 14, 99, with
 /// sizes by blocks. The state and the time are summed with compensation (Kahan) from step to step.
@@ -78,11 +103,12 @@ struct Taylor {
 
 template <SeriesProblem P>
 class Taylor::Stepper : public ode::Stepper {
-  static constexpr int W = series_width;
+  static constexpr int most_numbers = find_most_width<P>();
 
  public:
   Stepper(const P& problem, double t0, const double* y0, double t_end, const Tolerances& tolerances)
-      : ode::Stepper(P::dimension, header + W * (choose_order(tolerances.rtol + tolerances.atol) + 1),
+      : ode::Stepper(get_dimension(problem),
+                     header + get_width(problem) * (choose_order(tolerances.rtol + tolerances.atol) + 2),
                      &evaluate_segment, t0),
         problem_(problem),
         tolerances_(tolerances),
@@ -90,7 +116,7 @@ class Taylor::Stepper : public ode::Stepper {
         time_(t0) {
     part_ = compute_part(tolerances.rtol);
     for (int i = 0; i < 4; ++i) inverse_[i] = 1.0 / (order_ - 3 + i);
-    std::copy_n(y0, P::dimension, y_);
+    std::copy_n(y0, get_dimension(problem), y_);
     problem.start_carry(carry_);
     unit_ = power_of_two(std::min(problem.compute_time_scale(time_, y_), std::abs(t_end - t0)));
   }
@@ -110,10 +136,11 @@ class Taylor::Stepper : public ode::Stepper {
     if (!last && !(std::abs(h) > 8 * std::numeric_limits<double>::epsilon() * std::abs(time_.hi)))
       return StepResult::underflow;
 
+    const int W = width();
     std::copy_n(y_, W, y_old_);
     std::copy_n(carry_, W, carry_old_);
-    alignas(64) double increment[W];
-    series_kernels().evaluate(rows_, order_, zero, carry_, &s, 1, increment);
+    alignas(64) double increment[most_numbers];
+    evaluate_series(rows_, order_, W, zero, carry_, &s, 1, increment);
     for (int i = 0; i < W; ++i) {
       const math::DD sum = math::two_sum(y_[i], increment[i]);
       y_[i] = sum.hi, carry_[i] = sum.lo;
@@ -135,45 +162,63 @@ class Taylor::Stepper : public ode::Stepper {
   void interpolate(double t, double* out) override { interpolate_many(&t, 1, out); }
 
   void interpolate_many(const double* times, std::size_t n, double* out) override {
-    constexpr std::size_t most = 64;
+    constexpr std::size_t at_once = 64;
     const double inverse = 1.0 / unit_old_;   // a power of two: nothing is rounded
-    double s[most];
-    alignas(64) double rows[P::dimension == W ? 1 : W * most];
-    for (std::size_t begin = 0; begin < n; begin += most) {
-      const std::size_t count = std::min(most, n - begin);
+    const int W = width(), size = get_dimension(problem_);
+    double s[at_once];
+    alignas(64) double rows[whole_rows ? 1 : series_width * at_once];
+    for (std::size_t begin = 0; begin < n; begin += at_once) {
+      const std::size_t count = std::min(at_once, n - begin);
       for (std::size_t i = 0; i < count; ++i) s[i] = ((times[begin + i] - time_old_.hi) - time_old_.lo) * inverse;
-      if constexpr (P::dimension == W) {
-        series_kernels().evaluate(rows_, order_, y_old_, carry_old_, s, count, out);
+      if constexpr (whole_rows) {
+        evaluate_series(rows_, order_, W, y_old_, carry_old_, s, count, out);
       } else {
-        series_kernels().evaluate(rows_, order_, y_old_, carry_old_, s, count, rows);
-        for (std::size_t i = 0; i < count; ++i) std::copy_n(rows + W * i, P::dimension, out + P::dimension * i);
+        evaluate_series(rows_, order_, W, y_old_, carry_old_, s, count, rows);
+        for (std::size_t i = 0; i < count; ++i)
+          std::copy_n(rows + series_width * i, size, out + static_cast<std::size_t>(size) * i);
       }
-      out += P::dimension * count;
+      out += static_cast<std::size_t>(size) * count;
     }
   }
 
   const double* segment() override {
+    const int W = width();
     segment_[0] = order_;
-    segment_[1] = P::dimension;
+    segment_[1] = get_dimension(problem_);
     segment_[2] = (t_ - t_old_) / unit_old_;
     segment_[3] = -time_old_.lo / unit_old_;
-    std::copy_n(carry_old_, W, segment_.data() + W);
-    std::copy_n(y_old_, W, segment_.data() + header);
-    std::copy_n(rows_ + W, W * order_, segment_.data() + header + W);
+    segment_[4] = W;
+    std::copy_n(carry_old_, W, segment_.data() + header);
+    std::copy_n(y_old_, W, segment_.data() + header + W);
+    std::copy_n(rows_ + W, W * order_, segment_.data() + header + 2 * W);
     return segment_.data();
   }
 
   static void evaluate_segment(const double* segment, double fraction, double* out) {
     const double s = fraction * segment[2] + segment[3];
-    double y[W];
-    series_kernels().evaluate(segment + header, static_cast<int>(segment[0]), segment + header, segment + W, &s, 1, y);
+    const int W = static_cast<int>(segment[4]);
+    const double *carry = segment + header, *rows = carry + W;
+    double y[most_numbers];
+    evaluate_series(rows, static_cast<int>(segment[0]), W, rows, carry, &s, 1, y);
     std::copy_n(y, static_cast<int>(segment[1]), out);
   }
 
-  static constexpr int header = 2 * W;
-  static constexpr double zero[W] = {};
+  int width() const { return get_width(problem_); }
+
+  static constexpr int header = series_width;
+  static constexpr double zero[most_numbers] = {};
 
  private:
+  static constexpr bool whole_rows = [] {
+    if constexpr (WideProblem<P>) return true;
+    else return P::dimension == series_width;
+  }();
+
+  int count_blocks() const {
+    if constexpr (WideProblem<P>) return problem_.count_blocks();
+    else return P::blocks;
+  }
+
   /// The largest power of two up to t. In this unit of time the coefficients neither overflow nor underflow.
   static double power_of_two(double t) { return math::power_of_two_below(std::clamp(t, 0x1p-900, 0x1p900)); }
 
@@ -183,14 +228,14 @@ class Taylor::Stepper : public ode::Stepper {
   double expand() {
     problem_.compute_series(time_, unit_, y_, carry_, order_ + further_, rows_);
     double size[5][P::blocks], sum = 0.0;
-    const int row[5] = {0, 1, 2, order_ - 1, order_};
+    const int row[5] = {0, 1, 2, order_ - 1, order_}, blocks = count_blocks();
     for (int k = 0; k < 5; ++k) {
-      problem_.compute_sizes(rows_ + W * row[k], size[k]);
-      for (int b = 0; b < P::blocks; ++b) sum += size[k][b];
+      problem_.compute_sizes(rows_ + width() * row[k], size[k]);
+      for (int b = 0; b < blocks; ++b) sum += size[k][b];
     }
     if (!(sum < std::numeric_limits<double>::infinity())) return std::numeric_limits<double>::quiet_NaN();
     double least = std::numeric_limits<double>::infinity();
-    for (int b = 0; b < P::blocks; ++b) {
+    for (int b = 0; b < blocks; ++b) {
       RoughLog2 head[3];
       for (int j = 0; j < P::heads[b]; ++j) {
         head[j] = RoughLog2(size[j][b]);
@@ -220,13 +265,13 @@ class Taylor::Stepper : public ode::Stepper {
   double part_, inverse_[4];   ///< 1 / (order - 3), ..., 1 / order
   math::DD time_, time_old_;
   double unit_ = 1.0, unit_old_ = 1.0;
-  alignas(64) double y_[W] = {}, carry_[W] = {}, y_old_[W] = {}, carry_old_[W] = {};
+  alignas(64) double y_[most_numbers] = {}, carry_[most_numbers] = {}, y_old_[most_numbers] = {}, carry_old_[most_numbers] = {};
   int further_ = 0;                      ///< rows after those of the order, which no step uses
-  alignas(64) double arrived_[W] = {};   ///< the end of the last step, not corrected
-  alignas(64) double rows_[W * (most_series_order + 1)] = {};
+  alignas(64) double arrived_[most_numbers] = {};   ///< the end of the last step, not corrected
+  alignas(64) double rows_[most_numbers * (most_series_order + 1)] = {};
 
  private:
-  std::array<double, header + W * (most_series_order + 1)> segment_ = {};
+  std::array<double, header + most_numbers * (most_series_order + 2)> segment_ = {};
 };
 
 }  // namespace polhode::ode

@@ -28,9 +28,9 @@ struct ErrorTrace {
   double largest = 0.0;            ///< the largest size of the first part so far
   double good_until = 0.0;         ///< the span from the start to the last sample that has the requested error
   double scale = 1.0;              ///< enlarges the vectors
-  alignas(64) double loss[series_width] = {};     ///< what the steps have lost
-  alignas(64) double spread[series_width] = {};   ///< what rounding may have done
-  alignas(64) double sample[series_width] = {};   ///< another sample of the same; 0 where it is a part of the loss
+  alignas(64) double loss[most_series_width] = {};     ///< what the steps have lost
+  alignas(64) double spread[most_series_width] = {};   ///< what rounding may have done
+  alignas(64) double sample[most_series_width] = {};   ///< another sample of the same; 0 where it is a part of the loss
 
   /// An error below 1e-6 is enlarged to 1e-6, so that differences of two solutions show it.
   double first_scale() const { return std::max(1.0, 1e-6 / asked); }
@@ -41,12 +41,12 @@ struct ErrorTrace {
   bool separates_rounding() const { return asked < 1e-8; }
 
   /// The errors of a start: each component of two vectors is perturbed up or down, each in its own way.
-  void start(const double* y0) {
+  void start(const double* y0, int width) {
     math::Coin coin;
     before = good_until = 0.0;
     scale = first_scale();
     for (double* error : {spread, separates_rounding() ? sample : loss}) {
-      for (int i = 0; i < series_width; ++i) error[i] = (coin.toss() ? 0x1p-53 : -0x1p-53) * scale * y0[i];
+      for (int i = 0; i < width; ++i) error[i] = (coin.toss() ? 0x1p-53 : -0x1p-53) * scale * y0[i];
     }
   }
 
@@ -87,7 +87,8 @@ concept TrackedProblem = SeriesProblem<P> && requires(const P& problem, const do
 /// of the global error.)
 template <TrackedProblem P>
 class TrackedTaylor final : public Taylor::Stepper<P> {
-  static constexpr int W = series_width;
+  static constexpr int most_numbers = find_most_width<P>();
+  static_assert(most_numbers <= most_series_width);
   static constexpr int error_terms = 12;        // with 7, a few parts in ten thousand are missing in each step
   static constexpr int signed_terms = 16;       // of the loss, which cancels, so that its parts must be more accurate
   static constexpr int loss_terms = 3;          // of the series after its order
@@ -118,7 +119,8 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
         separate_(trace.separates_rounding()),
         t0_(t0) {
     this->further_ = std::min(loss_terms, most_series_order - this->order_);
-    if (!trace.continued) trace.start(y0);
+    if (!trace.continued) trace.start(y0, this->width());
+    const int W = this->width();
     std::copy_n(trace.loss, W, loss_);
     std::copy_n(trace.spread, W, spread_);
     std::copy_n(trace.sample, W, sample_);
@@ -146,11 +148,12 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
 
  private:
   void propagate_errors() {
+    const int W = this->width();
     const double s = ((this->time_.hi - this->time_old_.hi) + (this->time_.lo - this->time_old_.lo)) / this->unit_old_;
     propagate(lost_, signed_terms, s, loss_);
     propagate(perturbed_, error_terms, s, spread_);
     if (separate_) propagate(sampled_, error_terms, s, sample_);
-    alignas(64) double loss[W];
+    alignas(64) double loss[most_numbers];
     double sizes[3];
     compute_loss(s, loss);
     for (int i = 0; i < W; ++i) loss_[i] += loss[i];
@@ -175,22 +178,23 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     constexpr double part = 0x1p-10;
     trace_.scale *= part;
     for (double* error : {loss_, spread_, sample_, trace_.loss, trace_.spread, trace_.sample})
-      for (int i = 0; i < W; ++i) error[i] *= part;
+      for (int i = 0; i < this->width(); ++i) error[i] *= part;
   }
 
   /// A small error over the step, by the difference of two series.
   void propagate(const P& problem, int most_terms, double s, double* error) {
-    const int terms = trace_.all_terms ? this->order_ : std::min(this->order_, most_terms);
-    alignas(64) double twin[W], propagated[W];
+    const int W = this->width(), terms = trace_.all_terms ? this->order_ : std::min(this->order_, most_terms);
+    alignas(64) double twin[most_numbers] = {}, propagated[most_numbers];
     for (int i = 0; i < W; ++i) twin[i] = this->y_old_[i] + error[i];
     problem.compute_series(this->time_old_, this->unit_old_, twin, twin, terms, twin_rows_);
     for (int k = W; k < W * (terms + 1); ++k) twin_rows_[k] -= this->rows_[k];
-    series_kernels().evaluate(twin_rows_, terms, Base::zero, error, &s, 1, propagated);
+    evaluate_series(twin_rows_, terms, W, Base::zero, error, &s, 1, propagated);
     std::copy_n(propagated, W, error);
   }
 
   /// The loss of the step in units of the scaled error: the first terms that the step leaves out.
   void compute_loss(double s, double* loss) {
+    const int W = this->width();
     double power = trace_.scale * safety * math::power(s, this->order_);
     std::fill_n(loss, W, 0.0);
     for (int k = this->order_ + 1; k <= this->order_ + this->further_; ++k) {
@@ -206,7 +210,8 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
 
   /// Applies the correction after a step to the erroneous solution as well.
   void restore(const P& problem, double* error) {
-    double twin[W], low[W];
+    const int W = this->width();
+    double twin[most_numbers], low[most_numbers];
     for (int i = 0; i < W; ++i) {
       const math::DD sum = math::two_sum(this->y_[i], this->carry_[i] + error[i]);
       twin[i] = sum.hi, low[i] = sum.lo;
@@ -221,12 +226,12 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     this->problem_.measure_error(y, spread_, sizes);
     const double relative = find_relative_error(sizes);
     if (!(relative > 0.0 && relative < std::numeric_limits<double>::infinity())) return;
-    for (int i = 0; i < W; ++i) spread_[i] *= 1 + growth / relative;
+    for (int i = 0; i < this->width(); ++i) spread_[i] *= 1 + growth / relative;
   }
 
   /// Changes each component of an error by rounding, up or down at random, so that it gets parts in every direction.
   void add_kick(const double* y, double size, double* error) {
-    for (int i = 0; i < W; ++i) error[i] += (coin_.toss() ? size : -size) * trace_.scale * y[i];
+    for (int i = 0; i < this->width(); ++i) error[i] += (coin_.toss() ? size : -size) * trace_.scale * y[i];
   }
 
   void measure(const double* y) {
@@ -250,8 +255,8 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   double t0_;
   double now_[2] = {}, old_[2] = {};
   math::Coin coin_;
-  alignas(64) double loss_[W], spread_[W], sample_[W];
-  alignas(64) double twin_rows_[W * (most_series_order + 1)] = {};
+  alignas(64) double loss_[most_numbers], spread_[most_numbers], sample_[most_numbers];
+  alignas(64) double twin_rows_[most_numbers * (most_series_order + 1)] = {};
 };
 
 }  // namespace polhode::ode

@@ -19,6 +19,9 @@ class Constant {
   const Vector3d& torque() const { return torque_; }
   Frame frame() const { return frame_; }
 
+  /// The same torque as a formula.
+  formula::Program law(const Matrix3d& inertia_B) const;
+
   TorqueTraits traits() const {
     return {.uses_attitude = frame_ == Frame::space,
             .keeps_vertical = frame_ == Frame::space && torque_[2] == 0.0,

@@ -17,6 +17,9 @@ class Damping {
 
   const Matrix3d& matrix() const { return matrix_; }
 
+  /// The same torque as a formula.
+  formula::Program law(const Matrix3d& inertia_B) const;
+
   TorqueTraits traits() const { return {.uses_rates = true, .vanishes = matrix_.isZero(0.0)}; }
 
   void add(const TorqueInput& in, double* tau_B) const { add_damping(matrix_.data(), in.omega, tau_B); }

@@ -35,6 +35,9 @@ class Formula {
   const formula::Program& program() const;                ///< with the parameters as numbers
   bool recognise() const { return recognise_; }
 
+  formula::Program law(const Matrix3d&) const { return program(); }
+  bool has_switches() const;
+
   TorqueTraits traits() const;
   /// A result that is not finite is passed on and ends the run.
   void add(const TorqueInput& in, double* tau_B) const;

@@ -19,6 +19,9 @@ class Gravity {
   double weight() const { return weight_; }
   const Vector3d& arm() const { return arm_; }
 
+  /// The same torque as a formula.
+  formula::Program law(const Matrix3d& inertia_B) const;
+
   TorqueTraits traits() const {
     return {.uses_attitude = true, .has_potential = true, .keeps_vertical = true, .vanishes = moment_.isZero(0.0)};
   }

@@ -25,6 +25,9 @@ class GravityGradient {
   double phase() const { return phase_; }
   double strength() const { return 3 * mean_motion_ * mean_motion_; }   ///< 3 n^2 [1/s^2]
 
+  /// The same torque as a formula.
+  formula::Program law(const Matrix3d& inertia_B) const;
+
   TorqueTraits traits() const {
     return {.uses_time = true,
             .uses_attitude = true,

@@ -11,6 +11,10 @@
 
 namespace polhode {
 
+namespace formula {
+struct Program;
+}
+
 /// What a torque depends on and what it conserves. The planner and the tests read this.
 struct TorqueTraits {
   bool uses_time = false;

@@ -41,6 +41,9 @@ struct SeveralTorques {
   void add(const TorqueInput& in, double* tau_B) const;
 };
 
+/// A torque of the list as a formula, without its windows. @throws InvalidInput for a Custom
+formula::Program make_law(const AnyTorque& torque, const Matrix3d& inertia_B);
+
 TorqueTraits traits(const AnyTorque& torque);
 std::string_view torque_name(const AnyTorque& torque);   ///< of its record
 TorqueSum summarize(std::span<const AnyTorque> torques);

@@ -27,9 +27,9 @@ std::string compute_series_refusal(const Scene& scene) {
   const torques::GravityGradient* first = nullptr;
   for (const AnyTorque& torque : scene.torques()) {
     const auto* custom = std::get_if<torques::Custom>(&torque);
-    if (std::holds_alternative<torques::Formula>(torque) || (custom != nullptr && custom->name() == "Formula")) {
-      return "a Formula that is no torque of the list, whose series are not used yet (dop853 and rk45 integrate it)";
-    }
+    const auto* formula = std::get_if<torques::Formula>(&torque);
+    if ((formula != nullptr && formula->has_switches()) || (custom != nullptr && custom->name() == "Formula"))
+      return "a Formula with switches, whose series are not used yet (dop853 and rk45 integrate it)";
     if (custom != nullptr) return "a Custom torque, which has no Taylor series (dop853 and rk45 integrate it)";
     if (const auto* gradient = std::get_if<torques::GravityGradient>(&torque)) {
       if (first != nullptr &&

@@ -36,6 +36,7 @@ class BodySeries {
   const Vector3d& fixed_vector(int i) const { return space_[i]; }
   double orbit_phase() const { return orbit_phase_; }
   const Matrix3d& axes() const { return R_BP_; }
+  const Quat& from_axes() const { return q_PB_; }  ///< q_WB = q_WP q_PB
   bool is_rotated() const { return rotated_; }     ///< axes() is not the identity
   const Vector3d& moments() const { return I_; }   ///< about the axes P
   /// True for a free body in separatrix variables, which conserves u v and balance (u^2 + v^2) + w2^2.
@@ -83,6 +84,8 @@ class BodySeries {
   double compute_time_scale(math::DD t, const double* y) const;
   void start_carry(double* carry) const;
   void correct(math::DD t, long step, double* y, double* carry) const;
+  /// Restores |q| = 1, or the length of the vertical, of numbers 4 to 7.
+  static void keep_unit(double* y, double* carry);
 
  private:
   void choose_variables(const Vector3d& omega_P);
@@ -92,8 +95,6 @@ class BodySeries {
   void set_column(double* column, const Vector3d& torque_P) const;   ///< adds torque / inertia
   void add_acceleration(double* column, const Vector3d& a) const;
   void correct_rates(double* y, double* carry) const;
-  static void keep_unit(double* y, double* carry);
-
   Matrix3d R_BP_ = Matrix3d::Identity();
   Quat q_PB_ = {};
   bool rotated_ = false, attitude_ = true;

@@ -196,7 +196,7 @@ void ColumnSeries::advance(double s) {
     for (int i = 0; i < 6; ++i) {
       static constexpr double zero[8] = {};
       alignas(64) double increment[8];
-      ode::series_kernels().evaluate(series_[g].of[i][0], order_, zero, start_[g].low[i], &s, 1, increment);
+      ode::evaluate_series(series_[g].of[i][0], order_, ode::series_width, zero, start_[g].low[i], &s, 1, increment);
       for (int lane = 0; lane < 8; ++lane) {
         const DD sum = math::two_sum(start_[g].high[i][lane], increment[lane]);
         arrived_[g].high[i][lane] = sum.hi, arrived_[g].low[i][lane] = sum.lo;
@@ -228,8 +228,8 @@ void ColumnSeries::evaluate(const double* s, std::size_t n, double* out) const {
     const std::size_t count = std::min(most, n - begin);
     for (std::size_t g = 0; g < series_.size(); ++g) {
       for (int i = 0; i < 6; ++i)
-        ode::series_kernels().evaluate(series_[g].of[i][0], order_, start_[g].high[i], start_[g].low[i], s + begin,
-                                       count, values[i][0]);
+        ode::evaluate_series(series_[g].of[i][0], order_, ode::series_width, start_[g].high[i], start_[g].low[i],
+                             s + begin, count, values[i][0]);
       for (std::size_t k = 0; k < count; ++k) {
         for (int i = 0; i < 6; ++i) std::copy_n(values[i][k], 8, column[i]);
         to_body(g, column, out + 6 * count_ * (begin + k));

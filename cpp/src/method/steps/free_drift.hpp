@@ -109,7 +109,7 @@ class FreeDrift {
     alignas(64) double rows[ode::series_width * (most + 1)], change[8];
     kernel_(terms_, {y, nullptr, 1.0}, order, rows);
     constexpr double zero[8] = {};
-    ode::series_kernels().evaluate(rows, order, zero, rest, &h, 1, change);
+    ode::evaluate_series(rows, order, ode::series_width, zero, rest, &h, 1, change);
     for (int i = 0; i < 3; ++i) add(change[i], state[i], state[3 + i]);
     double norm = 0.0, cross = 0.0;
     for (int i = 0; i < 4; ++i) {

@@ -5,19 +5,21 @@
 
 #include "method/method.hpp"
 #include "method/series/body_series.hpp"
+#include "method/series/formula_series.hpp"
 
 namespace polhode {
 namespace {
 
-Trajectory integrate_taylor(const Scene& scene, const RunOptions& options) {
+template <class Series>
+Trajectory integrate_series(const Scene& scene, const RunOptions& options) {
   // Shared with the trajectory, because dense output needs it to unpack states.
-  const auto series = std::make_shared<const BodySeries>(scene, scene.want().attitude || !options.events.empty());
+  const auto series = std::make_shared<const Series>(scene, scene.want().attitude || !options.events.empty());
   const Unpack unpack = [series](const double* rows, std::size_t n, double* omega, double* attitude) {
     series->unpack(rows, n, omega, attitude);
   };
-  using Tracked = ode::TrackedTaylor<BodySeries>;
+  using Tracked = ode::TrackedTaylor<Series>;
   ode::ErrorTrace* trace = options.trace;
-  std::optional<BodySeries> lost, perturbed, sampled;
+  std::optional<Series> lost, perturbed, sampled;
   if (trace != nullptr) {
     sampled = series->perturbed(trace->perturbation(), 2);
     perturbed = series->perturbed(trace->perturbation(), 1);
@@ -34,13 +36,18 @@ Trajectory integrate_taylor(const Scene& scene, const RunOptions& options) {
       return std::make_unique<Tracked>(*series, *lost, *perturbed, *sampled, scene.t0(), y, t_end,
                                        options.tolerances, *trace);
     }
-    return std::make_unique<ode::Taylor::Stepper<BodySeries>>(*series, scene.t0(), y, t_end, options.tolerances);
+    return std::make_unique<ode::Taylor::Stepper<Series>>(*series, scene.t0(), y, t_end, options.tolerances);
   };
   Trajectory trajectory = integrate(scene, options, series->start(), unpack, make);
   if (trace != nullptr)
     for (double* error : {trace->loss, trace->spread, trace->sample}) series->unpack_error(error);
   trajectory.model = "euler", trajectory.state = series->describe_state();
   return trajectory;
+}
+
+Trajectory integrate_taylor(const Scene& scene, const RunOptions& options) {
+  return needs_formula_series(scene) ? integrate_series<FormulaSeries>(scene, options)
+                                     : integrate_series<BodySeries>(scene, options);
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ Motion run_planned(const Decision& decision, const Scene& scene, const SolveOpti
       const Quat& q = part.attitude();
       const Vector3d& w = part.omega();
       const double start[ode::series_width] = {w[0], w[1], w[2], 0.0, q.x, q.y, q.z, q.w};
-      trace->start(start);
+      trace->start(start, ode::series_width);
       trace->continued = true;
       h = scene.rotor_momentum();
     }

@@ -128,7 +128,7 @@ Scene resolve_formulas(const Scene& scene, AsCustom as_custom, std::vector<std::
     if (formula == nullptr) continue;
     const auto known = recognise(*formula, scene);
     if (!known) {
-      if (as_custom == AsCustom::yes) parts.torques[i] = with_window(torque, formula->as_custom());
+      if (as_custom == AsCustom::yes && formula->has_switches()) parts.torques[i] = with_window(torque, formula->as_custom());
       continue;
     }
     std::string names;

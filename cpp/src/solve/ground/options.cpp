@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "method/method.hpp"
+#include "method/series/formula_series.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/core/float_state.hpp"
 #include "polhode/solve/plan.hpp"
@@ -69,7 +70,7 @@ void require_provable(const Scene& scene, const SolveOptions& options) {
     throw InvalidInput("certify='proof'", "used where the processor rounds to nearest", "another rounding mode",
                        "the bounds on rounding hold for that mode alone: a library or fesetround() changed it");
   }
-  if (calls_custom(scene)) {
+  if (calls_custom(scene) || needs_formula_series(scene)) {
     throw InvalidInput("certify='proof'", "left out with torques of the user's own", "a Custom torque or a Formula",
                        "its function gives numbers, and a proof needs bounds on them at every state nearby");
   }

@@ -1,0 +1,187 @@
+#include "method/series/formula_series.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+#include "polhode/core/error.hpp"
+#include "polhode/formula/expression.hpp"
+#include "polhode/math/detail/coin.hpp"
+
+namespace polhode {
+namespace {
+
+using formula::Expr;
+using formula::Form;
+using formula::Graph;
+using formula::Vec;
+using math::DD;
+
+Scene drop_torques(const Scene& scene) {
+  SceneParts parts = scene.parts();
+  parts.torques.clear();
+  return Scene(std::move(parts));
+}
+
+/// The product of two quaternions, the second a constant.
+Vec<Expr, 4> multiply(const Vec<Expr, 4>& p, const Quat& q) {
+  return {{p[3] * q.x + p[0] * q.w + p[1] * q.z - p[2] * q.y, p[3] * q.y - p[0] * q.z + p[1] * q.w + p[2] * q.x,
+           p[3] * q.z + p[0] * q.y - p[1] * q.x + p[2] * q.w, p[3] * q.w - p[0] * q.x - p[1] * q.y - p[2] * q.z}};
+}
+
+/// Numbers of memory that begin at a boundary of 64 bytes.
+double* align(std::vector<double>& numbers) {
+  const auto address = reinterpret_cast<std::uintptr_t>(numbers.data());
+  return numbers.data() + (64 - address % 64) % 64 / sizeof(double);
+}
+
+bool is_power_of_two(double x) { return (std::bit_cast<std::uint64_t>(x) & 0xf'ffff'ffff'ffffull) == 0; }
+
+}  // namespace
+
+bool needs_formula_series(const Scene& scene) {
+  return std::any_of(scene.torques().begin(), scene.torques().end(), [](const AnyTorque& torque) {
+    const auto* during = std::get_if<torques::During>(&torque);
+    return during != nullptr ? std::holds_alternative<torques::Formula>(during->torque())
+                             : std::holds_alternative<torques::Formula>(torque);
+  });
+}
+
+FormulaSeries::FormulaSeries(const Scene& scene, bool) : frame_(drop_torques(scene), true) {
+  const formula::Program system = make_system(scene);
+  table_ = std::make_shared<const formula::Table>(formula::Tape(system));
+  start_.assign(static_cast<std::size_t>(width()), 0.0);
+  std::copy_n(frame_.start(), ode::series_width, start_.begin());
+  workspace_.resize(table_->workspace_size(ode::most_series_order) + 8);
+}
+
+/// Euler's equations in the frame's variables, with the torques as accelerations there.
+formula::Program FormulaSeries::make_system(const Scene& scene) {
+  formula::Program made;
+  Graph& graph = made.graph;
+  const SeriesTerms& terms = frame_.terms();
+  const bool plain = terms.variables == RateVariables::plain;
+  const Vec<Expr, 3> r = formula::list_states<3>(graph, formula::first_rate);
+  const Vec<Expr, 4> q_WP = formula::list_states<4>(graph, formula::first_attitude);
+  const Matrix3d& R_BP = frame_.axes();
+  const Vector3d& I = frame_.moments();
+  const double half_over_k = terms.to_rates[0];
+  const Vec<Expr, 3> w_P = plain ? r : Vec<Expr, 3>{{(r[1] - r[0]) * half_over_k, r[2], (r[0] + r[1]) * 0.5}};
+  const bool rotated = frame_.is_rotated();
+  const Vec<Expr, 3> w_B = rotated ? formula::apply_matrix(R_BP, w_P) : w_P;
+  const Vec<Expr, 4> q_WB = rotated ? multiply(q_WP, frame_.from_axes()) : q_WP;
+
+  std::vector<Form> body;
+  for (const Expr& rate : w_B.components) body.push_back(rate.form());
+  for (const Expr& part : q_WB.components) body.push_back(part.form());
+  Vec<Expr, 3> tau_B;
+  for (const AnyTorque& torque : scene.torques()) {
+    const formula::Program law = make_law(torque, scene.inertia_B().matrix());
+    const std::vector<Form> outputs = formula::embed(law, graph, body, rotated ? &R_BP : nullptr);
+    for (std::size_t i = 0; i < 3; ++i) tau_B[i] = tau_B[i] + Expr(graph, outputs[i]);
+  }
+  Vec<Expr, 3> tau_P = rotated ? formula::apply_matrix(Matrix3d(R_BP.transpose()), tau_B) : tau_B;
+  if (const Vector3d h_P = R_BP.transpose() * scene.rotor_momentum(); !h_P.isZero(0.0))
+    tau_P = tau_P + cross(formula::make_vector<Expr>(h_P), w_P);
+  Vec<Expr, 3> a;
+  for (int i = 0; i < 3; ++i) a[static_cast<std::size_t>(i)] = tau_P[static_cast<std::size_t>(i)] / I[i];
+
+  Vec<Expr, 3> change;
+  const double* product = terms.product;
+  if (plain) {
+    for (std::size_t i = 0; i < 3; ++i) change[i] = a[i] + r[(i + 1) % 3] * r[(i + 2) % 3] * product[i];
+  } else {
+    const Expr along = a[0] * (0.5 / half_over_k);   // k a_1
+    change = {{a[2] - along + r[0] * r[2] * product[0], a[2] + along + r[1] * r[2] * product[1],
+               a[1] + (r[1] - r[0]) * (r[1] + r[0]) * product[2]}};
+  }
+  for (const Expr& rate : change.components) made.outputs.push_back(rate.form());
+  const Vec<Expr, 4> turn = formula::multiply_pure(q_WP, w_P);
+  for (const Expr& rate : turn.components) made.outputs.push_back((rate * 0.5).form());
+  if (!plain)
+    for (const Expr& rate : w_P.components) made.rates.push_back(rate.form());
+  return formula::rewrite(made);
+}
+
+std::string FormulaSeries::describe_state() const { return frame_.describe_state(); }
+
+void FormulaSeries::unpack(const double* rows, std::size_t n, double* omega, double* attitude) const {
+  const auto stride = static_cast<std::size_t>(width());
+  if (stride == ode::series_width) return frame_.unpack(rows, n, omega, attitude);
+  for (std::size_t i = 0; i < n; ++i) frame_.unpack(rows + stride * i, 1, omega + 3 * i, attitude + 4 * i);
+}
+
+FormulaSeries FormulaSeries::perturbed(double part, int choice) const {
+  FormulaSeries other = *this;
+  const SeriesTerms& terms = frame_.terms();
+  const bool rounded = frame_.is_rotated() && frame_.axes().cwiseAbs().maxCoeff() < 1.0;
+  const Vector3d& I = frame_.moments();
+  const auto change = [&](double x) {
+    const double size = std::abs(x);
+    double by = (rounded ? 8.0 : 2.0) * size;
+    bool is_product = false;
+    for (int i = 0; i < 3; ++i) {
+      if (size != std::abs(terms.product[i])) continue;
+      is_product = true;
+      if (rounded) by = std::max(by, I.maxCoeff() / I[i]);
+    }
+    if (x == 0.0 || !std::isfinite(x) || (is_power_of_two(x) && !is_product)) return x;
+    math::Coin coin(std::bit_cast<std::uint64_t>(size) ^ (2025 + static_cast<std::uint64_t>(choice)));
+    return std::copysign(size + (coin.toss() ? part * by : -part * by), x);
+  };
+  other.table_ = std::make_shared<const formula::Table>(table_->with_constants(change));
+  return other;
+}
+
+FormulaSeries FormulaSeries::shifted(double, const double* error) const {
+  FormulaSeries other = *this;
+  for (std::size_t i = 0; i < start_.size(); ++i) other.start_[i] += error[i];
+  return other;
+}
+
+void FormulaSeries::measure_error(const double* y, const double* error, double* out) const {
+  frame_.measure_error(y, error, out);
+}
+
+void FormulaSeries::compute_series(DD t, double unit, const double* y, const double*, int order, double* rows) const {
+  double states[most_width];
+  std::copy_n(y, 3, states);
+  std::copy_n(y + 4, width() - 4, states + 3);
+  table_->compute_series(simd_level(), t, unit, states, order, rows, nullptr, align(workspace_));
+}
+
+void FormulaSeries::compute_sizes(const double* row, double* sizes) const {
+  frame_.compute_sizes(row, sizes);
+  int begin = ode::series_width;
+  for (std::size_t i = 0; i < ends_.size(); begin = ends_[i++]) {
+    double largest = 0.0, sum = 0.0;
+    for (int k = begin; k < ends_[i]; ++k) largest = std::max(largest, std::abs(row[k])), sum += row[k];
+    sizes[2 + i] = largest + 0.0 * sum;   // NaN if a number is
+  }
+}
+
+/// From the first two derivatives: the rates' own, and those of the quaternion and the states.
+double FormulaSeries::compute_time_scale(DD t, const double* y) const {
+  alignas(64) double rows[3 * most_width];
+  compute_series(t, 1.0, y, y, 2, rows);
+  double size[3][blocks], rate = 0.0;
+  for (int k = 0; k < 3; ++k) compute_sizes(rows + width() * k, size[k]);
+  rate = std::max(size[0][0], std::sqrt(size[1][0]));
+  for (int b = 0; b < count_blocks(); ++b) {
+    if (!(size[0][b] > 0.0)) continue;
+    rate = std::max({rate, size[1][b] / size[0][b], std::sqrt(size[2][b] / size[0][b])});
+  }
+  return rate > 0.0 && rate < std::numeric_limits<double>::infinity() ? 1.0 / rate : 0x1p900;
+}
+
+void FormulaSeries::start_carry(double* carry) const {
+  std::fill_n(carry, width(), 0.0);
+  frame_.start_carry(carry);
+}
+
+void FormulaSeries::correct(DD, long, double* y, double* carry) const { BodySeries::keep_unit(y, carry); }
+
+}  // namespace polhode

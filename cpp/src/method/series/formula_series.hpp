@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "method/series/body_series.hpp"
+#include "polhode/formula/table.hpp"
+#include "polhode/ode/series.hpp"
+
+namespace polhode {
+
+/// Whether a scene has a torque that only formula::Table expands.
+bool needs_formula_series(const Scene& scene);
+
+/// A body under torques that are formulas, as an ode::WideProblem. The equations of the whole body are one table, in the
+/// variables of a BodySeries without torques: rates in principal axes or separatrix variables, and q_WP. The states of
+/// the formulas follow, eight numbers a row's octet.
+class FormulaSeries {
+ public:
+  static constexpr int most_width = ode::most_series_width;
+  static constexpr int blocks = 2 + most_width - ode::series_width;
+  static constexpr std::array<int, blocks> heads = [] {
+    std::array<int, blocks> heads{};
+    heads.fill(3);
+    heads[1] = 1;
+    return heads;
+  }();
+
+  /// @param attitude  is integrated in any case
+  explicit FormulaSeries(const Scene& scene, bool attitude = true);
+
+  int width() const { return table_->width(); }
+  int count_blocks() const { return 2 + static_cast<int>(ends_.size()); }
+  const double* start() const { return start_.data(); }
+  std::string describe_state() const;
+
+  /// w_B and q_WB of n rows.
+  void unpack(const double* rows, std::size_t n, double* omega, double* attitude) const;
+  void pack_error(double* error) const { frame_.pack_error(error); }
+  void unpack_error(double* error) const { frame_.unpack_error(error); }
+
+  /// A copy with each constant of the table changed by twice this part of it, up or down by a rule for each choice.
+  /// Equal constants change as one. 0 and powers of two, which are structure, stay. A body whose axes are rounded gets
+  /// eight times as much.
+  FormulaSeries perturbed(double part, int choice) const;
+  /// A copy that starts from another state: this one plus an error.
+  FormulaSeries shifted(double t0, const double* error) const;
+  void measure_error(const double* y, const double* error, double* out) const;
+
+  void compute_series(math::DD t, double unit, const double* y, const double* carry, int order, double* rows) const;
+  void compute_sizes(const double* row, double* sizes) const;
+  double compute_time_scale(math::DD t, const double* y) const;
+  void start_carry(double* carry) const;
+  void correct(math::DD t, long step, double* y, double* carry) const;
+
+ private:
+  formula::Program make_system(const Scene& scene);
+
+  BodySeries frame_;
+  std::vector<int> ends_;          ///< columns behind each vector of states
+  std::vector<double> start_;
+  std::shared_ptr<const formula::Table> table_;
+  mutable std::vector<double> workspace_;   ///< of one run at a time
+};
+
+}  // namespace polhode

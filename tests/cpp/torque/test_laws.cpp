@@ -1,0 +1,64 @@
+// The law of each torque of the list, as a formula, against its function.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "polhode/formula/trace.hpp"
+#include "polhode/torque/torques.hpp"
+
+namespace polhode {
+namespace {
+
+Matrix3d make_inertia() {
+  Matrix3d I;
+  I << 1.2, 0.2, -0.1, 0.2, 2.0, 0.3, -0.1, 0.3, 1.7;
+  return I;
+}
+
+std::vector<AnyTorque> list_torques() {
+  Matrix3d C;
+  C << 0.3, 0.1, 0.0, -0.2, 0.4, 0.05, 0.0, 0.1, 0.2;
+  const torques::Formula spin = torques::Formula::from(
+      [](const auto& in) { return cross(in.omega, in.template p<3>("h")) * tanh(in.attitude.w()); },
+      {{"h", {0.1, 0.7, -0.3}}});
+  return {torques::Constant({0.1, -0.2, 0.3}, torques::Constant::Frame::body),
+          torques::Constant({0.1, -0.2, 0.3}, torques::Constant::Frame::space),
+          torques::Gravity(2.0, {0.3, 0.2, 0.5}),
+          torques::GravityGradient(0.7, 0.4),
+          torques::Damping(C),
+          torques::AngularDamping(0.3),
+          spin,
+          torques::During(torques::Damping(C), {{-1e9, 1e9}})};
+}
+
+}  // namespace
+
+TEST_CASE("the law of each torque is its function") {
+  const Matrix3d I = make_inertia();
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  for (const AnyTorque& torque : list_torques()) {
+    CAPTURE(torque_name(torque));
+    const formula::Program law = make_law(torque, I);
+    REQUIRE(law.outputs.size() == 3);
+    formula::Evaluator evaluate(law);
+    const std::vector<double> parameters = formula::list_values(law.parameters);
+    for (int round = 0; round < 20; ++round) {
+      double y[7], size = 0.0, tau[3] = {0.0, 0.0, 0.0}, value[3];
+      for (double& number : y) number = normal(random);
+      for (int i = 3; i < 7; ++i) size += y[i] * y[i];
+      for (int i = 3; i < 7; ++i) y[i] /= std::sqrt(size);
+      const double t = normal(random);
+      std::visit([&](const auto& any) { any.add(TorqueInput{t, y, y + 3, I}, tau); }, torque);
+      evaluate(t, y, parameters.data(), value);
+      for (int i = 0; i < 3; ++i) CHECK(std::abs(value[i] - tau[i]) < 4e-15);
+    }
+  }
+  const auto rate = [](double, const double*, const double*, double*, void*) {};
+  CHECK_THROWS(make_law(torques::Custom(rate, nullptr, {}), I));
+}
+
+}  // namespace polhode
