@@ -98,15 +98,27 @@ void bind_scene(py::module_& m) {
                                if (scene.want().attitude) list.append("attitude");
                                return py::tuple(list);
                              })
-      .def("torque", [](const Scene& scene, const py::object& t, const py::object& omega, const py::object& attitude) {
+      .def_property_readonly("states", [](const Scene& scene) {
+        py::dict all;
+        for (const formula::Input& state : scene.states()) {
+          const auto count = static_cast<py::ssize_t>(state.values.size());
+          all[py::str(state.name)] = count == 1 ? py::object(py::float_(state.values[0]))
+                                                : py::object(Array(count, state.values.data()));
+        }
+        return all;
+      }, "dict: the starts of the states that formulas have, by name.")
+      .def("torque", [](const Scene& scene, const py::object& t, const py::object& omega, const py::object& attitude,
+                        const py::object& states) {
         const Vector3d w = to_vector3(omega, "omega");
         const Quat unit = to_attitude(attitude, "attitude");
         const double q[4] = {unit.x, unit.y, unit.z, unit.w};
         Vector3d tau = Vector3d::Zero();
         const Matrix3d& I_B = scene.inertia_B().matrix();
-        SeveralTorques{scene.torques()}.add(TorqueInput{to_real(t, "t"), w.data(), q, I_B}, tau.data());
+        std::vector<AnyTorque> torques = scene.torques();
+        if (!states.is_none()) set_starts(torques, to_state_numbers(scene.states(), states));
+        SeveralTorques{torques}.add(TorqueInput{to_real(t, "t"), w.data(), q, I_B}, tau.data());
         return from_vector3(tau);
-      }, py::arg("t"), py::arg("omega"), py::arg("attitude"), R"doc(Return the sum of the torques at one state.
+      }, py::arg("t"), py::arg("omega"), py::arg("attitude"), py::arg("states") = py::none(), R"doc(Return the sum of the torques at one state.
 
 Parameters
 ----------
@@ -116,6 +128,8 @@ omega : array_like, shape (3,)
     Rates in body axes [rad/s].
 attitude : array_like, shape (4,)
     Unit quaternion (x, y, z, w).
+states : dict, optional
+    Numbers of the formulas' states by name; the starts if left out.
 
 Returns
 -------

@@ -32,7 +32,37 @@ struct Answer {
   Motion motion;
   Wanted want;
   PlannedScene planned;   // what ran
+  std::vector<formula::Input> states;
 };
+
+/// Rows of the states' numbers as arrays by their names: (n,) of a number, (n, k) of a vector.
+py::dict name_states(const std::vector<formula::Input>& states, const std::vector<double>& rows) {
+  py::dict all;
+  const auto width = static_cast<py::ssize_t>(formula::list_values(states).size());
+  const py::ssize_t n = width > 0 ? static_cast<py::ssize_t>(rows.size()) / width : 0;
+  py::ssize_t first = 0;
+  for (const formula::Input& state : states) {
+    const auto count = static_cast<py::ssize_t>(state.values.size());
+    Array array = count == 1 ? Array(n) : Array({n, count});
+    double* out = array.mutable_data();
+    for (py::ssize_t i = 0; i < n; ++i) out = std::copy_n(rows.data() + width * i + first, count, out);
+    all[py::str(state.name)] = array;
+    first += count;
+  }
+  return all;
+}
+
+/// Those of one state.
+py::dict name_state(const std::vector<formula::Input>& states, const std::vector<double>& numbers) {
+  py::dict all;
+  const double* in = numbers.data();
+  for (const formula::Input& state : states) {
+    const auto count = static_cast<py::ssize_t>(state.values.size());
+    all[py::str(state.name)] = count == 1 ? py::object(py::float_(*in)) : py::object(Array(count, in));
+    in += count;
+  }
+  return all;
+}
 
 /// Bounds of a proof; None without one.
 template <std::vector<double> Motion::*part, py::ssize_t columns>
@@ -51,7 +81,7 @@ std::unique_ptr<Answer> solve_scene(const Scene& scene, const py::dict& given, p
   PlannedScene planned = made != nullptr ? *made : PlannedScene(scene, options);
   Motion motion = planned.run(options);
   if (made == nullptr) motion.stats += planned.cost();
-  return std::unique_ptr<Answer>(new Answer{std::move(motion), scene.want(), std::move(planned)});
+  return std::unique_ptr<Answer>(new Answer{std::move(motion), scene.want(), std::move(planned), scene.states()});
 }
 
 py::dict describe_stats(const Motion& motion) {
@@ -66,7 +96,8 @@ py::dict describe_stats(const Motion& motion) {
   return stats;
 }
 
-py::list describe_events(const Motion& motion) {
+py::list describe_events(const Answer& answer) {
+  const Motion& motion = answer.motion;
   py::list hits;
   for (const MotionEvent& hit : motion.events) {
     py::dict all;
@@ -74,6 +105,7 @@ py::list describe_events(const Motion& motion) {
     all["t"] = hit.state.t;
     all["omega"] = from_vector3(hit.state.omega);
     all["attitude"] = from_quat(hit.state.attitude);
+    if (!answer.states.empty()) all["states"] = name_state(answer.states, hit.state.states);
     hits.append(all);
   }
   return hits;
@@ -110,7 +142,9 @@ void bind_solve(py::module_& m) {
       .def_property_readonly("status", [](const Answer& answer) { return std::string(to_text(answer.motion.status)); })
       .def_property_readonly("message", [](const Answer& answer) { return answer.motion.message; })
       .def_property_readonly("stats", [](const Answer& answer) { return describe_stats(answer.motion); })
-      .def_property_readonly("events", [](const Answer& answer) { return describe_events(answer.motion); })
+      .def_property_readonly("events", [](const Answer& answer) { return describe_events(answer); })
+      .def_property_readonly("states",
+                             [](const Answer& answer) { return name_states(answer.states, answer.motion.states); })
       .def_property_readonly("plan",
                              [](const Answer& answer) {
                                const Motion& motion = answer.motion;
@@ -145,6 +179,15 @@ void bind_solve(py::module_& m) {
           }
         }
         return py::make_tuple(omega, attitude);
+      })
+      .def("states_at", [](const Answer& answer, py::handle times) {
+        const Array t = to_array(times, "motion.states_at(t)");
+        std::vector<double> rows;
+        for (py::ssize_t i = 0; i < t.size(); ++i) {
+          const State state = answer.motion.at(t.data()[i]);
+          rows.insert(rows.end(), state.states.begin(), state.states.end());
+        }
+        return name_states(answer.states, rows);
       });
 
   m.def("solve", &solve_scene, py::arg("scene"), py::arg("options"), py::arg("plan") = py::none());

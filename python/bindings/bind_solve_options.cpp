@@ -1,5 +1,7 @@
 #include "bind_solve_options.hpp"
 
+#include <pybind11/stl.h>
+
 #include <string_view>
 
 #include "convert.hpp"
@@ -20,8 +22,10 @@ Formulation to_formulation(py::handle value) {
 SceneEvent to_event(py::handle event) {
   return {[event](const State& state) {
             return with_gil([&] {
-              const py::object value = event.attr("function")(state.t, from_vector3(state.omega),
-                                                              from_quat(state.attitude));
+              const py::object function = event.attr("function"), omega = from_vector3(state.omega);
+              const py::object attitude = from_quat(state.attitude);
+              const py::object value = state.states.empty() ? function(state.t, omega, attitude)
+                                                            : function(state.t, omega, attitude, state.states);
               return to_real(value, "the event's function");
             });
           },

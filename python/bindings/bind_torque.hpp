@@ -112,7 +112,7 @@ inline bool uses_inertia(const AnyTorque& torque) {
 }
 
 inline Array compute_value(const AnyTorque& torque, py::handle t, py::handle omega, py::handle attitude,
-                           py::handle inertia) {
+                           py::handle inertia, py::handle states) {
   Matrix3d I_B = Matrix3d::Identity();
   if (!inertia.is_none()) {
     I_B = to_inertia(inertia, "inertia").matrix();
@@ -124,6 +124,12 @@ inline Array compute_value(const AnyTorque& torque, py::handle t, py::handle ome
   const double q[4] = {unit.x, unit.y, unit.z, unit.w};
   Vector3d tau = Vector3d::Zero();
   const TorqueInput in{to_real(t, "t"), w.data(), q, I_B};
+  const auto* formula = std::get_if<torques::Formula>(&torque);
+  if (formula != nullptr && !formula->states().empty()) {
+    const std::vector<double> outputs = formula->compute(in, to_state_numbers(formula->states(), states));
+    return from_vector3(Vector3d(outputs[0], outputs[1], outputs[2]));
+  }
+  if (!states.is_none()) throw InvalidInput("states", "left out for a torque without states", std::string(py::repr(states)));
   std::visit([&](const auto& one) { one.add(in, tau.data()); }, torque);
   return from_vector3(tau);
 }
@@ -140,6 +146,8 @@ attitude : array_like, shape (4,)
     Unit quaternion (x, y, z, w).
 inertia : InertiaTensor or array_like, optional
     Of the body, for a torque that depends on it [kg m^2].
+states : dict, optional
+    Numbers of the torque's own states by name, each with the shape of its start; the starts if left out.
 
 Returns
 -------
@@ -147,17 +155,17 @@ ndarray, shape (3,)
     In body axes [N m].
 )doc";
 
-/// value(t, omega, attitude, inertia=None) of a torque's class.
+/// value(t, omega, attitude, inertia=None, states=None) of a torque's class.
 template <class T, class... Options>
 void bind_value(py::class_<T, Options...>& type) {
   type.def("value", [](const T& torque, const py::object& t, const py::object& omega, const py::object& attitude,
-                       const py::object& inertia) {
+                       const py::object& inertia, const py::object& states) {
     if constexpr (requires { torque.get(); }) {
-      return compute_value(torque.get(), t, omega, attitude, inertia);
+      return compute_value(torque.get(), t, omega, attitude, inertia, states);
     } else {
-      return compute_value(torque, t, omega, attitude, inertia);
+      return compute_value(torque, t, omega, attitude, inertia, states);
     }
-  }, py::arg("t"), py::arg("omega"), py::arg("attitude"), py::arg("inertia") = py::none(), value_doc);
+  }, py::arg("t"), py::arg("omega"), py::arg("attitude"), py::arg("inertia") = py::none(), py::arg("states") = py::none(), value_doc);
 }
 
 }  // namespace polhode::python

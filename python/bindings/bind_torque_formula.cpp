@@ -2,99 +2,19 @@
 #include <memory>
 #include <optional>
 
+#include "bind_formula.hpp"
 #include "bind_torque.hpp"
 #include "convert.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/torque/formula.hpp"
 
-// polhode.torques.Formula, and the symbols that a Python function is traced with (python/polhode/_formula).
+// polhode.torques.Formula.
 namespace polhode::python {
 namespace {
 
-using formula::Condition;
-using formula::Expr;
-using formula::Graph;
 using formula::Input;
 using formula::Text;
-using formula::Vec;
 using torques::Formula;
-
-/// A number under construction that keeps its graph alive.
-struct Traced {
-  std::shared_ptr<Graph> graph;
-  Expr expr;
-};
-
-struct TracedCondition {
-  std::shared_ptr<Graph> graph;
-  Condition condition;
-};
-
-/// What the arguments of one operation have in common.
-class Operands {
- public:
-  Expr operator()(py::handle value) {
-    if (!py::isinstance<Traced>(value)) return Expr(to_real(value, "a number of the formula"));
-    const Traced& traced = value.cast<const Traced&>();
-    if (!traced.graph) return traced.expr;   // an operation on numbers alone
-    if (graph_ && graph_ != traced.graph) throw InvalidInput("Formula", "of the symbols of one trace", "those of two");
-    graph_ = traced.graph;
-    return traced.expr;
-  }
-  Traced wrap(Expr expr) const { return {graph_, std::move(expr)}; }
-  std::shared_ptr<Graph> graph_;
-};
-
-/// The inputs of one trace. Parameters have one number or several.
-struct Tracer {
-  explicit Tracer(std::vector<Input> given) : parameters(std::move(given)) {}
-
-  py::list list(int first, int count, formula::Form (Graph::*make)(int)) {
-    py::list found;
-    for (int i = 0; i < count; ++i) found.append(Traced{graph, Expr(*graph, (graph.get()->*make)(first + i))});
-    return found;
-  }
-
-  Text finish(const py::sequence& outputs) {
-    formula::Program program;
-    Operands operands;
-    for (const py::handle output : outputs) program.outputs.push_back(operands(output).form());
-    if (operands.graph_ && operands.graph_ != graph)
-      throw InvalidInput("Formula", "a result of its own symbols", "symbols of another trace");
-    program.graph = *graph, program.parameters = parameters;
-    return formula::print(formula::rewrite(program));
-  }
-
-  std::vector<Input> parameters;
-  std::shared_ptr<Graph> graph = std::make_shared<Graph>();
-};
-
-/// Parameters by their names: a number, or several.
-std::vector<Input> to_inputs(const py::dict& parameters) {
-  std::vector<Input> inputs;
-  for (const auto& [key, value] : parameters) {
-    const std::string name = key.cast<std::string>(), where = "Formula." + name;
-    const Array array = to_array(value, where.c_str());
-    require_finite(array, where.c_str());
-    if (array.ndim() > 1 || (array.ndim() == 1 && array.size() < 2)) {
-      throw InvalidInput(where, "a number, or a list of two numbers or more",
-                         "shape " + std::string(py::str(array.attr("shape"))), "give a matrix by its rows");
-    }
-    inputs.push_back({name, {array.data(), array.data() + array.size()}});
-  }
-  std::sort(inputs.begin(), inputs.end(), [](const Input& a, const Input& b) { return a.name < b.name; });
-  return inputs;
-}
-
-py::dict from_inputs(const std::vector<Input>& inputs) {
-  py::dict dict;
-  for (const Input& input : inputs) {
-    py::object value = py::float_(input.values[0]);
-    if (input.values.size() > 1) value = py::tuple(py::cast(input.values));
-    dict[py::str(input.name)] = value;
-  }
-  return dict;
-}
 
 std::string to_field(py::handle value, const std::string& where) {
   if (!py::isinstance<py::str>(value)) throw InvalidInput(where, "text", std::string(py::str(py::type::of(value))));
@@ -127,36 +47,94 @@ bool to_choice(py::handle value) {
   return value.cast<bool>();
 }
 
-Formula make_formula(const py::object& function, const py::object& text, const py::object& let,
-                     const py::object& recognise, const py::kwargs& parameters) {
-  const bool may = to_choice(recognise);
-  if (parameters.contains("states")) {
-    throw InvalidInput("Formula.states", "left out", "it",
-                       "states of a formula are not supported yet; keep them in the function of a Custom torque");
+void require_free_names(const std::vector<Input>& inputs) {
+  for (const Input& input : inputs)
+    if (input.name == "scale")   // the others are arguments
+      throw InvalidInput("Formula." + input.name, "named otherwise", "a reserved name");
+}
+
+/// States of a text: each a dict of start and rate.
+void add_states(const py::dict& states, Text& text) {
+  py::dict starts;
+  for (const auto& [name, state] : states) {
+    const std::string where = "Formula.states." + std::string(py::str(name));
+    if (!py::isinstance<py::dict>(state) || !state.contains("start") || !state.contains("rate") || py::len(state) != 2)
+      throw InvalidInput(where, "{\"start\": numbers, \"rate\": text} beside a text", std::string(py::repr(state)));
+    starts[name] = state["start"];
   }
-  if (function.is_none() == text.is_none())
-    throw InvalidInput("Formula", "given a function or text=, one of them", function.is_none() ? "neither" : "both");
+  text.states = to_inputs(starts, "Formula.states.");
+  for (const Input& input : text.states)
+    text.rates.push_back(to_field(states[py::str(input.name)]["rate"], "Formula.states." + input.name + ".rate"));
+}
+
+py::dict to_states(py::handle states) {
+  if (states.is_none()) return {};
+  if (!py::isinstance<py::dict>(states))
+    throw InvalidInput("Formula.states", "a dict of names and starts", std::string(py::str(py::type::of(states))));
+  return py::reinterpret_borrow<py::dict>(states);
+}
+
+Formula make_formula(const py::object& function, const py::object& text, const py::object& let,
+                     const py::object& potential, const py::object& states, const py::object& recognise,
+                     const py::kwargs& parameters) {
+  const bool may = to_choice(recognise);
+  const int given = !function.is_none() + !text.is_none() + !potential.is_none();
+  if (given != 1)
+    throw InvalidInput("Formula", "given a function, text= or potential=, one of them",
+                       given == 0 ? "none" : "several");
   const std::vector<Input> inputs = to_inputs(parameters);
-  if (!text.is_none()) return Formula(Text{to_field(text, "Formula.text"), inputs, {}, {}, to_let(let)}, may);
+  require_free_names(inputs);
+  const py::dict own = to_states(states);
+  const bool is_text = !text.is_none() || py::isinstance<py::str>(potential);
+  if (!potential.is_none() && own.size() > 0)
+    throw InvalidInput("Formula.states", "left out for a potential", std::string(py::repr(own)));
+  if (is_text) {
+    Text written{text.is_none() ? "" : to_field(text, "Formula.text"), inputs, {}, {}, to_let(let)};
+    if (text.is_none()) written.potential = to_field(potential, "Formula.potential");
+    if (written.torque.empty() && written.potential.empty())
+      throw InvalidInput("Formula", "a text with an expression", "an empty one");
+    add_states(own, written);
+    return Formula(written, may);
+  }
   if (!let.is_none()) throw InvalidInput("Formula.let", "left out for a function", std::string(py::repr(let)));
-  if (!PyCallable_Check(function.ptr())) {
-    throw InvalidInput("Formula.function", "callable as function(t, omega, attitude, p)",
-                       std::string(py::str(py::type::of(function))), "a text is given as text=");
+  const py::object& called = potential.is_none() ? function : potential;
+  if (!PyCallable_Check(called.ptr())) {
+    const bool torque = potential.is_none();
+    throw InvalidInput(torque ? "Formula.function" : "Formula.potential",
+                       torque ? "callable as function(t, omega, attitude, p)" : "callable as potential(t, attitude, p)",
+                       std::string(py::str(py::type::of(called))), torque ? "a text is given as text=" : "");
   }
   const py::module_ trace = py::module_::import("polhode._formula.trace");
-  const py::dict given = from_inputs(inputs);
-  Formula made(trace.attr("trace")(function, given).cast<const Text&>(), may);
-  trace.attr("compare")(function, given, py::cast(made));
+  const py::dict numbers = from_inputs(inputs), starts = from_inputs(to_inputs(own, "Formula.states."));
+  const bool is_potential = !potential.is_none();
+  Formula made(trace.attr("trace")(called, numbers, starts, is_potential).cast<const Text&>(), may);
+  trace.attr("compare")(called, numbers, starts, is_potential, py::cast(made));
   return made;
+}
+
+py::tuple to_pairs(const std::vector<Input>& inputs) {
+  py::list pairs;
+  for (const Input& input : inputs) pairs.append(py::make_tuple(input.name, py::tuple(py::cast(input.values))));
+  return py::tuple(pairs);
+}
+
+std::vector<Input> from_pairs(const py::sequence& pairs) {
+  std::vector<Input> inputs;
+  for (const py::handle one : pairs) {
+    const py::sequence pair = one.cast<py::sequence>();
+    Input input{pair[0].cast<std::string>(), {}};
+    for (const py::handle value : pair[1].cast<py::sequence>()) input.values.push_back(value.cast<double>());
+    inputs.push_back(std::move(input));
+  }
+  return inputs;
 }
 
 py::tuple get_state(const Formula& formula) {
   const Text& text = formula.text();
-  py::list let, parameters;
+  py::list let;
   for (const auto& [name, shared] : text.let) let.append(py::make_tuple(name, shared));
-  for (const Input& input : text.parameters)
-    parameters.append(py::make_tuple(input.name, py::tuple(py::cast(input.values))));
-  return py::make_tuple(text.torque, py::tuple(let), py::tuple(parameters), formula.recognise());
+  return py::make_tuple(text.torque, py::tuple(let), to_pairs(text.parameters), formula.recognise(),
+                        to_pairs(text.states), py::tuple(py::cast(text.rates)), text.potential);
 }
 
 Formula from_state_of(const py::tuple& s) {
@@ -166,26 +144,42 @@ Formula from_state_of(const py::tuple& s) {
     const py::sequence pair = one.cast<py::sequence>();
     text.let.emplace_back(pair[0].cast<std::string>(), pair[1].cast<std::string>());
   }
-  for (const py::handle one : s[2].cast<py::sequence>()) {
-    const py::sequence pair = one.cast<py::sequence>();
-    Input input{pair[0].cast<std::string>(), {}};
-    for (const py::handle value : pair[1].cast<py::sequence>()) input.values.push_back(value.cast<double>());
-    text.parameters.push_back(std::move(input));
-  }
+  text.parameters = from_pairs(s[2]);
+  text.states = from_pairs(s[4]);
+  for (const py::handle rate : s[5].cast<py::sequence>()) text.rates.push_back(rate.cast<std::string>());
+  text.potential = s[6].cast<std::string>();
   return Formula(text, s[3].cast<bool>());
 }
 
+py::dict from_states(const Formula& formula) {
+  const Text& text = formula.text();
+  const py::dict starts = from_inputs(text.states);
+  py::dict all;
+  for (std::size_t i = 0; i < text.states.size(); ++i) {
+    const py::str name(text.states[i].name);
+    py::dict one;
+    one["start"] = starts[name];
+    one["rate"] = text.rates[i];
+    all[name] = one;
+  }
+  return all;
+}
+
 std::string show(const Formula& formula) {
-  std::string text = "polhode.torques.Formula(text=" + std::string(py::repr(py::str(formula.text().torque)));
-  if (!formula.text().let.empty()) text += ", let=" + std::string(py::repr(from_let(formula.text())));
-  if (!formula.recognise()) text += ", recognise=False";
+  const Text& text = formula.text();
+  const bool is_potential = !text.potential.empty();
+  std::string shown = std::string("polhode.torques.Formula(") + (is_potential ? "potential=" : "text=") +
+                      std::string(py::repr(py::str(is_potential ? text.potential : text.torque)));
+  if (!text.let.empty()) shown += ", let=" + std::string(py::repr(from_let(text)));
+  if (!text.states.empty()) shown += ", states=" + std::string(py::repr(from_states(formula)));
+  if (!formula.recognise()) shown += ", recognise=False";
   for (const auto& [name, value] : from_inputs(formula.parameters()))
-    text += ", " + std::string(py::str(name)) + "=" + std::string(py::repr(value));
-  return text + ")";
+    shown += ", " + std::string(py::str(name)) + "=" + std::string(py::repr(value));
+  return shown + ")";
 }
 
 constexpr const char* formula_doc =
-    R"doc(Formula(function=None, *, text=None, let=None, recognise=True, **parameters)
+    R"doc(Formula(function=None, *, text=None, let=None, potential=None, states=None, recognise=True, **parameters)
 
 A torque of your own as a formula: traced once from a Python function, or written as text.
 
@@ -202,6 +196,13 @@ text : str, optional
     The same as text: ``"-kp * attitude.xyz * attitude.w - kd * omega"``. It is given in place of a function.
 let : dict of str, optional
     Names for shared parts of a text, in order.
+potential : callable or str, optional
+    ``potential(t, attitude, p)`` returns V [J], or its text. The torque is its negative gradient on the rotations. It
+    is given in place of a torque.
+states : dict, optional
+    States of the torque's own, by name. Beside a function each has its start, a number or shape (n,). The function is
+    then ``function(t, omega, attitude, p, s)`` and returns (torque, rates), a dict of the same names. Beside a text each
+    is ``{"start": numbers, "rate": text}``.
 recognise : bool
     Whether the formula may be replaced by torques of this module.
 **parameters : float or array_like, shape (n,)
@@ -218,105 +219,54 @@ See Also
 polhode.torques.Custom : a function that cannot be traced.
 )doc";
 
-template <class Function>
-void bind_function(py::module_& m, const char* name, Function function) {
-  m.def(name, [function](const py::object& a) {
-    Operands operands;
-    const Expr expr = function(operands(a));
-    return operands.wrap(expr);
-  });
-}
+constexpr const char* rates_doc = R"doc(Return the rates of the torque's own states.
 
-template <class Function>
-void bind_operator(py::module_& m, const char* name, Function function) {
-  m.def(name, [function](const py::object& a, const py::object& b) {
-    Operands operands;
-    const Expr left = operands(a), right = operands(b);
-    return operands.wrap(function(left, right));
-  });
-}
+Parameters
+----------
+t : float
+    Time [s].
+omega : array_like, shape (3,)
+    Rates in body axes [rad/s].
+attitude : array_like, shape (4,)
+    Unit quaternion (x, y, z, w).
+states : dict, optional
+    Numbers of the states by name; the starts if left out.
 
-void bind_symbols(py::module_& m) {
-  py::class_<Text>(m, "Text").def("__eq__", [](const Text& a, const py::object& b) {
-    return py::isinstance<Text>(b) && a == b.cast<const Text&>();
-  }).def("__hash__", [](const Text& text) { return py::hash(py::str(text.torque)); });
-  py::class_<Traced>(m, "Number").def_property_readonly("constant", [](const Traced& traced) -> py::object {
-    if (!traced.expr.form().is_constant()) return py::none();
-    return py::float_(traced.expr.form().constant);
-  });
-  py::class_<TracedCondition>(m, "Condition");
-  py::class_<Tracer>(m, "Tracer")
-      .def(py::init([](const py::dict& parameters) { return Tracer(to_inputs(parameters)); }), py::arg("parameters"))
-      .def("time", [](Tracer& t) { return Traced{t.graph, Expr(*t.graph, t.graph->time())}; })
-      .def("omega", [](Tracer& t) { return t.list(formula::first_rate, 3, &Graph::state); })
-      .def("attitude", [](Tracer& t) { return t.list(formula::first_attitude, 4, &Graph::state); })
-      .def("parameters",
-           [](Tracer& t) {
-             py::dict found;
-             int first = 0;
-             for (const Input& input : t.parameters) {
-               const int count = static_cast<int>(input.values.size());
-               const py::list numbers = t.list(first, count, &Graph::parameter);
-               found[py::str(input.name)] = count == 1 ? py::object(numbers[0]) : py::object(numbers);
-               first += count;
-             }
-             return found;
-           })
-      .def("finish", &Tracer::finish, py::arg("outputs"));
-  bind_operator(m, "add", [](const Expr& a, const Expr& b) { return a + b; });
-  bind_operator(m, "subtract", [](const Expr& a, const Expr& b) { return a - b; });
-  bind_operator(m, "multiply", [](const Expr& a, const Expr& b) { return a * b; });
-  bind_operator(m, "divide", [](const Expr& a, const Expr& b) { return a / b; });
-  bind_operator(m, "arctan2", [](const Expr& a, const Expr& b) { return formula::atan2(a, b); });
-  bind_operator(m, "minimum", [](const Expr& a, const Expr& b) { return formula::min(a, b); });
-  bind_operator(m, "maximum", [](const Expr& a, const Expr& b) { return formula::max(a, b); });
-  bind_function(m, "sqrt", [](const Expr& a) { return formula::sqrt(a); });
-  bind_function(m, "exp", [](const Expr& a) { return formula::exp(a); });
-  bind_function(m, "log", [](const Expr& a) { return formula::log(a); });
-  bind_function(m, "sin", [](const Expr& a) { return formula::sin(a); });
-  bind_function(m, "cos", [](const Expr& a) { return formula::cos(a); });
-  bind_function(m, "tan", [](const Expr& a) { return formula::tan(a); });
-  bind_function(m, "tanh", [](const Expr& a) { return formula::tanh(a); });
-  bind_function(m, "absolute", [](const Expr& a) { return formula::abs(a); });
-  bind_function(m, "sign", [](const Expr& a) { return formula::sign(a); });
-  m.def("power", [](const py::object& a, double exponent) {
-    Operands operands;
-    const Expr expr = formula::pow(operands(a), exponent);
-    return operands.wrap(expr);
-  });
-  m.def("compare", [](const py::object& a, const py::object& b, bool negated) {   // a > b, or not
-    Operands operands;
-    const Expr left = operands(a), right = operands(b);
-    Condition condition = left > right;
-    condition.negated = negated;
-    return TracedCondition{operands.graph_, condition};
-  });
-  m.def("where", [](const TracedCondition& condition, const py::object& a, const py::object& b) {
-    Operands operands;
-    operands.graph_ = condition.graph;
-    const Expr yes = operands(a), no = operands(b);
-    return operands.wrap(formula::where(condition.condition, yes, no));
-  });
-  m.def("to_body", [](const py::sequence& attitude, const py::sequence& vector) {
-    Operands operands;
-    Vec<Expr, 4> q;
-    Vec<Expr, 3> v;
-    for (std::size_t i = 0; i < 4; ++i) q[i] = operands(attitude[i]);
-    for (std::size_t i = 0; i < 3; ++i) v[i] = operands(vector[i]);
-    py::list found;
-    for (const Expr& component : formula::to_body(q, v).components) found.append(operands.wrap(component));
-    return found;
-  });
-}
+Returns
+-------
+dict
+    A number, or a tuple of numbers, by name.
+)doc";
+
+constexpr const char* energy_doc = R"doc(Return the potential energy of a formula made from a potential; 0 without one.
+
+Parameters
+----------
+t : float
+    Time [s].
+attitude : array_like, shape (4,)
+    Unit quaternion (x, y, z, w).
+
+Returns
+-------
+float
+    V [J].
+)doc";
 
 }  // namespace
 
 void bind_torque_formula(py::module_& m) {
   py::class_<Formula> type(m, "Formula", formula_doc);
   type.def(py::init(&make_formula), py::arg("function") = py::none(), py::kw_only(), py::arg("text") = py::none(),
-           py::arg("let") = py::none(), py::arg("recognise") = true);
+           py::arg("let") = py::none(), py::arg("potential") = py::none(), py::arg("states") = py::none(),
+           py::arg("recognise") = true);
   type.def_property_readonly("text", [](const Formula& formula) { return formula.text().torque; },
-                             "str: the formula as text.");
+                             "str: the formula as text; empty for a potential.");
+  type.def_property_readonly("potential", [](const Formula& formula) -> py::object {
+    if (formula.text().potential.empty()) return py::none();
+    return py::str(formula.text().potential);
+  }, "str or None: the potential as text.");
+  type.def_property_readonly("states", &from_states, "dict: of each state its start, and its rate as text.");
   type.def_property_readonly("let", [](const Formula& formula) { return from_let(formula.text()); },
                              "dict: names for shared parts of the text.");
   type.def_property_readonly("parameters", [](const Formula& formula) { return from_inputs(formula.parameters()); },
@@ -324,19 +274,32 @@ void bind_torque_formula(py::module_& m) {
   type.def_property_readonly("recognise", &Formula::recognise, "bool: whether it may be replaced.");
   bind_traits(type);
   bind_value(type);
+  type.def("rates", [](const Formula& formula, const py::object& t, const py::object& omega, const py::object& attitude,
+                       const py::object& states) {
+    const Vector3d w = to_vector3(omega, "omega");
+    const Quat unit = to_attitude(attitude, "attitude");
+    const double q[4] = {unit.x, unit.y, unit.z, unit.w};
+    const std::vector<double> outputs =
+        formula.compute({to_real(t, "t"), w.data(), q, Matrix3d::Identity()}, to_state_numbers(formula.states(), states));
+    std::vector<Input> rates = formula.states();
+    std::size_t next = 3;
+    for (Input& rate : rates)
+      for (double& value : rate.values) value = outputs[next++];
+    return from_inputs(rates);
+  }, py::arg("t"), py::arg("omega"), py::arg("attitude"), py::arg("states") = py::none(), rates_doc);
+  type.def("energy", [](const Formula& formula, const py::object& t, const py::object& attitude) {
+    const Quat unit = to_attitude(attitude, "attitude");
+    const double q[4] = {unit.x, unit.y, unit.z, unit.w}, none[3] = {};
+    return formula.compute_potential({to_real(t, "t"), none, q, Matrix3d::Identity()});
+  }, py::arg("t"), py::arg("attitude"), energy_doc);
   type.def("__repr__", &show);
   type.def("__eq__", [](const Formula& a, const py::object& b) {
     return py::isinstance<Formula>(b) && a == b.cast<const Formula&>();
   });
   type.def("__hash__", [](const Formula& formula) { return py::hash(get_state(formula)); });
   type.def(py::pickle(&get_state, [](const py::tuple& state) {
-    return from_state("Formula", state, 4, &from_state_of);
+    return from_state("Formula", state, 7, &from_state_of);
   }));
-}
-
-void bind_formula_symbols(py::module_& m) {
-  py::module_ symbols = m.def_submodule("symbols", "What a traced function computes with.");
-  bind_symbols(symbols);
 }
 
 }  // namespace polhode::python

@@ -1,5 +1,6 @@
 #include "convert.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -193,6 +194,28 @@ Quat to_attitude(py::handle value, const char* name, int frames) {
 
 void refuse_state(const char* name) {
   throw InvalidInput(std::string(name) + ".__setstate__", "given what pickle saved", "another state");
+}
+
+std::vector<double> to_state_numbers(const std::vector<formula::Input>& states, py::handle given) {
+  std::vector<double> numbers = formula::list_values(states);
+  if (given.is_none()) return numbers;
+  if (!py::isinstance<py::dict>(given))
+    throw InvalidInput("states", "a dict of names and numbers", std::string(py::str(py::type::of(given))));
+  for (const auto& [key, value] : py::reinterpret_borrow<py::dict>(given)) {
+    const std::string name = py::str(key), where = "states." + name;
+    const formula::Place place = formula::find_place(states, name);
+    if (place.first < 0) {
+      std::string known;
+      for (const formula::Input& state : states) known += (known.empty() ? "" : ", ") + state.name;
+      throw InvalidInput("states", "named as the torque's: " + (known.empty() ? "it has none" : known), "'" + name + "'");
+    }
+    const Array array = to_array(value, where.c_str());
+    require_finite(array, where.c_str());
+    if (array.size() != place.count)
+      throw InvalidInput(where, std::to_string(place.count) + " numbers", std::to_string(array.size()));
+    std::copy_n(array.data(), place.count, numbers.begin() + place.first);
+  }
+  return numbers;
 }
 
 Array from_vector3(const Vector3d& v) {

@@ -4,6 +4,7 @@
 
 #include "bind.hpp"
 #include "polhode/core/quat.hpp"
+#include "polhode/formula/program.hpp"
 
 // What comes from Python is checked here, once. Every refusal is an InvalidInput (a ValueError) that names the
 // argument, also where pybind11 alone would say TypeError.
@@ -42,6 +43,9 @@ Matrix3d to_tensor(py::handle value, const char* name);         ///< to_matrix3;
 /// One attitude: (4,) scalar last, or any object with as_quat() (polhode's and SciPy's Rotation); unit, or refused.
 /// The plain numbers (1, 0, 0, 0) are taken with a warning. `frames` is 1 for a direct caller in Python.
 Quat to_attitude(py::handle value, const char* name, int frames = 1);
+
+/// Numbers of states by their names, in their order; those that are not named have their starts.
+std::vector<double> to_state_numbers(const std::vector<formula::Input>& states, py::handle given);
 
 Array from_vector3(const Vector3d& v);
 Array from_matrix3(const Matrix3d& m);

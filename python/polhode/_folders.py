@@ -20,7 +20,8 @@ from ._core import InvalidInput
 ABOUT = 4 * _files.TEXT   # characters of a description; ten million times take 170 million
 METADATA = 1_000_000      # bytes of the metadata of an array, which take a thousand
 CODECS = {"bytes", "zstd", "crc32c"}
-CHUNK = re.compile(r"(?P<name>[A-Za-z]\w*)/c(/\d+)*")   # a file of an array of a saved motion, or a folder of them
+# A file of an array of a saved motion, or a folder of them.
+CHUNK = re.compile(r"(?P<name>[A-Za-z]\w*(\.\w+)?)/c(/\d+)*")
 TRIES = 1000
 
 

@@ -66,16 +66,23 @@ def _motion(about: dict[str, Any], arrays: dict[str, Any]) -> Motion:
     names = ("omega", "attitude", "omega_lower", "omega_upper", "attitude_lower", "attitude_upper")
     span = about["proved_span"]
     motion.__dict__.update(
-        {name: arrays.get(name) for name in names}, scene=scene, _answer=None, _options=wishes, t=arrays["t"],
+        {name: arrays.get(name) for name in names},
+        states={name[7:]: array for name, array in arrays.items() if name.startswith("states.")}, scene=scene,
+        _answer=None, _options=wishes, t=arrays["t"],
         options=about["options"], status=str(about["status"]), _message=str(about["message"]), stats=about["stats"],
         error=float(about["error"]), error_kind=str(about["error_kind"]), asked=float(about["asked"]),
         proved_span=None if span is None else (float(span[0]), float(span[1])),
         plan=Plan(scene, plan, wishes),
-        events=tuple(EventHit(int(event), float(t), _array(omega), _array(attitude))
-                     for event, t, omega, attitude in about["events"]))
+        events=tuple(EventHit(int(event), float(t), _array(omega), _array(attitude), *map(_states, states))
+                     for event, t, omega, attitude, *states in about["events"]))
     if "drift" in about:
         motion.__dict__["_drift"] = {str(name): float(value) for name, value in about["drift"].items()}
     return motion
+
+
+def _states(states: dict[str, Any]) -> dict[str, Any]:
+    return {str(name): float(value) if isinstance(value, (int, float)) else _array(value)
+            for name, value in states.items()}
 
 
 def _array(values: Any) -> Any:

@@ -76,7 +76,19 @@ def _motion(path: pathlib.Path, about: dict[str, Any], claims: dict[str, Claim])
         bounds = [f"{name}_{side}" for side in ("lower", "upper") if f"{name}_{side}" in claims]
         for each in [name, *bounds] if name in scene["want"] else []:
             expected[each] = ((reached, width), REAL)
+    for torque in scene["torques"]:
+        for name, start in torque["state"][4] if torque["kind"] == "Formula" else []:
+            expected[f"states.{name}"] = ((reached,) if len(start) == 1 else (reached, len(start)), REAL)
     return expected
+
+
+def _is_event(event: Any, t: Any, omega: Any, attitude: Any, states: Any = {}) -> bool:   # noqa: B006  never changed
+    number = (int, float)
+    rows = [(omega, 3), (attitude, 4)]
+    return (isinstance(event, int) and isinstance(t, number) and isinstance(states, dict)
+            and all(len(row) == size and all(isinstance(value, number) for value in row) for row, size in rows)
+            and all(isinstance(value, number) or (isinstance(value, list) and all(isinstance(x, number) for x in value))
+                    for value in states.values()))
 
 
 def _require_parts(path: pathlib.Path, about: dict[str, Any]) -> None:
@@ -89,9 +101,7 @@ def _require_parts(path: pathlib.Path, about: dict[str, Any]) -> None:
         **dict.fromkeys(("error", "asked", "plan.accuracy", "plan.rtol", "stats.steps", "stats.seconds"), number),
         **dict.fromkeys(("options", "stats", "plan.wishes"), dict), "events": list}
     wrong = [name for name, kind in kinds.items() if not isinstance(parts.get(name), kind)]
-    wrong += [f"events[{i}]" for i, (event, t, *states) in enumerate(about["events"])
-              if not (isinstance(event, int) and isinstance(t, number) and list(map(len, states)) == [3, 4]
-                      and all(isinstance(value, number) for state in states for value in state))]
+    wrong += [f"events[{i}]" for i, event in enumerate(about["events"]) if not _is_event(*event)]
     if wrong:
         raise InvalidInput(f"{path}: is damaged: {wrong[0]} is not that of a motion")
 

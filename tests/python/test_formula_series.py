@@ -90,7 +90,10 @@ def find_errors(motion, rows):
             2 * np.linalg.norm(motion.attitude - sign * q, axis=1).max())
 
 
-@pytest.mark.parametrize("case", TRUTH["cases"], ids=lambda case: f"{case['law']}-{case['inertia'][0][1]}")
+CASES = [case for case in TRUTH["cases"] if case["law"] in LAWS]
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case['law']}-{case['inertia'][0][1]}")
 @pytest.mark.parametrize("accuracy", [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12])
 def test_the_bound_holds_of_every_law(case, accuracy):
     rows = np.array(case["rows"], dtype=float)

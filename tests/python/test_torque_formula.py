@@ -204,7 +204,7 @@ def test_what_cannot_be_traced_names_the_line(function, words):
 
 
 @pytest.mark.parametrize(("arguments", "words"), [
-    (dict(), "neither"), (dict(function=pd, text="omega"), "both"), (dict(text=3), "text"),
+    (dict(), "got none"), (dict(function=pd, text="omega"), "got several"), (dict(text=3), "text"),
     (dict(text="k * omega"), "k"),
     (dict(text="omega.x"), "3|component"), (dict(text="omega", let=[1]), "let"),
     (dict(text="omega", states=1), "states"),

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "polhode/core/error.hpp"
 #include "polhode/formula/expression.hpp"
+#include "polhode/formula/facts.hpp"
 
 namespace polhode::formula {
 namespace {
@@ -104,6 +106,16 @@ Program differentiate(const Program& program, const std::vector<Variable>& varia
     const Derivative derivative(made.graph, nodes, live, variable);
     for (const Form& output : outputs) made.outputs.push_back(derivative(output));
   }
+  return rewrite(made);
+}
+
+Program derive_torque(const Program& potential) {
+  if (find_facts(potential).uses_rates)
+    throw InvalidInput("Formula.potential", "a function of time and attitude", "one of omega");
+  Program made = differentiate(potential, {{Variable::Kind::rotation, 0}, {Variable::Kind::rotation, 1},
+                                           {Variable::Kind::rotation, 2}});
+  made.outputs.erase(made.outputs.begin());
+  for (Form& output : made.outputs) output = -output;
   return rewrite(made);
 }
 

@@ -232,6 +232,13 @@ Program parse(const Text& text) {
     Value value = FieldParser(graph, names, definition, "let." + name).parse();
     add_name(names, name, std::move(value));
   }
+  if (!text.potential.empty()) {
+    if (!text.torque.empty() || !text.states.empty())
+      throw InvalidInput("formula", "a potential alone", "a torque or states beside it",
+                         "the torque follows from the potential: add another Formula for the rest");
+    add_outputs(program, FieldParser(graph, names, text.potential, "potential").parse(), 1, "potential");
+    return rewrite(program);
+  }
   add_outputs(program, FieldParser(graph, names, text.torque, "torque").parse(), 3, "torque");
   for (std::size_t i = 0; i < text.rates.size(); ++i) {
     const std::string field = "states." + text.states[i].name + ".rate";

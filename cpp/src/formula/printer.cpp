@@ -32,7 +32,7 @@ class Printer {
       text.let.emplace_back(prefix_ + std::to_string(i), operation(i));
     }
     std::size_t output = 0;
-    text.torque = vector(output, 3);
+    (program_.outputs.size() == 1 ? text.potential : text.torque) = vector(output, program_.outputs.size() == 1 ? 1 : 3);
     for (const Input& state : program_.states) text.rates.push_back(vector(output, state.values.size()));
     return text;
   }
@@ -128,8 +128,8 @@ class Printer {
 
 }  // namespace
 
-Text print(const Program& torque) {
-  const Program program = rewrite(torque);
+Text print(const Program& given) {
+  const Program program = rewrite(given);
   // Where nodes are written decides their order, and so the bits of sums. Where it would differ, each node gets a line.
   Text text = Printer(program, true).print();
   bool same = false;

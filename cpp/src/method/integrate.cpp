@@ -12,20 +12,22 @@
 namespace polhode {
 namespace {
 
-State to_state(const Unpack& unpack, double t, const double* y) {
+State to_state(const Unpack& unpack, const ExtraStates& extra, double t, const double* y) {
   State state;
   double attitude[4] = {NAN, NAN, NAN, NAN};
   state.t = t;
   unpack(y, 1, state.omega.data(), attitude);
   state.attitude = {attitude[0], attitude[1], attitude[2], attitude[3]};
+  if (extra.count > 0) state.states = extra.of(y);
   return state;
 }
 
-std::vector<ode::Event> make_events(std::span<const SceneEvent> events, const Unpack& unpack) {
+std::vector<ode::Event> make_events(std::span<const SceneEvent> events, const Unpack& unpack,
+                                    const ExtraStates& extra) {
   std::vector<ode::Event> converted;
   for (const SceneEvent& event : events) {
     converted.push_back({[&](double t, const double* y) {
-                      const double value = event.function(to_state(unpack, t, y));
+                      const double value = event.function(to_state(unpack, extra, t, y));
                       if (std::isnan(value)) {
                         throw InvalidInput("the event's function", "a number",
                                            "nan at t = " + polhode::to_text(t) + " s");
@@ -55,6 +57,10 @@ class SampleRows {
     double* w = omega_in_place ? trajectory_.omega.data() + 3 * order_[first] : omega_.data();
     double* q = attitude_in_place ? trajectory_.attitude.data() + 4 * order_[first] : attitude_.data();
     unpack_(rows, count, w, q);
+    const ExtraStates& extra = trajectory_.extra;
+    for (std::size_t i = 0; extra.count > 0 && i < count; ++i)
+      std::copy_n(rows + static_cast<std::size_t>(extra.row) * i + extra.first, extra.count,
+                  trajectory_.states.data() + static_cast<std::size_t>(extra.count) * order_[first + i]);
     for (std::size_t i = 0; i < count && times[i] == scene_.t0(); ++i) {
       // The start is returned as given, for any variables of the method.
       const Quat& start = scene_.attitude();
@@ -139,8 +145,10 @@ EndingText describe(ode::Ending ending, double t, long max_steps) {
 }  // namespace
 
 Trajectory integrate(const Scene& scene, const RunOptions& options, const double* y0, const Unpack& unpack,
-                     const MakeStepper& make_stepper) {
+                     const MakeStepper& make_stepper, const ExtraStates& extra) {
   Trajectory trajectory;
+  trajectory.extra = extra;
+  trajectory.states.resize(static_cast<std::size_t>(extra.count) * scene.times().size());
   const std::vector<double>& times = scene.times();
   if (scene.want().omega) trajectory.omega.resize(3 * times.size());
   if (scene.want().attitude) trajectory.attitude.resize(4 * times.size());
@@ -149,7 +157,7 @@ Trajectory integrate(const Scene& scene, const RunOptions& options, const double
   trajectory.unpack = unpack;
   trajectory.has_dense = options.dense;
 
-  const std::vector<ode::Event> events = make_events(options.events, unpack);
+  const std::vector<ode::Event> events = make_events(options.events, unpack, extra);
   std::vector<unsigned char> reached(times.size(), 0);
   // Returns false if the run must not continue in the other direction.
   const auto integrate_direction = [&](const std::vector<std::size_t>& order, ode::DenseOutput& dense) {
@@ -163,7 +171,7 @@ Trajectory integrate(const Scene& scene, const RunOptions& options, const double
                    ode::DriveOptions{options.max_steps, options.dense, std::span<const ode::Event>(events),
                                      options.progress});
     for (const ode::EventHit& hit : result.hits)
-      trajectory.events.push_back({hit.event, to_state(unpack, hit.t, hit.y.data())});
+      trajectory.events.push_back({hit.event, to_state(unpack, extra, hit.t, hit.y.data())});
     dense = std::move(result.dense);
     trajectory.stats += stepper->counts();
     trajectory.t_reached = result.t;
@@ -171,7 +179,7 @@ Trajectory integrate(const Scene& scene, const RunOptions& options, const double
     EndingText text = describe(result.ending, result.t, options.max_steps);
     trajectory.status = text.status, trajectory.message = std::move(text.message);
     if (result.ending == ode::Ending::underflow)
-      trajectory.message += explain_underflow(scene, to_state(unpack, result.t, stepper->y()));
+      trajectory.message += explain_underflow(scene, to_state(unpack, extra, result.t, stepper->y()));
     return trajectory.status == Status::event;
   };
   const SampleOrder order(times, scene.t0());

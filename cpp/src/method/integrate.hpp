@@ -23,6 +23,6 @@ using MakeStepper = std::function<std::unique_ptr<ode::Stepper>(const double* y0
 /// Integrates a scene in both directions of time and collects samples, events and dense output. It works for any method
 /// and any variables.
 Trajectory integrate(const Scene& scene, const RunOptions& options, const double* y0, const Unpack& unpack,
-                     const MakeStepper& make_stepper);
+                     const MakeStepper& make_stepper, const ExtraStates& extra = {});
 
 }  // namespace polhode

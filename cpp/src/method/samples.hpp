@@ -31,6 +31,7 @@ inline void drop_unreached(const std::vector<double>& times, const std::vector<u
     return;
   }
   const bool omega = !trajectory.omega.empty(), attitude = !trajectory.attitude.empty();
+  const auto states = static_cast<std::size_t>(trajectory.extra.count);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (!reached[i]) continue;
@@ -38,10 +39,13 @@ inline void drop_unreached(const std::vector<double>& times, const std::vector<u
     if (omega && kept != i) std::copy_n(trajectory.omega.data() + 3 * i, 3, trajectory.omega.data() + 3 * kept);
     if (attitude && kept != i)
       std::copy_n(trajectory.attitude.data() + 4 * i, 4, trajectory.attitude.data() + 4 * kept);
+    if (states > 0 && kept != i)
+      std::copy_n(trajectory.states.data() + states * i, states, trajectory.states.data() + states * kept);
     ++kept;
   }
   if (omega) trajectory.omega.resize(3 * kept);
   if (attitude) trajectory.attitude.resize(4 * kept);
+  trajectory.states.resize(states * kept);
 }
 
 }  // namespace polhode

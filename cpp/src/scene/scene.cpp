@@ -73,6 +73,7 @@ Scene::Scene(SceneParts parts) {
     throw InvalidInput("scene.want", "omega, attitude or both", "neither");
   }
   torque_sum_ = summarize(parts.torques);
+  states_ = list_states(parts.torques);
   if (!parts.rotors.empty()) {
     carrier_ = make_carrier(parts.inertia_B, parts.rotors);
     if (carrier_) require_no_gradient(parts.torques);
@@ -116,6 +117,27 @@ void compute_rotor_speed(const Scene& scene, std::size_t n, const double* t, con
       const double rotating = rotor.compute_speed(rotor.compute_momentum(scene.omega()), w_B);
       *speed++ = rotor.rotates_at(t[i]) || std::isnan(rotating) ? rotating : 0.0;
     }
+  }
+}
+
+int Scene::count_states() const {
+  std::size_t count = 0;
+  for (const formula::Input& state : states_) count += state.values.size();
+  return static_cast<int>(count);
+}
+
+void set_starts(std::vector<AnyTorque>& torques, const std::vector<double>& starts) {
+  const std::vector<formula::Input> states = list_states(torques);
+  for (AnyTorque& torque : torques) {
+    const auto* formula = std::get_if<torques::Formula>(&torque);
+    if (formula == nullptr || formula->states().empty()) continue;
+    std::vector<double> own;
+    for (const formula::Input& state : formula->states()) {
+      const formula::Place place = formula::find_place(states, state.name);
+      const auto first = starts.begin() + place.first;
+      own.insert(own.end(), first, first + place.count);
+    }
+    torque = formula->with_starts(own);
   }
 }
 

@@ -3,23 +3,29 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "polhode/core/error.hpp"
+#include "polhode/formula/derivative.hpp"
 #include "polhode/formula/facts.hpp"
 
 namespace polhode::torques {
 namespace {
 
-void refuse_states(std::size_t count) {
-  if (count == 0) return;
-  throw InvalidInput("Formula.states", "left out", std::to_string(count) + " states",
-                     "states of a formula are not supported yet; keep them in the function of a Custom torque");
-}
+constexpr int most_states = 56;   // numbers of one torque: rows of a series have at most 64
 
-formula::Program parse_torque(const formula::Text& text) {
-  refuse_states(std::max(text.states.size(), text.rates.size()));
-  return formula::parse(text);
+void require_states(const formula::Program& program) {
+  const std::vector<double> starts = formula::list_values(program.states);
+  if (starts.size() > most_states)
+    throw InvalidInput("Formula.states", "at most " + std::to_string(most_states) + " numbers",
+                       std::to_string(starts.size()));
+  for (const formula::Input& state : program.states)
+    for (const double start : state.values)
+      if (!std::isfinite(start)) throw InvalidInput("Formula.states." + state.name, "finite", to_text(start));
+  if (program.outputs.size() != 3 + starts.size())
+    throw InvalidInput("Formula", "a torque of 3 components" + std::string(starts.empty() ? "" : " and a rate for each state"),
+                       std::to_string(program.outputs.size()));
 }
 
 }  // namespace
@@ -27,36 +33,44 @@ formula::Program parse_torque(const formula::Text& text) {
 struct Formula::Parts {
   explicit Parts(const formula::Program& given)
       : text(formula::print(given)),
-        program(formula::rewrite(formula::bind_parameters(given, formula::list_values(given.parameters)))),
+        potential(is_potential(given) ? std::optional(bind(given)) : std::nullopt),
+        program(bind(potential ? formula::derive_torque(given) : given)),
+        potential_evaluator(potential ? std::optional<formula::Evaluator>(*potential) : std::nullopt),
         facts(formula::find_facts(program)),
         evaluator(program) {}
 
-  void compute(double t, const double* omega, const double* attitude, double* torque) const {
-    std::array<double, formula::first_extra> y;
+  void compute(double t, const double* omega, const double* attitude, const double* states, double* outputs) const {
+    std::array<double, formula::first_extra + most_states> y;
     std::copy_n(omega, 3, y.begin());
     std::copy_n(attitude, 4, y.begin() + formula::first_attitude);
+    std::copy_n(states, program.outputs.size() - 3, y.begin() + formula::first_extra);
     constexpr int few = 256;
     if (program.graph.size() <= few) {
       std::array<double, few> values;
-      evaluator.evaluate(t, y.data(), nullptr, values.data(), torque);
+      evaluator.evaluate(t, y.data(), nullptr, values.data(), outputs);
     } else {
       std::vector<double> values(static_cast<std::size_t>(program.graph.size()));
-      evaluator.evaluate(t, y.data(), nullptr, values.data(), torque);
+      evaluator.evaluate(t, y.data(), nullptr, values.data(), outputs);
     }
   }
 
+  static bool is_potential(const formula::Program& given) { return given.outputs.size() == 1 && given.states.empty(); }
+  static formula::Program bind(const formula::Program& given) {
+    return formula::rewrite(formula::bind_parameters(given, formula::list_values(given.parameters)));
+  }
+
   formula::Text text;
+  std::optional<formula::Program> potential;
   formula::Program program;
+  std::optional<formula::Evaluator> potential_evaluator;   // of the potential above
   formula::Facts facts;
   formula::Evaluator evaluator;   // of the program above
 };
 
-Formula::Formula(const formula::Text& text, bool recognise) : Formula(parse_torque(text), recognise) {}
+Formula::Formula(const formula::Text& text, bool recognise) : Formula(formula::parse(text), recognise) {}
 
 Formula::Formula(const formula::Program& program, bool recognise) : recognise_(recognise) {
-  refuse_states(program.states.size());
-  if (program.outputs.size() != 3)
-    throw InvalidInput("Formula", "a torque of 3 components", std::to_string(program.outputs.size()));
+  if (!Parts::is_potential(program)) require_states(program);
   parts_ = std::make_shared<const Parts>(program);
 }
 
@@ -70,6 +84,16 @@ const formula::Text& Formula::text() const { return parts_->text; }
 const std::vector<formula::Input>& Formula::parameters() const { return parts_->text.parameters; }
 const formula::Program& Formula::program() const { return parts_->program; }
 
+const std::vector<formula::Input>& Formula::states() const { return parts_->text.states; }
+
+Formula Formula::with_starts(const std::vector<double>& starts) const {
+  formula::Text text = parts_->text;
+  std::size_t next = 0;
+  for (formula::Input& state : text.states)
+    for (double& start : state.values) start = starts.at(next++);
+  return Formula(text, recognise_);
+}
+
 bool Formula::has_switches() const { return parts_->facts.has_switches; }
 
 TorqueTraits Formula::traits() const {
@@ -78,7 +102,18 @@ TorqueTraits Formula::traits() const {
   return {.uses_time = facts.uses_time,
           .uses_attitude = facts.uses_attitude,
           .uses_rates = facts.uses_rates,
-          .vanishes = std::all_of(outputs.begin(), outputs.end(), [](const auto& form) { return form.is_zero(); })};
+          .has_potential = parts_->potential.has_value(),
+          .vanishes = states().empty() && std::all_of(outputs.begin(), outputs.end(), [](const auto& form) { return form.is_zero(); })};
+}
+
+std::vector<double> Formula::compute(const TorqueInput& in, const std::vector<double>& states) const {
+  const double* q = in.attitude;
+  const double d = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+  const double s = 1.0 / std::sqrt(d);
+  const double unit[4] = {s * q[0], s * q[1], s * q[2], s * q[3]};
+  std::vector<double> outputs(parts_->program.outputs.size());
+  parts_->compute(in.t, in.omega, d == 1.0 ? q : unit, states.data(), outputs.data());
+  return outputs;
 }
 
 void Formula::add(const TorqueInput& in, double* tau_B) const {
@@ -86,15 +121,30 @@ void Formula::add(const TorqueInput& in, double* tau_B) const {
   const double d = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   const double s = 1.0 / std::sqrt(d);
   const double unit[4] = {s * q[0], s * q[1], s * q[2], s * q[3]};
-  double torque[3];
-  parts_->compute(in.t, in.omega, d == 1.0 ? q : unit, torque);
-  for (int i = 0; i < 3; ++i) tau_B[i] += torque[i];
+  std::array<double, 3 + most_states> outputs;
+  const std::vector<double> starts = formula::list_values(states());
+  parts_->compute(in.t, in.omega, d == 1.0 ? q : unit, starts.data(), outputs.data());
+  for (std::size_t i = 0; i < 3; ++i) tau_B[i] += outputs[i];
+}
+
+double Formula::compute_potential(const TorqueInput& in) const {
+  if (!parts_->potential) return 0.0;
+  const double* q = in.attitude;
+  const double s = 1.0 / std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  const double y[formula::first_extra] = {in.omega[0], in.omega[1], in.omega[2], s * q[0], s * q[1], s * q[2], s * q[3]};
+  std::vector<double> values(static_cast<std::size_t>(parts_->potential->graph.size()));
+  double potential = 0.0;
+  parts_->potential_evaluator->evaluate(in.t, y, nullptr, values.data(), &potential);
+  return potential;
 }
 
 Custom Formula::as_custom() const {
+  if (!states().empty())
+    throw InvalidInput("Formula", "without states where it has switches", "states " + states()[0].name,
+                       "no method integrates both yet");
   const TorqueTraits traits = this->traits();
   const Custom::Function call = [](double t, const double* omega, const double* attitude, double* torque, void* data) {
-    static_cast<const Parts*>(data)->compute(t, omega, attitude, torque);
+    static_cast<const Parts*>(data)->compute(t, omega, attitude, nullptr, torque);
   };
   Custom custom(call, const_cast<Parts*>(parts_.get()),
                 {.uses_time = traits.uses_time, .uses_attitude = traits.uses_attitude, .uses_rates = traits.uses_rates},

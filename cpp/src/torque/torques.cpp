@@ -1,5 +1,7 @@
 #include "polhode/torque/torques.hpp"
 
+#include <algorithm>
+
 #include "polhode/core/error.hpp"
 #include "polhode/formula/program.hpp"
 
@@ -8,6 +10,24 @@ namespace polhode {
 void SeveralTorques::add(const TorqueInput& in, double* tau_B) const {
   for (const AnyTorque& torque : torques) std::visit([&](const auto& one) { one.add(in, tau_B); }, torque);
   if (!rotor_momentum.isZero(0.0)) add_rotors(rotor_momentum.data(), in.omega, tau_B);
+}
+
+std::vector<formula::Input> list_states(std::span<const AnyTorque> torques) {
+  std::vector<formula::Input> all;
+  for (std::size_t i = 0; i < torques.size(); ++i) {
+    const auto* formula = std::get_if<torques::Formula>(&torques[i]);
+    if (formula == nullptr) continue;
+    for (const formula::Input& state : formula->states()) {
+      const auto same = std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.name == state.name; });
+      if (same == all.end()) {
+        all.push_back(state);
+      } else if (same->values != state.values) {
+        throw InvalidInput("torques[" + std::to_string(i) + "].states." + state.name, "as in the torques before it",
+                           "another start", "name states of different torques differently");
+      }
+    }
+  }
+  return all;
 }
 
 formula::Program make_law(const AnyTorque& torque, const Matrix3d& inertia_B) {

@@ -1387,7 +1387,7 @@ class Scene:
         """
         Return what pickle makes the object from.
         """
-    def torque(self, t: typing.Any, omega: typing.Any, attitude: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
+    def torque(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, states: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
         """
         Return the sum of the torques at one state.
 
@@ -1399,6 +1399,8 @@ class Scene:
             Rates in body axes [rad/s].
         attitude : array_like, shape (4,)
             Unit quaternion (x, y, z, w).
+        states : dict, optional
+            Numbers of the formulas' states by name; the starts if left out.
 
         Returns
         -------
@@ -1430,6 +1432,11 @@ class Scene:
     @property
     def rotors(self) -> tuple[typing.Any, ...]:
         ...
+    @property
+    def states(self) -> dict[str, typing.Any]:
+        """
+        dict: the starts of the states that formulas have, by name.
+        """
     @property
     def t0(self) -> float:
         ...
@@ -1472,6 +1479,8 @@ class Answer:
         """
         Return what pickle makes the object from.
         """
+    def states_at(self, arg0: typing.Any) -> dict[str, typing.Any]:
+        ...
     @property
     def asked(self) -> float:
         ...
@@ -1516,6 +1525,9 @@ class Answer:
         ...
     @property
     def proved_span(self) -> typing.Any:
+        ...
+    @property
+    def states(self) -> dict[str, typing.Any]:
         ...
     @property
     def stats(self) -> dict[str, typing.Any]:

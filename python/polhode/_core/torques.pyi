@@ -45,7 +45,7 @@ class Constant:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
         ...
-    def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
+    def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None, states: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
         """
         Return the torque at one state.
 
@@ -59,6 +59,8 @@ class Constant:
             Unit quaternion (x, y, z, w).
         inertia : InertiaTensor or array_like, optional
             Of the body, for a torque that depends on it [kg m^2].
+        states : dict, optional
+            Numbers of the torque's own states by name, each with the shape of its start; the starts if left out.
 
         Returns
         -------
@@ -114,7 +116,7 @@ class Gravity:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
         ...
-    def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
+    def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None, states: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
         """
         Return the torque at one state.
 
@@ -128,6 +130,8 @@ class Gravity:
             Unit quaternion (x, y, z, w).
         inertia : InertiaTensor or array_like, optional
             Of the body, for a torque that depends on it [kg m^2].
+        states : dict, optional
+            Numbers of the torque's own states by name, each with the shape of its start; the starts if left out.
 
         Returns
         -------
@@ -183,7 +187,7 @@ class GravityGradient:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
         ...
-    def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
+    def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None, states: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
         """
         Return the torque at one state.
 
@@ -197,6 +201,8 @@ class GravityGradient:
             Unit quaternion (x, y, z, w).
         inertia : InertiaTensor or array_like, optional
             Of the body, for a torque that depends on it [kg m^2].
+        states : dict, optional
+            Numbers of the torque's own states by name, each with the shape of its start; the starts if left out.
 
         Returns
         -------
@@ -250,7 +256,7 @@ class Damping:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
         ...
-    def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
+    def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None, states: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
         """
         Return the torque at one state.
 
@@ -264,6 +270,8 @@ class Damping:
             Unit quaternion (x, y, z, w).
         inertia : InertiaTensor or array_like, optional
             Of the body, for a torque that depends on it [kg m^2].
+        states : dict, optional
+            Numbers of the torque's own states by name, each with the shape of its start; the starts if left out.
 
         Returns
         -------
@@ -314,7 +322,7 @@ class AngularDamping:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
         ...
-    def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
+    def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None, states: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
         """
         Return the torque at one state.
 
@@ -328,6 +336,8 @@ class AngularDamping:
             Unit quaternion (x, y, z, w).
         inertia : InertiaTensor or array_like, optional
             Of the body, for a torque that depends on it [kg m^2].
+        states : dict, optional
+            Numbers of the torque's own states by name, each with the shape of its start; the starts if left out.
 
         Returns
         -------
@@ -344,7 +354,7 @@ class AngularDamping:
         """
 class Formula:
     """
-    Formula(function=None, *, text=None, let=None, recognise=True, **parameters)
+    Formula(function=None, *, text=None, let=None, potential=None, states=None, recognise=True, **parameters)
 
     A torque of your own as a formula: traced once from a Python function, or written as text.
 
@@ -361,6 +371,13 @@ class Formula:
         The same as text: ``"-kp * attitude.xyz * attitude.w - kd * omega"``. It is given in place of a function.
     let : dict of str, optional
         Names for shared parts of a text, in order.
+    potential : callable or str, optional
+        ``potential(t, attitude, p)`` returns V [J], or its text. The torque is its negative gradient on the rotations. It
+        is given in place of a torque.
+    states : dict, optional
+        States of the torque's own, by name. Beside a function each has its start, a number or shape (n,). The function is
+        then ``function(t, omega, attitude, p, s)`` and returns (torque, rates), a dict of the same names. Beside a text each
+        is ``{"start": numbers, "rate": text}``.
     recognise : bool
         Whether the formula may be replaced by torques of this module.
     **parameters : float or array_like, shape (n,)
@@ -382,7 +399,7 @@ class Formula:
         ...
     def __hash__(self) -> int:
         ...
-    def __init__(self, function: typing.Any = None, *, text: typing.Any = None, let: typing.Any = None, recognise: typing.Any = True, **parameters: numpy.typing.ArrayLike) -> None:
+    def __init__(self, function: typing.Any = None, *, text: typing.Any = None, let: typing.Any = None, potential: typing.Any = None, states: typing.Any = None, recognise: typing.Any = True, **parameters: numpy.typing.ArrayLike) -> None:
         ...
     def __reduce__(self) -> tuple[typing.Any, ...]:
         """
@@ -392,7 +409,43 @@ class Formula:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
         ...
-    def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
+    def energy(self, t: typing.Any, attitude: typing.Any) -> float:
+        """
+        Return the potential energy of a formula made from a potential; 0 without one.
+
+        Parameters
+        ----------
+        t : float
+            Time [s].
+        attitude : array_like, shape (4,)
+            Unit quaternion (x, y, z, w).
+
+        Returns
+        -------
+        float
+            V [J].
+        """
+    def rates(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, states: typing.Any = None) -> dict[str, typing.Any]:
+        """
+        Return the rates of the torque's own states.
+
+        Parameters
+        ----------
+        t : float
+            Time [s].
+        omega : array_like, shape (3,)
+            Rates in body axes [rad/s].
+        attitude : array_like, shape (4,)
+            Unit quaternion (x, y, z, w).
+        states : dict, optional
+            Numbers of the states by name; the starts if left out.
+
+        Returns
+        -------
+        dict
+            A number, or a tuple of numbers, by name.
+        """
+    def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None, states: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
         """
         Return the torque at one state.
 
@@ -406,6 +459,8 @@ class Formula:
             Unit quaternion (x, y, z, w).
         inertia : InertiaTensor or array_like, optional
             Of the body, for a torque that depends on it [kg m^2].
+        states : dict, optional
+            Numbers of the torque's own states by name, each with the shape of its start; the starts if left out.
 
         Returns
         -------
@@ -423,14 +478,24 @@ class Formula:
         dict: the named numbers, sorted by name.
         """
     @property
+    def potential(self) -> typing.Any:
+        """
+        str or None: the potential as text.
+        """
+    @property
     def recognise(self) -> bool:
         """
         bool: whether it may be replaced.
         """
     @property
+    def states(self) -> dict[str, typing.Any]:
+        """
+        dict: of each state its start, and its rate as text.
+        """
+    @property
     def text(self) -> str:
         """
-        str: the formula as text.
+        str: the formula as text; empty for a potential.
         """
     @property
     def traits(self) -> dict[str, typing.Any]:
@@ -483,7 +548,7 @@ class Custom:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
         ...
-    def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
+    def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None, states: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
         """
         Return the torque at one state.
 
@@ -497,6 +562,8 @@ class Custom:
             Unit quaternion (x, y, z, w).
         inertia : InertiaTensor or array_like, optional
             Of the body, for a torque that depends on it [kg m^2].
+        states : dict, optional
+            Numbers of the torque's own states by name, each with the shape of its start; the starts if left out.
 
         Returns
         -------
@@ -550,7 +617,7 @@ class During:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
         ...
-    def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
+    def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None, states: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
         """
         Return the torque at one state.
 
@@ -564,6 +631,8 @@ class During:
             Unit quaternion (x, y, z, w).
         inertia : InertiaTensor or array_like, optional
             Of the body, for a torque that depends on it [kg m^2].
+        states : dict, optional
+            Numbers of the torque's own states by name, each with the shape of its start; the starts if left out.
 
         Returns
         -------

@@ -16,6 +16,7 @@ from .._core import InvalidInput, Rotor
 from .bodies import attitude_of, body_inertia, body_model, place_meshes
 from .scene import Scene, scene_folder
 from .validation import euler_model, kinds, model, one_of, validate
+from .write import save_scene as save_scene
 
 MOST_SAMPLES = 10_000_000   # of a span, so that a file of a few bytes does not claim the machine's memory
 
@@ -80,9 +81,10 @@ def _formula_model() -> Any:
     """Return the model of a torque that is a formula."""
     kind = kinds()
     values: Any = Union[kind.number, kind.numbers]   # noqa: UP007
-    return model("Formula", kind=(Literal["formula"], ...), torque=(str, ...), let=(dict[str, str], {}),
-                 parameters=(dict[str, values], {}), recognise=(bool, True),
-                 during=(kind.windows | None, None))
+    state: Any = model("State", start=(values, ...), rate=(str, ...))
+    return model("Formula", kind=(Literal["formula"], ...), torque=(str | None, None), potential=(str | None, None),
+                 let=(dict[str, str], {}), parameters=(dict[str, values], {}), states=(dict[str, state], {}),
+                 recognise=(bool, True), during=(kind.windows | None, None))
 
 
 def find_scene(source: str | os.PathLike[str]) -> pathlib.Path:
@@ -116,10 +118,11 @@ def _torque(entry: Any) -> Any:
             raise InvalidInput(f"torques: {entry.kind}: give matrix or diagonal, one of them")
         values["matrix"] = entry.matrix if entry.diagonal is None else entry.diagonal
     if entry.kind == "formula":
-        reserved = {"function", "text", "let", "recognise"} & set(values["parameters"])
+        reserved = {"function", "text", "let", "potential", "states", "recognise", "scale"} & set(values["parameters"])
         if reserved:
             raise InvalidInput(f"torques: formula: must not name a parameter {', '.join(sorted(reserved))}")
         values = {"text": values.pop("torque"), **values.pop("parameters"), **values}
+        values["states"] = values["states"] or None
     torque = getattr(torques, record["name"])(**values)
     return torque if entry.during is None else torques.During(torque, entry.during)
 

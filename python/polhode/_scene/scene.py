@@ -90,6 +90,18 @@ class Scene(_core.Scene):
 
         return load_scene(source)
 
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the scene to a TOML file, which `Scene.load` reads back to the same bits.
+
+        Raises
+        ------
+        InvalidInput
+            For a torque that is a Python function (a `Formula` can be written), and for another suffix than .toml.
+        """
+        from .files import save_scene
+
+        save_scene(self, path)
+
     def _parts(self) -> dict[str, Any]:
         return {
             "inertia": self.inertia,

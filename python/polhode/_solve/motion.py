@@ -33,12 +33,13 @@ class EventHit(NamedTuple):
     t: float
     omega: Floats
     attitude: Floats
+    states: dict[str, Any] = {}
 
 
 # How each part of the core's answer is converted.
 _PARTS: dict[str, Callable[[Any], Any]] = {
     **dict.fromkeys(("t", "omega", "attitude", "status", "stats", "error", "error_kind", "asked", "omega_lower",
-                     "omega_upper", "attitude_lower", "attitude_upper", "proved_span"), lambda part: part),
+                     "omega_upper", "attitude_lower", "attitude_upper", "proved_span", "states"), lambda part: part),
     "plan": lambda part: part, "events": lambda part: tuple(EventHit(**hit) for hit in part),
 }
 
@@ -58,6 +59,8 @@ class Motion:
         Angular velocity in body axes [rad/s]; None if not requested.
     attitude : ndarray, shape (n, 4), or None
         Unit quaternions (x, y, z, w), body to space; None if not requested.
+    states : dict of ndarray, shape (n,) or (n, k)
+        The states of the scene's formulas by name; empty without any.
     status : {"finished", "event", "max_steps", "stopped", "failed"}
     message : str
     stats : dict
@@ -90,6 +93,7 @@ class Motion:
     t: Floats
     omega: Floats | None
     attitude: Floats | None
+    states: dict[str, Floats]
     status: str
     stats: dict[str, Any]
     plan: Plan
@@ -238,6 +242,19 @@ class Motion:
         omega, attitude = self._answer(t)
         return omega, attitude
 
+    def states_at(self, t: npt.ArrayLike) -> dict[str, Floats]:
+        """Return the states of the scene's formulas at any times (n,) within the span, from dense output.
+
+        Raises
+        ------
+        InvalidInput
+            Without ``dense=True`` in `solve`, or for a time outside the span that was reached.
+        """
+        if self._answer is None or not self._answer.has_dense:
+            raise _core.InvalidInput("motion.states_at(t): must be solved with dense=True")
+        found: dict[str, Floats] = self._answer.states_at(np.atleast_1d(np.asarray(t, dtype=float)))
+        return found
+
     def plot(self, *parts: str, ax: Axes | None = None, marks: npt.ArrayLike | int | None = None,
              dark: bool = False) -> Figure:
         """Draw the motion.
@@ -272,13 +289,16 @@ class Motion:
 
     def _arrays(self) -> dict[str, Floats]:
         names = ("omega", "attitude", "omega_lower", "omega_upper", "attitude_lower", "attitude_upper")
-        return {name: array for name in names if (array := getattr(self, name)) is not None}
+        arrays = {name: array for name in names if (array := getattr(self, name)) is not None}
+        return arrays | {f"states.{name}": array for name, array in self.states.items()}
 
     def _about(self) -> dict[str, Any]:
         """Everything but the arrays, for JSON."""
         plan = {key: value for key, value in vars(self.plan).items() if key not in ("scene", "_report", "_made")}
         plan["pieces"] = [piece._asdict() for piece in self.plan.pieces]
-        hits = [[hit.event, hit.t, list(hit.omega), list(hit.attitude)] for hit in self.events]
+        hits = [[hit.event, hit.t, list(hit.omega), list(hit.attitude),
+                 *([{name: np.asarray(value).tolist() for name, value in hit.states.items()}] if hit.states else [])]
+                for hit in self.events]
         # The drift of the energy needs the potential of an own torque, which no file holds.
         return {"kind": "motion", "scene": to_plain(self.scene), "drift": self.drift, "options": self.options,
                 "plan": plan, "status": self.status, "message": self.message, "stats": self.stats, "error": self.error,

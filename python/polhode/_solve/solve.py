@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Literal
 
+import numpy as np
 import numpy.typing as npt
 
 from .. import _core
@@ -25,7 +27,8 @@ class Event:
     Parameters
     ----------
     function : callable
-        ``function(t, omega, attitude) -> float``.
+        ``function(t, omega, attitude) -> float``. Of a scene whose formulas have states it may take a fourth
+        argument, a dict of them by name.
     direction : {-1, 0, 1}
         1: zeros where it rises along the integration, -1: where it falls, 0: both.
     terminal : bool
@@ -47,6 +50,33 @@ def _event(item: Any) -> Event:
     if isinstance(item, Event):
         return item
     return Event(item, getattr(item, "direction", 0), bool(getattr(item, "terminal", False)))
+
+
+def _takes_states(function: Callable[..., float]) -> bool:
+    try:
+        inspect.signature(function).bind(0, 0, 0, 0)
+    except TypeError:
+        return False
+    except ValueError:   # a builtin without a signature
+        return False
+    return True
+
+
+def _with_states(event: Event, scene: Scene) -> Event:
+    """Return an event whose function takes the numbers of all states, as the core gives them."""
+    function, takes = event.function, _takes_states(event.function)
+    shapes = {name: np.shape(start) for name, start in scene.states.items()}
+
+    def call(t: float, omega: Any, attitude: Any, numbers: list[float]) -> float:
+        if not takes:
+            return function(t, omega, attitude)
+        states, begin = {}, 0
+        for name, shape in shapes.items():
+            end = begin + math.prod(shape)
+            states[name], begin = np.array(numbers[begin:end]) if shape else numbers[begin], end
+        return function(t, omega, attitude, states)
+
+    return Event(call, event.direction, event.terminal)
 
 
 def _check_plan(plan: Plan, scene: Scene, given: dict[str, Any], certify: bool | Literal["proof"],
@@ -160,7 +190,7 @@ def solve(
         raise _core.InvalidInput(f"scene: must be a polhode.Scene, got {type(scene).__name__}")
     if callable(events) or isinstance(events, Event):
         events = (events,)
-    items = to_items(events, "events", "events or callables")
+    found = [_event(item) for item in to_items(events, "events", "events or callables")]
     require_text(method, "method")
     require_text(certify, "certify")
     require_text(formulation, "formulation")
@@ -181,7 +211,8 @@ def solve(
         answer = _core.solve(scene, {
             **given, "certify": certify, "max_steps": check_max_steps(max_steps), "dense": require_bool(dense, "dense"),
             "formulation": str(formulation),
-            "events": [_event(item) for item in items], "progress": callback, "cost_factors": factors()}, planned)
+            "events": [_with_states(event, scene) for event in found] if scene.states else found,
+            "progress": callback, "cost_factors": factors()}, planned)
     asked = None if method is None and formulation == "euler" else {"method": method, "formulation": formulation}
     options = {name: value for name, value in given.items() if value is not None}
     options |= {"certify": certify} if certify is not True else {}
@@ -189,7 +220,7 @@ def solve(
     options |= {"formulation": formulation} if formulation != "euler" else {}
     motion = Motion(scene, answer, asked, options)
     if sensitivity is not None:
-        for name, value in (("events", items or None), ("rtol", rtol), ("atol", atol), ("step", step)):
+        for name, value in (("events", found or None), ("rtol", rtol), ("atol", atol), ("step", step)):
             if value is not None:
                 raise _core.InvalidInput(f"{name}: must be left out with sensitivity=, which has an accuracy and all "
                                          f"times, got {value!r}")

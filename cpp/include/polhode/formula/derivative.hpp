@@ -23,4 +23,8 @@ struct Variable {
 /// keeps its guard: inside each branch the derivative is that of the branch.
 Program differentiate(const Program& program, const std::vector<Variable>& variables);
 
+/// The torque tau_i = -dV(q exp(e_i a / 2))/da at a = 0 of a potential V, in body axes.
+/// @throws InvalidInput for a potential that depends on the rates
+Program derive_torque(const Program& potential);
+
 }  // namespace polhode::formula

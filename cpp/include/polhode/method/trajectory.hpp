@@ -23,10 +23,20 @@ struct MotionEvent {
 /// Computes omega and the unit attitude of n states, row by row. It outlives the run if dense output is kept.
 using Unpack = std::function<void(const double* rows, std::size_t n, double* omega, double* attitude)>;
 
+/// Where the numbers of further states stand in the rows of a run: raw, behind the body's.
+struct ExtraStates {
+  int count = 0;
+  int first = 8, row = 8;   ///< the first column, and the numbers of a row
+
+  std::vector<double> of(const double* y) const { return {y + first, y + first + count}; }
+};
+
 /// The result of one run: the samples, in the order of the scene's times, and how the run ended. Times that were not
 /// reached are left out. `omega` is (n, 3) and `attitude` (n, 4), row by row; they are empty if not requested.
 struct Trajectory {
   std::vector<double> t, omega, attitude;
+  std::vector<double> states = {};       ///< (n, extra.count), of torques that have any
+  ExtraStates extra = {};
   Status status = Status::finished;
   std::string message;
   ode::Counts stats;

@@ -20,6 +20,7 @@ struct ErrorTrace {
   bool all_terms = false;          ///< the error gets all terms of the series, for steps that stability keeps short
   double rate_error = 0.0;         ///< largest error of the first part (rates), absolute
   double attitude_error = 0.0;     ///< largest error of the second part (attitude), an angle
+  double state_error = 0.0;        ///< largest error of the third part (further states), relative
   double holds_until = infinity;   ///< the span from the start in which the samples have the requested error
   double given_up = 0.0;           ///< the span from the start after which the run was given up; 0: it was not
 
@@ -45,15 +46,17 @@ struct ErrorTrace {
     math::Coin coin;
     before = good_until = 0.0;
     scale = first_scale();
+    std::fill_n(loss, width, 0.0);
     for (double* error : {spread, separates_rounding() ? sample : loss}) {
       for (int i = 0; i < width; ++i) error[i] = (coin.toss() ? 0x1p-53 : -0x1p-53) * scale * y0[i];
     }
   }
 
   /// Takes the errors of samples up to a span from the start.
-  void add(double rates, double attitude, double until) {
+  void add(double rates, double attitude, double until, double states = 0.0) {
     rate_error = std::max(rate_error, rates), attitude_error = std::max(attitude_error, attitude);
-    if (hold_margin * std::max(rate_error, attitude_error * largest) > asked * largest) {
+    state_error = std::max(state_error, states);
+    if (hold_margin * std::max(rate_error, std::max(attitude_error, state_error) * largest) > asked * largest) {
       holds_until = std::min(holds_until, good_until);
     } else {
       good_until = until;
@@ -64,8 +67,8 @@ struct ErrorTrace {
 /// y' = f(t, y) with a measure of its errors.
 template <class P>
 concept TrackedProblem = SeriesProblem<P> && requires(const P& problem, const double* y, double* out) {
-  /// For a state and a small error of it: the size of the first part, the error of the first part, and the error of the
-  /// second part as an angle.
+  /// For a state and a small error of it: the size of the first part, the error of the first part, the error of the
+  /// second part as an angle, and that of the third part relative to its size.
   problem.measure_error(y, y, out);
 };
 
@@ -126,14 +129,14 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     std::copy_n(trace.sample, W, sample_);
     if (trace.continued) grow_spread(y0, trace_.scale * join_rounding);
     measure(y0);
-    old_[0] = now_[0], old_[1] = now_[1];
+    std::copy_n(now_, 3, old_);
   }
 
   StepResult advance(double t_end) override {
     const StepResult result = Base::advance(t_end);
     if (result != StepResult::accepted) return result;
     propagate_errors();
-    if (std::max(now_[0] / trace_.largest, now_[1]) > trace_.most * trace_.asked) {
+    if (find_largest_now() > trace_.most * trace_.asked) {
       trace_.given_up = trace_.before + std::abs(this->t_ - t0_);
       return StepResult::not_finite;
     }
@@ -143,7 +146,8 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   void interpolate_many(const double* times, std::size_t n, double* out) override {
     Base::interpolate_many(times, n, out);
     if (n == 0) return;
-    trace_.add(std::max(old_[0], now_[0]), std::max(old_[1], now_[1]), trace_.before + std::abs(times[n - 1] - t0_));
+    trace_.add(std::max(old_[0], now_[0]), std::max(old_[1], now_[1]), trace_.before + std::abs(times[n - 1] - t0_),
+               std::max(old_[2], now_[2]));
   }
 
  private:
@@ -154,7 +158,7 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     propagate(perturbed_, error_terms, s, spread_);
     if (separate_) propagate(sampled_, error_terms, s, sample_);
     alignas(64) double loss[most_numbers];
-    double sizes[3];
+    double sizes[4];
     compute_loss(s, loss);
     for (int i = 0; i < W; ++i) loss_[i] += loss[i];
     this->problem_.measure_error(this->arrived_, loss, sizes);
@@ -162,12 +166,12 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     add_kick(this->arrived_, kick, spread_);
     add_kick(this->arrived_, sample_kick, separate_ ? sample_ : loss_);
     // Samples, and a run that continues this one, have the state before its correction.
-    old_[0] = now_[0], old_[1] = now_[1];
+    std::copy_n(now_, 3, old_);
     measure(this->arrived_);
     std::copy_n(loss_, W, trace_.loss);
     std::copy_n(spread_, W, trace_.spread);
     std::copy_n(sample_, W, trace_.sample);
-    if (std::max(now_[0] / trace_.largest, now_[1]) * trace_.scale > most_enlarged) shrink();
+    if (find_largest_now() * trace_.scale > most_enlarged) shrink();
     restore(lost_, loss_);
     restore(perturbed_, spread_);
     if (separate_) restore(sampled_, sample_);
@@ -203,10 +207,11 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     }
   }
 
-  /// The larger of the two errors, that of the first part relative to its size.
+  /// The largest of the three errors, that of the first part relative to its size.
   static double find_relative_error(const double* sizes) {
-    return std::max(sizes[0] > 0.0 ? sizes[1] / sizes[0] : 0.0, sizes[2]);
+    return std::max(std::max(sizes[0] > 0.0 ? sizes[1] / sizes[0] : 0.0, sizes[2]), sizes[3]);
   }
+  double find_largest_now() const { return std::max(std::max(now_[0] / trace_.largest, now_[1]), now_[2]); }
 
   /// Applies the correction after a step to the erroneous solution as well.
   void restore(const P& problem, double* error) {
@@ -222,7 +227,7 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
 
   /// @param growth  what to add to the spread, relative to y, in its own direction
   void grow_spread(const double* y, double growth) {
-    double sizes[3];
+    double sizes[4];
     this->problem_.measure_error(y, spread_, sizes);
     const double relative = find_relative_error(sizes);
     if (!(relative > 0.0 && relative < std::numeric_limits<double>::infinity())) return;
@@ -235,16 +240,18 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   }
 
   void measure(const double* y) {
-    double lost[3], spread[3], sample[3];
+    double lost[4], spread[4], sample[4];
     this->problem_.measure_error(y, loss_, lost);
     this->problem_.measure_error(y, spread_, spread);
     this->problem_.measure_error(y, sample_, sample);
     trace_.largest = std::max(trace_.largest, lost[0]);
     const double rates = lost[1] + spread[1] + sample[1], angle = lost[2] + spread[2] + sample[2];
+    const double states = lost[3] + spread[3] + sample[3];
     // An oscillating error is small at times, so its size is held for a few steps.
     now_[0] = std::max(rates / trace_.scale, 0.7 * now_[0]);
     now_[1] = std::max(angle / trace_.scale, 0.7 * now_[1]);
-    if (!(rates + angle < 1e300)) now_[0] = now_[1] = std::numeric_limits<double>::infinity();
+    now_[2] = std::max(states / trace_.scale, 0.7 * now_[2]);
+    if (!(rates + angle + states < 1e300)) now_[0] = now_[1] = std::numeric_limits<double>::infinity();
   }
 
   const P& lost_;
@@ -253,7 +260,7 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   ErrorTrace& trace_;
   const bool separate_;
   double t0_;
-  double now_[2] = {}, old_[2] = {};
+  double now_[3] = {}, old_[3] = {};
   math::Coin coin_;
   alignas(64) double loss_[most_numbers], spread_[most_numbers], sample_[most_numbers];
   alignas(64) double twin_rows_[most_numbers * (most_series_order + 1)] = {};

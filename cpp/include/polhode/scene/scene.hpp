@@ -55,7 +55,11 @@ class Scene {
   double t0() const { return parts_->t0; }
   const std::string& name() const { return parts_->name; }
 
-  State start() const { return {parts_->t0, parts_->omega, parts_->attitude}; }
+  /// The states of the torques with their starts, in the order of all that holds their numbers.
+  const std::vector<formula::Input>& states() const { return states_; }
+  int count_states() const;   ///< numbers of all of them
+
+  State start() const { return {parts_->t0, parts_->omega, parts_->attitude, formula::list_values(states_)}; }
   /// What all torques and rotors together depend on and keep.
   const TorqueSum& torque_sum() const { return torque_sum_; }
   /// All torques and rotors, to be evaluated together. It refers to this scene.
@@ -68,7 +72,11 @@ class Scene {
   std::shared_ptr<const InertiaTensor> carrier_;   ///< null without free rotors
   Vector3d rotor_momentum_ = Vector3d::Zero();
   TorqueSum torque_sum_;
+  std::vector<formula::Input> states_;
 };
+
+/// Gives the states of the torques other starts, in the order of list_states().
+void set_starts(std::vector<AnyTorque>& torques, const std::vector<double>& starts);
 
 /// The speeds of all rotors relative to the body [rad/s] in n states, as (n, rotors): of a free rotor as the body's
 /// rates change it, of a held one constant, and 0 outside its windows. NaN for a rotor without an inertia.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "polhode/torque/during.hpp"
+#include "polhode/formula/program.hpp"
 #include "polhode/torque/list.hpp"
 
 namespace polhode {
@@ -40,6 +41,10 @@ struct SeveralTorques {
   bool any() const { return !torques.empty() || !rotor_momentum.isZero(0.0); }
   void add(const TorqueInput& in, double* tau_B) const;
 };
+
+/// The states of all formulas, with their starts, in the order of the torques. Formulas may share a state of one name
+/// with equal starts and rates. @throws InvalidInput for two states of one name that differ
+std::vector<formula::Input> list_states(std::span<const AnyTorque> torques);
 
 /// A torque of the list as a formula, without its windows. @throws InvalidInput for a Custom
 formula::Program make_law(const AnyTorque& torque, const Matrix3d& inertia_B);

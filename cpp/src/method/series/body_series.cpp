@@ -279,6 +279,7 @@ void BodySeries::measure_error(const double* y, const double* error, double* out
   out[1] = std::sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
   const double* q = error + 4;
   out[2] = attitude_ ? 2 * std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]) : 0.0;
+  out[3] = 0.0;
 }
 
 std::array<Vector3d, 2> BodySeries::see_orbit(DD t, const double* y) const {

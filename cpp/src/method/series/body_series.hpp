@@ -58,7 +58,7 @@ class BodySeries {
   BodySeries perturbed(double part, int choice) const;
   /// A copy that keeps the invariants of another start: this one plus an error of the state.
   BodySeries shifted(double t0, const double* error) const;
-  /// For a state and its small error: |w|, the error of w, and the error of the attitude as an angle.
+  /// For a state and its small error: |w|, the error of w, that of the attitude as an angle, and 0 for further states.
   void measure_error(const double* y, const double* error, double* out) const;
 
   /// The rates in P of a state, or their part in one row of a series.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "polhode/core/error.hpp"
@@ -51,10 +52,18 @@ bool needs_formula_series(const Scene& scene) {
 }
 
 FormulaSeries::FormulaSeries(const Scene& scene, bool) : frame_(drop_torques(scene), true) {
+  states_ = list_states(scene.torques());
+  const std::vector<double> starts = formula::list_values(states_);
+  if (starts.size() > most_width - ode::series_width)
+    throw InvalidInput("torques", "formulas with at most 56 numbers of states", std::to_string(starts.size()));
+  int end = ode::series_width;
+  for (const formula::Input& state : states_) ends_.push_back(end += static_cast<int>(state.values.size()));
   const formula::Program system = make_system(scene);
   table_ = std::make_shared<const formula::Table>(formula::Tape(system));
   start_.assign(static_cast<std::size_t>(width()), 0.0);
   std::copy_n(frame_.start(), ode::series_width, start_.begin());
+  std::copy(starts.begin(), starts.end(), start_.begin() + ode::series_width);
+  largest_.assign(states_.size(), 0.0);
   workspace_.resize(table_->workspace_size(ode::most_series_order) + 8);
 }
 
@@ -78,10 +87,27 @@ formula::Program FormulaSeries::make_system(const Scene& scene) {
   for (const Expr& rate : w_B.components) body.push_back(rate.form());
   for (const Expr& part : q_WB.components) body.push_back(part.form());
   Vec<Expr, 3> tau_B;
-  for (const AnyTorque& torque : scene.torques()) {
-    const formula::Program law = make_law(torque, scene.inertia_B().matrix());
-    const std::vector<Form> outputs = formula::embed(law, graph, body, rotated ? &R_BP : nullptr);
+  std::vector<std::optional<Form>> rates(formula::list_values(states_).size());
+  for (std::size_t k = 0; k < scene.torques().size(); ++k) {
+    const formula::Program law = make_law(scene.torques()[k], scene.inertia_B().matrix());
+    std::vector<Form> given = body;
+    std::vector<std::size_t> places;   // of the law's states among all
+    for (const formula::Input& state : law.states) {
+      const formula::Place place = formula::find_place(states_, state.name);
+      for (int i = 0; i < place.count; ++i) {
+        places.push_back(static_cast<std::size_t>(place.first + i));
+        given.push_back(graph.state(formula::first_extra + place.first + i));
+      }
+    }
+    const std::vector<Form> outputs = formula::embed(law, graph, given, rotated ? &R_BP : nullptr);
     for (std::size_t i = 0; i < 3; ++i) tau_B[i] = tau_B[i] + Expr(graph, outputs[i]);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      std::optional<Form>& rate = rates[places[i]];
+      if (rate && *rate != outputs[3 + i])
+        throw InvalidInput("torques[" + std::to_string(k) + "].states", "with the rates that the torques before it give",
+                           "another rate", "name states of different torques differently");
+      rate = outputs[3 + i];
+    }
   }
   Vec<Expr, 3> tau_P = rotated ? formula::apply_matrix(Matrix3d(R_BP.transpose()), tau_B) : tau_B;
   if (const Vector3d h_P = R_BP.transpose() * scene.rotor_momentum(); !h_P.isZero(0.0))
@@ -101,12 +127,17 @@ formula::Program FormulaSeries::make_system(const Scene& scene) {
   for (const Expr& rate : change.components) made.outputs.push_back(rate.form());
   const Vec<Expr, 4> turn = formula::multiply_pure(q_WP, w_P);
   for (const Expr& rate : turn.components) made.outputs.push_back((rate * 0.5).form());
+  for (std::optional<Form>& rate : rates) made.outputs.push_back(*std::move(rate));
   if (!plain)
     for (const Expr& rate : w_P.components) made.rates.push_back(rate.form());
   return formula::rewrite(made);
 }
 
-std::string FormulaSeries::describe_state() const { return frame_.describe_state(); }
+std::string FormulaSeries::describe_state() const {
+  std::string state = frame_.describe_state();
+  for (const formula::Input& one : states_) state += ", " + one.name;
+  return state;
+}
 
 void FormulaSeries::unpack(const double* rows, std::size_t n, double* omega, double* attitude) const {
   const auto stride = static_cast<std::size_t>(width());
@@ -144,6 +175,15 @@ FormulaSeries FormulaSeries::shifted(double, const double* error) const {
 
 void FormulaSeries::measure_error(const double* y, const double* error, double* out) const {
   frame_.measure_error(y, error, out);
+  int begin = ode::series_width;
+  for (std::size_t i = 0; i < ends_.size(); begin = ends_[i++]) {
+    double apart = 0.0;
+    for (int k = begin; k < ends_[i]; ++k) {
+      apart = std::max(apart, std::abs(error[k]));
+      largest_[i] = std::max(largest_[i], std::abs(y[k]));
+    }
+    if (apart > 0.0) out[3] = std::max(out[3], apart / largest_[i]);
+  }
 }
 
 void FormulaSeries::compute_series(DD t, double unit, const double* y, const double*, int order, double* rows) const {

@@ -34,6 +34,7 @@ class FormulaSeries {
   int width() const { return table_->width(); }
   int count_blocks() const { return 2 + static_cast<int>(ends_.size()); }
   const double* start() const { return start_.data(); }
+  int count_states() const { return ends_.empty() ? 0 : ends_.back() - ode::series_width; }
   std::string describe_state() const;
 
   /// w_B and q_WB of n rows.
@@ -47,6 +48,7 @@ class FormulaSeries {
   FormulaSeries perturbed(double part, int choice) const;
   /// A copy that starts from another state: this one plus an error.
   FormulaSeries shifted(double t0, const double* error) const;
+  /// As BodySeries does; the error of a state is relative to its largest size so far.
   void measure_error(const double* y, const double* error, double* out) const;
 
   void compute_series(math::DD t, double unit, const double* y, const double* carry, int order, double* rows) const;
@@ -59,7 +61,9 @@ class FormulaSeries {
   formula::Program make_system(const Scene& scene);
 
   BodySeries frame_;
-  std::vector<int> ends_;          ///< columns behind each vector of states
+  std::vector<formula::Input> states_;
+  std::vector<int> ends_;          ///< columns behind each of them
+  mutable std::vector<double> largest_;   ///< size of each of them so far
   std::vector<double> start_;
   std::shared_ptr<const formula::Table> table_;
   mutable std::vector<double> workspace_;   ///< of one run at a time

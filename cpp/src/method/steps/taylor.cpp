@@ -38,7 +38,9 @@ Trajectory integrate_series(const Scene& scene, const RunOptions& options) {
     }
     return std::make_unique<ode::Taylor::Stepper<Series>>(*series, scene.t0(), y, t_end, options.tolerances);
   };
-  Trajectory trajectory = integrate(scene, options, series->start(), unpack, make);
+  ExtraStates extra;
+  if constexpr (ode::WideProblem<Series>) extra = {series->count_states(), ode::series_width, series->width()};
+  Trajectory trajectory = integrate(scene, options, series->start(), unpack, make, extra);
   if (trace != nullptr)
     for (double* error : {trace->loss, trace->spread, trace->sample}) series->unpack_error(error);
   trajectory.model = "euler", trajectory.state = series->describe_state();

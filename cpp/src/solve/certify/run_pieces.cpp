@@ -92,8 +92,10 @@ Motion run_planned(const Decision& decision, const Scene& scene, const SolveOpti
     if (piece.begin == scene.t0()) {
       const Quat& q = part.attitude();
       const Vector3d& w = part.omega();
-      const double start[ode::series_width] = {w[0], w[1], w[2], 0.0, q.x, q.y, q.z, q.w};
-      trace->start(start, ode::series_width);
+      double start[ode::most_series_width] = {w[0], w[1], w[2], 0.0, q.x, q.y, q.z, q.w};
+      const std::vector<double> states = part.start().states;
+      std::copy(states.begin(), states.end(), start + ode::series_width);
+      trace->start(start, ode::series_width + static_cast<int>(states.size() + 7) / 8 * 8);
       trace->continued = true;
       h = scene.rotor_momentum();
     }

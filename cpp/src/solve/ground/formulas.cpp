@@ -92,7 +92,7 @@ void restore(const std::vector<double>& constants, double& x) {
 
 /// The torques of the list whose sum a formula is; none if it is no such sum.
 std::optional<std::vector<KnownTorque>> recognise(const Formula& formula, const Scene& scene) {
-  if (!formula.recognise()) return std::nullopt;
+  if (!formula.recognise() || !formula.states().empty()) return std::nullopt;
   formula::Recognition found = formula::recognise(formula.program(), scene.given_inertia_B().matrix());
   if (!found.is_whole) return std::nullopt;
   // Free rotors take inertia from the body that moves, so multiples of either tensor are written as matrices there.

@@ -159,10 +159,12 @@ Pieces cut(const Scene& scene, std::vector<double> method_switches) {
 
 Scene make_piece_scene(const Scene& scene, const Piece& piece, const State& start, std::vector<double> times,
                        const Wanted& want) {
+  std::vector<AnyTorque> torques = piece.torques;
+  if (!start.states.empty()) set_starts(torques, start.states);
   return Scene(SceneParts{.inertia_B = scene.given_inertia_B(),
                           .omega = start.omega,
                           .attitude = start.attitude,
-                          .torques = piece.torques,
+                          .torques = std::move(torques),
                           .times = std::move(times),
                           .want = want,
                           .t0 = start.t,

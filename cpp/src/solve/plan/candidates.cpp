@@ -30,6 +30,8 @@ bool is_better(const Candidate& a, const Candidate& b, double accuracy, bool by_
 
 std::string compute_refusal(std::string_view name, const Scene& scene) {
   const BodyMethod& method = find_body_method(name);
+  if (!scene.states().empty() && name != "taylor")
+    return "a Formula with states of its own (taylor integrates them)";
   if (!method.refuse) return "";
   if (!has_windows(scene)) return method.refuse(scene);
   const Pieces pieces = cut(scene);

@@ -48,7 +48,7 @@ Decision decide(const Scene& scene, const SolveOptions& options) {
   if (is_by_tolerance(options)) {
     const bool lagrangian = options.formulation == Formulation::lagrangian;
     decision.plan.model = is_cut ? "pieces" : lagrangian ? "lagrangian" : "euler";
-    decision.plan.method = options.method.value_or("rk45");
+    decision.plan.method = options.method.value_or(scene.states().empty() ? "rk45" : "taylor");
     return decision;
   }
   if (is_cut) {

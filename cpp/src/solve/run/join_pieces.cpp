@@ -25,6 +25,8 @@ class PieceRunner {
     if (want.omega) motion_.omega.resize(3 * reached_.size());
     if (want.attitude) motion_.attitude.resize(4 * reached_.size());
     motion_.start = scene.start();
+    motion_.extra.count = scene.count_states();
+    motion_.states.resize(states() * reached_.size());
     motion_.t_reached = scene.t0();
     motion_.has_dense = options.dense;
   }
@@ -77,6 +79,8 @@ class PieceRunner {
   }
 
  private:
+  std::size_t states() const { return static_cast<std::size_t>(motion_.extra.count); }
+
   SolveOptions make_options(double last) const {
     SolveOptions options = options_;
     options.max_steps = options_.max_steps - motion_.stats.steps;
@@ -104,6 +108,8 @@ class PieceRunner {
         for (int k = 0; k < 3; ++k) motion_.omega[3 * order[i] + static_cast<std::size_t>(k)] += jump[k];
       if (!motion_.attitude.empty())
         std::copy_n(motion.attitude.data() + 4 * row, 4, motion_.attitude.data() + 4 * order[i]);
+      if (states() > 0)
+        std::copy_n(motion.states.data() + states() * row, states(), motion_.states.data() + states() * order[i]);
       reached_[order[i]] = 1;
       ++row;
     }
@@ -127,6 +133,7 @@ class PieceRunner {
       const double* q = motion.attitude.data() + motion.attitude.size() - 4;
       end.attitude = {q[0], q[1], q[2], q[3]};
     }
+    if (states() > 0) end.states.assign(motion.states.end() - motion_.extra.count, motion.states.end());
     ++joins_;
     return perturb_joins_ ? perturb_state(end, is_exact(motion) ? 8.0 : 2.0, joins_, keep_zeros) : end;
   }
@@ -139,7 +146,7 @@ class PieceRunner {
   void keep_dense(Motion motion, const Piece& piece) {
     motion.t_begin = std::min(piece.begin, motion_.t_reached);
     motion.t_reached = std::max(piece.begin, motion_.t_reached);
-    motion.t.clear(), motion.omega.clear(), motion.attitude.clear(), motion.events.clear();
+    motion.t.clear(), motion.omega.clear(), motion.attitude.clear(), motion.states.clear(), motion.events.clear();
     motion_.pieces.push_back(std::make_shared<const Motion>(std::move(motion)));
   }
 

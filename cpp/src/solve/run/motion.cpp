@@ -29,7 +29,8 @@ double Motion::omega_scale() const {
 }
 
 bool Motion::all_finite() const {
-  return polhode::all_finite(omega.data(), omega.size()) && polhode::all_finite(attitude.data(), attitude.size());
+  return polhode::all_finite(omega.data(), omega.size()) && polhode::all_finite(attitude.data(), attitude.size()) &&
+         polhode::all_finite(states.data(), states.size());
 }
 
 State Motion::at(double time) const {
@@ -70,6 +71,7 @@ State Motion::at(double time) const {
   }
   (time < start.t ? dense_backward : dense_forward)(time, y);
   unpack(y, 1, found.omega.data(), q);
+  if (extra.count > 0) found.states = extra.of(y);
   found.attitude = {q[0], q[1], q[2], q[3]};
   return found;
 }

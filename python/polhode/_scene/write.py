@@ -1,0 +1,88 @@
+"""Scenes as scene files, which `Scene.load` reads back to the same bits."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .. import _core, _files, torques
+from .._core import InvalidInput
+
+if TYPE_CHECKING:
+    from .scene import Scene
+
+
+def _value(value: Any) -> str:
+    """A value of TOML. The shortest text of a float64 gives the same bits."""
+    if isinstance(value, (bool, np.bool_)):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return json.dumps(value)   # a basic string of TOML is one of JSON
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{_key(name)} = {_value(item)}" for name, item in value.items()) + " }"
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return "[" + ", ".join(_value(item) for item in value) + "]"
+    text = repr(float(value))
+    return text if any(c in text for c in ".en") else text + ".0"
+
+
+def _key(name: str) -> str:
+    return name if name.replace("_", "").replace("-", "").isalnum() and name.isascii() else json.dumps(name)
+
+
+def _table(lines: list[str], head: str, entries: dict[str, Any]) -> None:
+    lines += ["", head, *(f"{_key(name)} = {_value(value)}" for name, value in entries.items())]
+
+
+def _torque(torque: Any, i: int) -> dict[str, Any]:
+    if isinstance(torque, torques.During):
+        return {**_torque(torque.torque, i), "during": torque.windows}
+    name = type(torque).__name__
+    record = next((r for r in _core.torque_records() if r["name"] == name), None)
+    if record is None or name == "Custom":
+        raise InvalidInput(f"torques[{i}]: must be one that a file can hold, got {name}; a Formula can stand in a file")
+    entry: dict[str, Any] = {"kind": record["key"]}
+    if name == "Formula":
+        what = ("torque", torque.text) if torque.potential is None else ("potential", torque.potential)
+        parts = {what[0]: what[1], "let": torque.let, "parameters": torque.parameters, "states": torque.states}
+        entry |= {key: part for key, part in parts.items() if part}
+        return entry if torque.recognise else {**entry, "recognise": False}
+    return entry | {parameter["name"]: getattr(torque, parameter["name"]) for parameter in record["parameters"]}
+
+
+def _rotor(rotor: Any) -> dict[str, Any]:
+    names = ("axis", "momentum", "inertia", "speed", "free", "during")
+    return {name: value for name in names if (value := getattr(rotor, name, None)) is not None and value is not False}
+
+
+def to_toml(scene: Scene) -> str:
+    """Return a scene as the text of a scene file.
+
+    Raises
+    ------
+    InvalidInput
+        For a torque that is a Python function.
+    """
+    lines = [f"name = {_value(scene.name)}", f"want = {_value(list(scene.want))}"]
+    matrix, physical = scene.inertia.__getstate__()
+    _table(lines, "[body]", {"matrix": matrix, **({} if physical else {"physical": False})})
+    _table(lines, "[start]", {"omega": scene.omega, "attitude": scene.attitude, "t0": scene.t0})
+    _table(lines, "[times]", {"values": scene.times})
+    for i, torque in enumerate(scene.torques):
+        _table(lines, "[[torques]]", _torque(torque, i))
+    for rotor in scene.rotors:
+        _table(lines, "[[rotors]]", _rotor(rotor))
+    return "\n".join(lines) + "\n"
+
+
+def save_scene(scene: Scene, path: str | os.PathLike[str]) -> None:
+    """Write a scene file; see `Scene.save`."""
+    target = _files.to_path(path, "path")
+    if target.suffix != ".toml":
+        raise InvalidInput(f"path: must end in .toml, got {str(path)!r}")
+    text = to_toml(scene)
+    with _files.whole(target) as draft:
+        draft.write_text(text, encoding="utf-8")
