@@ -132,13 +132,13 @@ web-check: web ## `make web`, as .ci/run calls it: two minutes on two cores
 web: install ## the core as WebAssembly, its numbers tested by wasmtime, and the playground as one file
 	@$(PYTHON) -m pip install -qq --disable-pip-version-check "ziglang==0.17.1" wasmtime
 	@JOBS=$(JOBS) $(PYTHON) web/build.py
-	@POLHODE_WEB=required POLHODE_SIMD=baseline $(PYTHON) -m pytest -q tests/python/test_web.py
+	@POLHODE_WEB=required POLHODE_SIMD=baseline $(PYTHON) -m pytest -q tests/python/web/test_web.py
 
 web-pictures: install ## the playground in a headless Chromium, in two widths, light and dark
 	@$(PYTHON) tests/support/web_pictures.py build/web/playground.html build/web/pictures
 
 browser: install ## the pages that polhode writes, in a headless Chromium: films and the report
-	@$(PYTHON) -m pytest -q tests/python/test_film.py tests/python/test_report.py
+	@$(PYTHON) -m pytest -q tests/python/films/test_film.py tests/python/charts/test_report.py
 
 format: $(VENV)/.demo ## Python by ruff; the C++ files that differ from the last commit by clang-format
 	@.ci/prepare $(VENV) format > /dev/null

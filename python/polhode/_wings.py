@@ -25,15 +25,14 @@ if TYPE_CHECKING:
 class Wing(NamedTuple):
     """A part that can be left out.
 
-    `files` are folders and files below this package, `outside` those below the repository's root. `tests` begin the
-    names of its tests. `names` are names of `polhode`, each with the module that holds it or that it is. `commands` are
-    those of the command line, each with its module. `exceptions` are private names that the wing imports against its
-    contract; none is added.
+    `files` are folders and files below this package, `outside` those below the repository's root. Its tests are the
+    folder of its name in tests/python. `names` are names of `polhode`, each with the module that holds it or that it
+    is. `commands` are those of the command line, each with its module. `exceptions` are private names that the wing
+    imports against its contract; none is added.
     """
 
     name: str
     files: tuple[str, ...]
-    tests: tuple[str, ...]
     names: Mapping[str, str] = {}
     commands: Mapping[str, str] = {}
     outside: tuple[str, ...] = ()
@@ -42,7 +41,6 @@ class Wing(NamedTuple):
 
 WINGS = (
     Wing("robots", ("inertia/robots", "cli/robot.py", "cli/formats.py", "cli/show_robots.py"),
-         ("robots", "hostile_fix"),
          exceptions={"inertia.breaches": "Breach breaches",
                      "inertia.codes": "CODES LEVELS",
                      "inertia.corruptions": "Cause undo",
@@ -50,7 +48,6 @@ WINGS = (
                      "inertia.evidence": "Bodies DENSEST Evidence Geometry ROUNDED apart from_spread reference single "
                                          "spread stack weigh"}),
     Wing("charts", ("charts", "atlas", "report", "_harness", "cli/charts.py", "cli/show_charts.py", "cli/atlas.py"),
-         ("charts", "atlas", "report"),
          names={name: name for name in ("atlas", "charts", "report")},
          commands={name: "cli.charts" for name in ("chart", "report", "atlas")},
          exceptions={"_build": "processor",
@@ -58,7 +55,7 @@ WINGS = (
                      "_scene.files": "find_scene read_toml",
                      "_scene.scene": "scene_folder",
                      "_solve.motion": "Floats"}),
-    Wing("ensemble", ("_ensemble", "cli/ensemble.py"), ("ensemble",),
+    Wing("ensemble", ("_ensemble", "cli/ensemble.py"),
          names={"Ensemble": "_ensemble.ensemble", "ensemble": "_ensemble.run"},
          commands={"ensemble": "cli.ensemble"},
          exceptions={"_core": "_Summary _draw _mean_attitude",
@@ -66,13 +63,13 @@ WINGS = (
                      "_scene.files": "make_scene read_toml",
                      "_scene.recipe": "find_recipe",
                      "_scene.validation": "euler_model kinds model one_of validate"}),
-    Wing("films", ("_plot/film",), ("film",),
+    Wing("films", ("_plot/film",),
          exceptions={"_plot.panels": "DRAW Drawing",
                      "_plot.picture": "Picture",
                      "_plot.poinsot": "View family make_view",
                      "_plot.track": "Track",
                      "_solve.motion": "Floats"}),
-    Wing("web", (), ("web",), outside=("web",)),
+    Wing("web", (), outside=("web",)),
 )
 HOME = pathlib.Path(__file__).parent
 

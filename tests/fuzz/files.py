@@ -1,6 +1,6 @@
 """Coverage-guided fuzzing of the readers of files, which are Python: `files.py KIND [options of libFuzzer]`.
 
-Needs atheris. The kinds, their seeds and their readers are those of tests/python/test_fuzz.py.
+Needs atheris. The kinds, their seeds and their readers are those of tests/python/files/test_fuzz.py.
 """
 
 import contextlib

@@ -129,9 +129,15 @@ def run_tests(command):
     return (lines or ["ended by a signal" if process.returncode < 0 else output.strip()[-200:]])[0][:160]
 
 
+def place(tests):
+    """A folder of tests, or a file in one that words.py names without `test_`."""
+    folder, _, name = tests.partition("/")
+    return f"tests/python/{folder}/test_{name}.py" if name else f"tests/python/{folder}"
+
+
 def python_command(tests):
     return [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "--no-header", "--tb=no",
-            *[f"tests/python/test_{name}.py" for name in tests]]
+            *map(place, tests)]
 
 
 def cpp_command(word):
