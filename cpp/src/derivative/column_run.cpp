@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "method/samples.hpp"
-#include "method/series/column_series.hpp"
+#include "derivative/column_series.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/core/interrupt.hpp"
 

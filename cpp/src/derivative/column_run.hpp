@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "method/series/column_terms.hpp"
+#include "derivative/column_terms.hpp"
 #include "polhode/scene/parameter.hpp"
 #include "polhode/derivative/sensitivity.hpp"
 #include "solve/ground/pieces.hpp"

@@ -371,8 +371,4 @@ SeriesKernel find_series_kernel(const SeriesTerms& terms, bool attitude) {
   return choose_level(simd_level(), baseline_series_kernel, avx2_series_kernel, avx512_series_kernel, terms, attitude);
 }
 
-const ColumnKernels& find_column_kernels() {
-  return *choose_level(simd_level(), baseline_column_kernels, avx2_column_kernels, avx512_column_kernels);
-}
-
 }  // namespace polhode

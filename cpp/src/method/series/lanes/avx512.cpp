@@ -4,17 +4,14 @@
 #if defined(__AVX512DQ__)
 #define POLHODE_ISA isa_avx512
 #include "method/series/lanes/series_loops.hpp"
-#include "method/series/lanes/column_loops.hpp"
 
 namespace polhode {
 SeriesKernel avx512_series_kernel(const SeriesTerms& terms, bool attitude) {
   return POLHODE_ISA::choose(terms, attitude);
 }
-const ColumnKernels* avx512_column_kernels() { return &POLHODE_ISA::column_kernels; }
 }  // namespace polhode
 #else
 namespace polhode {
 SeriesKernel avx512_series_kernel(const SeriesTerms&, bool) { return nullptr; }
-const ColumnKernels* avx512_column_kernels() { return nullptr; }
 }  // namespace polhode
 #endif

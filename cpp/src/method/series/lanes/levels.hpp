@@ -1,6 +1,5 @@
 #pragma once
 
-#include "method/series/column_rows.hpp"
 #include "method/series/series_terms.hpp"
 
 namespace polhode {
@@ -22,12 +21,5 @@ SeriesKernel find_series_kernel(const SeriesTerms& terms, bool attitude);
 SeriesKernel baseline_series_kernel(const SeriesTerms& terms, bool attitude);
 SeriesKernel avx2_series_kernel(const SeriesTerms& terms, bool attitude);
 SeriesKernel avx512_series_kernel(const SeriesTerms& terms, bool attitude);
-
-const ColumnKernels& find_column_kernels();
-
-/// Null if the compiler could not build the instruction set.
-const ColumnKernels* baseline_column_kernels();
-const ColumnKernels* avx2_column_kernels();
-const ColumnKernels* avx512_column_kernels();
 
 }  // namespace polhode

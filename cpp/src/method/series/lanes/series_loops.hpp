@@ -4,18 +4,11 @@
 #include "polhode/math/detail/double_double.hpp"
 #include "polhode/ode/series.hpp"
 #include "method/series/lanes/levels.hpp"
+#include "method/series/lanes/shared.hpp"
 
 namespace polhode::POLHODE_ISA {
 
 constexpr int W = ode::series_width;
-
-constexpr auto reciprocals = [] {
-  struct Table {
-    double of[ode::most_series_order + 2];
-  } table{};
-  for (int n = 1; n < ode::most_series_order + 2; ++n) table.of[n] = 1.0 / n;
-  return table;
-}();
 
 /// The products of the recurrences, sum_j left_j right_{n-j}, eight components each. One pass makes the sums of two
 /// rows and uses every loaded factor twice, because loads limit the speed. From `shared` on the products have one
@@ -97,11 +90,6 @@ POLHODE_INLINE Quad broadcast(Quad a) {
 POLHODE_INLINE Quad apply(const Quad (&m)[3], Quad a, Quad rest) {
   return madd(broadcast<0>(a), m[0], rest) + madd(broadcast<2>(a), m[2], broadcast<1>(a) * m[1]);
 }
-
-/// v x w = front(v) front(w) - back(v) back(w)
-POLHODE_INLINE Quad front(Quad v) { return permute<1, 2, 0, 3>(v); }
-POLHODE_INLINE Quad back(Quad v) { return permute<2, 0, 1, 3>(v); }
-POLHODE_INLINE Quad negative(Quad v) { return v ^ all4(-0.0); }
 
 /// The recurrences of Euler's equations, the quaternion, and the vectors in the torques, in separatrix or plain
 /// variables. With `attitude` the second half of y is the quaternion. Otherwise it is a fixed vector, if there is one.

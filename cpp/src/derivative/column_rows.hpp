@@ -41,4 +41,9 @@ struct ColumnKernels {
                          int force_count, int order, double unit, ColumnRows& columns);
 };
 
+/// Null if the compiler could not build the instruction set.
+const ColumnKernels* baseline_column_kernels();
+const ColumnKernels* avx2_column_kernels();
+const ColumnKernels* avx512_column_kernels();
+
 }  // namespace polhode

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "method/series/body_series.hpp"
-#include "method/series/column_rows.hpp"
-#include "method/series/column_terms.hpp"
+#include "derivative/column_rows.hpp"
+#include "derivative/column_terms.hpp"
 #include "polhode/ode/taylor.hpp"
 
 namespace polhode {

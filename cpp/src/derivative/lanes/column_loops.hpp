@@ -1,8 +1,8 @@
 #pragma once
 
 #include "math/lanes/octet.hpp"
-#include "method/series/column_rows.hpp"
-#include "method/series/lanes/series_loops.hpp"
+#include "derivative/column_rows.hpp"
+#include "method/series/lanes/shared.hpp"
 
 // Variational equations of a body by Taylor recurrences, eight columns in the lanes of registers.
 namespace polhode::POLHODE_ISA {

@@ -1,4 +1,4 @@
-#include "method/series/column_terms.hpp"
+#include "derivative/column_terms.hpp"
 
 #include <algorithm>
 

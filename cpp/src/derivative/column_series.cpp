@@ -1,9 +1,9 @@
-#include "method/series/column_series.hpp"
+#include "derivative/column_series.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "method/series/lanes/levels.hpp"
+#include "core/choose_level.hpp"
 
 namespace polhode {
 namespace {
@@ -25,7 +25,7 @@ ColumnSeries::ColumnSeries(const Scene& piece, const std::vector<ColumnCause>& c
                            const std::vector<double>& columns)
     : body_(piece, true),
       terms_(make_column_terms(piece, body_.axes(), body_.moments(), causes)),
-      kernels_(find_column_kernels()),
+      kernels_(*choose_level(simd_level(), baseline_column_kernels, avx2_column_kernels, avx512_column_kernels)),
       count_(causes.size()) {
   const Source axes[3] = {Source::space_x, Source::space_y, Source::space_z};
   for (int c = 0; c < 3; ++c) sees_space_[c] = terms_.space[c] != 0.0 || terms_.uses(axes[c]);
