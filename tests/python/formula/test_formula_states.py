@@ -11,7 +11,7 @@ import polhode as ph
 from polhode.formula import norm, to_body, to_space
 from polhode.torques import During, Formula, Gravity
 
-TRUTH = json.loads((Path(__file__).parents[1] / "reference" / "formula_motion.json").read_text())
+TRUTH = json.loads((Path(__file__).parents[2] / "reference" / "formula_motion.json").read_text())
 START, TIMES = TRUTH["start"], np.array(TRUTH["times"])
 Q = np.array(START["attitude"]) / np.linalg.norm(START["attitude"])
 CASES = [case for case in TRUTH["cases"] if len(case["rows"][0]) > 7]
