@@ -83,6 +83,4 @@ def save_scene(scene: Scene, path: str | os.PathLike[str]) -> None:
     target = _files.to_path(path, "path")
     if target.suffix != ".toml":
         raise InvalidInput(f"path: must end in .toml, got {str(path)!r}")
-    text = to_toml(scene)
-    with _files.whole(target) as draft:
-        draft.write_text(text, encoding="utf-8")
+    _files.write(target, to_toml(scene))
