@@ -49,8 +49,8 @@ int solve_scene(const double* start, const double* t, int n, double accuracy, do
     options.accuracy = accuracy;
   }
   motion.emplace(solve(Scene(std::move(parts)), options));
-  for (std::size_t i = 0; i < motion->omega.size(); ++i) omega[i] = motion->omega[i];
-  for (std::size_t i = 0; i < motion->attitude.size(); ++i) attitude[i] = motion->attitude[i];
+  std::ranges::copy(motion->omega, omega);
+  std::ranges::copy(motion->attitude, attitude);
   return static_cast<int>(motion->status);
 }
 

@@ -27,9 +27,9 @@ class Refused(Exception):
 class Core:
     """The exports of a module, on NumPy's arrays."""
 
-    def __init__(self, name):
+    def __init__(self, path):
         self.store = wasmtime.Store()
-        module = wasmtime.Module.from_file(self.store.engine, str(WEB / name))
+        module = wasmtime.Module.from_file(self.store.engine, str(path))
         linker = wasmtime.Linker(self.store.engine)
         linker.define_func("env", "raise", wasmtime.FuncType([wasmtime.ValType.i32()], []), self._refuse)
         for wanted in module.imports:   # stubs, as in the page
@@ -80,12 +80,17 @@ class Core:
 
 @pytest.fixture(scope="module")
 def free():
-    return Core("free.wasm")
+    return Core(WEB / "free.wasm")
 
 
 @pytest.fixture(scope="module")
 def solve():
-    return Core("solve.wasm")
+    return Core(WEB / "solve.wasm")
+
+
+@pytest.fixture(scope="module")
+def numbers():
+    return Core(ROOT / "build/web/cmake/numbers.wasm")
 
 
 @pytest.fixture(scope="module")
@@ -177,15 +182,53 @@ def test_a_refusal_has_the_sentence_and_the_module_lives_on(free, solve):
     assert np.isfinite(free.throw((1.0, 2.0, 2.5), (1.0, 2.0, 3.0), START, [5.0])[0]).all()
 
 
-def test_a_refusal_writes_large_numbers_as_python_does(free):
-    """Whole numbers above 2^53 take another way through to_chars: the module has its own."""
-    for moment in (2.5, 2.0**60, 123456789012345680000.0, 1e22, 1e300, 5e-324):
-        moments = (1.0, moment, 1.0) if moment > 1 else (moment, 1.0, 2.5)
+def test_a_refusal_writes_numbers_as_python_does(free):
+    """The module has a way of its own from doubles to text: the fewest digits that read back."""
+    bits = np.random.default_rng(5).integers(0, 2**63, 300, dtype=np.uint64)
+    drawn = [value for value in bits.view(float) if np.isfinite(value)]
+    for moment in (2.5, 2.0**60, 123456789012345680000.0, 1e22, 1e300, 5e-324, 0.1, 1e-5, 100.0, 1e5, *drawn):
+        moments = (1.0, moment, 1.0) if moment > 2.1 else (moment, 1.0, 4.0)
         with pytest.raises(Refused) as told:
             free.throw(moments, (1.0, 2.0, 3.0), START, [0.0])
         with pytest.raises(ph.InvalidInput) as same:
             ph.FreeMotion(moments, (1.0, 2.0, 3.0), START)
         assert str(told.value).splitlines()[0] == str(same.value)
+
+
+def read(numbers, text):
+    """What std::from_chars makes of a text: the characters that it takes, or minus the error, and the value."""
+    numbers.memory.write(numbers.store, text.encode(), numbers.call("reserve_text", len(text)))
+    return numbers.call("read"), numbers.call("last")
+
+
+def test_numbers_are_written_with_the_fewest_digits_and_read_back(numbers):
+    bits = np.random.default_rng(6).integers(0, 2**63, 5000, dtype=np.uint64)
+    near_one = np.ldexp(np.round(np.random.default_rng(7).uniform(size=2000), 6), 20)
+    for value in (*bits.view(float), *near_one, 0.0, 1.0, 2.0**53, 2.0**53 + 2, 1e21, 1e23, 5e-324, 1.7976931348623157e308):
+        if not np.isfinite(value):
+            continue
+        length = numbers.call("write", float(value))
+        at = numbers.call("written")
+        text = bytes(numbers.memory.read(numbers.store, at, at + length)).decode()
+        assert float(text) == value
+        digits = repr(float(value)).split("e")[0].replace(".", "").strip("0")
+        if "e" in text:
+            assert len(text.split("e")[0].replace(".", "")) <= max(len(digits), 1), (text, value)
+        assert read(numbers, text) == (length, value)
+
+
+OUT_OF_RANGE, INVALID = -68, -28   # ERANGE and EINVAL of WASI
+
+
+@pytest.mark.parametrize("text, length, value", [
+    ("1.5*x", 3, 1.5), ("2e", 1, 2.0), ("2e+", 1, 2.0), ("2e-3)", 4, 2e-3), (".5", 2, 0.5), ("7.", 2, 7.0),
+    ("0x1F", 1, 0.0), ("3E5", 3, 3e5), ("0e999", 5, 0.0), ("1.2.3", 3, 1.2), ("9007199254740993", 16, 2.0**53),
+    ("9007199254740993.0000000000000000000000001", 42, 2.0**53 + 2), ("1e-320", 6, 1e-320), ("0" * 400 + "1", 401, 1.0),
+    ("1e400", OUT_OF_RANGE, None), ("1e-400", OUT_OF_RANGE, None), ("x", INVALID, None), (".", INVALID, None)])
+def test_numbers_are_read_as_the_grammar_of_formulas_says(numbers, text, length, value):
+    taken, got = read(numbers, text)
+    assert taken == length
+    assert value is None or got == value
 
 
 def test_period_flips_and_momentum(free):
