@@ -60,9 +60,12 @@ class Measurement(abc.ABC):
 
     def part(self, until: float) -> Measurement:
         """Return the samples with abs(t) <= until."""
+        return self.taken(np.abs(self.t) <= until)
+
+    def taken(self, chosen: Any) -> Measurement:
+        """Return the samples of a mask or of indices."""
         other = object.__new__(type(self))
         other.__dict__.update(self.__dict__)
-        chosen = np.abs(self.t) <= until
         other.t, other.y, other.whitener = self.t[chosen], self.y[chosen], self.whitener[chosen]
         return other
 

@@ -30,6 +30,8 @@ class DrivenState(State):
     by their groups. The scale of J counts here: torques do not grow with it.
     """
 
+    free = False
+
     def __init__(self, scene: Scene, attitude: Array, omega: Array, seconds: Array, numbers: dict[str, Array],
                  bias: Array) -> None:
         super().__init__(attitude, omega, seconds[:2] - seconds[2], np.array([0.0, 0, 0, 1]), bias)

@@ -10,18 +10,16 @@ import numpy as np
 from .._attitude.arrays import is_one_of, is_whole, to_items, to_number
 from .._core import IntegrationFailure, InvalidInput
 from .._scene.scene import Scene
-from ..measured import Attitudes, Axis, Direction, Measurement, Rates
+from ..measured import Attitudes, Measurement, Rates
 from . import turns
+from .candidates import Pool
 from .driven_problem import DrivenProblem, DrivenState
 from .least_squares import LOSSES, Minimum, minimise
 from .problem import GROUPS, Problem, State, ratios_of
 from .result import FitResult, make_result
-from .start import fits, from_rates, grow, search, wahba
+from .start import fits
+from .starts import SPANS, grown, search_free
 from .turns import Array
-
-STARTS = 12     # other ratios that are tried where the linear start does not fit
-THIN = 8.0      # log of a ratio of second moments beyond which other ratios are tried too
-SPANS = (0.1, 0.2, 0.4, 0.7, 1.0)   # growing windows, of the whole span
 
 
 def _to_data(data: Any) -> list[Measurement]:
@@ -76,27 +74,6 @@ def _bounds(problem: Problem, bounds: Mapping[str, tuple[float, float]] | None) 
     return low, high
 
 
-def _first_attitude(problem: Problem, state: State) -> State:
-    """Return the state with the start attitude that fits the vectors and attitudes best."""
-    pairs = []
-    for m in problem.data:
-        if not isinstance(m, (Attitudes, Axis, Direction)):
-            continue
-        motion = State(np.array([0.0, 0, 0, 1]), state.omega, state.ratios, state.axes, state.bias).motion()
-        q = turns.product(motion.at(m.t)[1], turns.conjugate(state.axes))
-        R = turns.to_matrix(q)
-        if isinstance(m, Attitudes):
-            Y = turns.to_matrix(m.y)
-            pairs += [(R[None, :, :, k], Y[..., k], 1.0) for k in range(3)]
-        elif isinstance(m, Axis):
-            pairs.append(((R @ m.known)[None], m.y, 1.0))
-        else:
-            pairs.append((np.einsum("kij,kj->ki", R, m.y)[None], np.broadcast_to(m.known, m.y.shape), 1.0))
-    if not pairs:
-        return state
-    return State(wahba(pairs)[1][0], state.omega, state.ratios, state.axes, state.bias)
-
-
 def _start_driven(problem: Problem, state: State, loss: str, scale: float) -> State:
     """Return the start of the last fit: the scene's numbers, the first samples, and windows that grow."""
     step = np.zeros(len(problem.names))
@@ -113,7 +90,7 @@ def _start_driven(problem: Problem, state: State, loss: str, scale: float) -> St
     for begin in (state.moved(step, problem.slices), state):
         for windows in (spans, spans[2:], spans[-1:]):
             try:
-                found = _grown(problem, begin, windows, loss, scale)
+                found = grown(problem, begin, windows, loss, scale)
             except IntegrationFailure:   # numbers that a short window hardly fixes may be far off in a longer one
                 continue
             if best is None or found.cost < best.cost:
@@ -121,50 +98,6 @@ def _start_driven(problem: Problem, state: State, loss: str, scale: float) -> St
             if fits(best):
                 return best.state
     return state if best is None else best.state
-
-
-def _grown(problem: Problem, state: State, spans: Array, loss: str, scale: float) -> Minimum:
-    """Return the minimum on all data, after windows that grow under a loss that bears outliers."""
-    found, _ = grow(problem, state, spans, "soft_l1" if loss == "linear" else loss, scale)
-    return minimise(problem, found.state, loss=loss, scale=scale)
-
-
-def _start(problem: Problem, state: State, rng: np.random.Generator, loss: str, scale: float) -> tuple[State, str]:
-    """Return the start of the last fit, and how it was found."""
-    rates = [m for m in problem.data if isinstance(m, Rates) and len(m) >= 8]
-    last = float(np.abs(problem.t).max())
-    if rates:
-        gyro = max(rates, key=len)
-        ratios, axes = state.ratios, state.axes
-        if "inertia" in problem.slices:
-            moments, axes = from_rates(gyro.t, gyro.y, "axes" in problem.slices)
-            ratios = ratios_of(moments, 0.02)
-        omega = state.omega
-        if "omega" in problem.slices:
-            omega = gyro.y[np.argmin(np.abs(gyro.t))]
-        first = State(state.attitude, omega, ratios, axes, state.bias)
-        if "attitude" in problem.slices:
-            first = _first_attitude(problem, first)
-        spans = np.quantile(np.abs(gyro.t), SPANS)
-        found = _grown(problem, first, spans, loss, scale)
-        how = "a linear start from the rates and growing windows"
-        if fits(found) and np.abs(found.state.ratios).max() < THIN:
-            return found.state, how
-        if "inertia" in problem.slices:
-            for _ in range(STARTS):   # other ratios, the same windows
-                P = rng.uniform(0.1, 1, 3) ** 2
-                other = State(first.attitude, first.omega, ratios_of(P.sum() - P), axes, state.bias)
-                other_found = _grown(problem, other, spans, loss, scale)
-                if other_found.cost < 0.999 * found.cost:
-                    found, how = other_found, "growing windows from ratios at random"
-        if fits(found) or not any(isinstance(m, (Attitudes, Axis, Direction)) for m in problem.data):
-            return found.state, how
-    if last == 0:
-        return state, "the scene"
-    searched = search(problem, state, rng, loss, scale)
-    if searched is None:
-        return state, "nothing: the search found no motion that fits"
-    return searched.state, "a search through motions at random"
 
 
 def _set_up(data: list[Measurement], groups: Sequence[str], scene: Scene | None, driven: bool,
@@ -192,6 +125,7 @@ def fit(
     loss: str = "linear",
     f_scale: float = 1.0,
     seed: int = 0,
+    fastest: float | None = None,
 ) -> FitResult:
     """Fit the start, the inertia and the axes of a free body, or numbers of a scene with torques, to measurements.
 
@@ -219,13 +153,16 @@ def fit(
         The residual over sigma from which the loss counts it as an outlier.
     seed : int
         Of the search.
+    fastest : float, optional
+        The largest rate that scans over frequencies try [rad/s]. By default three quarters of a turn in the spacing of
+        an even grid of times. For times at random the scans go on to a hundred turns in their mean spacing.
 
     Returns
     -------
     FitResult
         SciPy's names (`x`, `cost`, `fun`, `jac`, `nfev`, `status`, `message`, `success`), `omega`, `attitude`,
-        `inertia`, `cov`, `stderr`, `correlation`, `parameters`, `chi2`, `dof`, `unobservable`, `twins`, `scene`,
-        `problem`, and `predict(t)`.
+        `inertia`, `cov`, `stderr`, `correlation`, `parameters`, `chi2`, `dof`, `candidates`, `unobservable`,
+        `twins`, `scene`, `problem`, and `predict(t)`.
 
     Raises
     ------
@@ -245,6 +182,8 @@ def fit(
     f_scale = to_number(f_scale, "f_scale")
     if not is_whole(seed) or seed < 0:   # NumPy crashes on a list that holds itself
         raise InvalidInput(f"seed: must be a whole number >= 0, got {seed!r}")
+    if fastest is not None and not (fastest := to_number(fastest, "fastest")) > 0:
+        raise InvalidInput(f"fastest: must be positive, got {fastest}")
     if not f_scale > 0:
         raise InvalidInput(f"f_scale: must be positive, got {f_scale}")
     if not is_one_of(start, ("search", "scene")) or (start == "scene" and scene is None):
@@ -254,11 +193,12 @@ def fit(
     if independent < len(problem.names) or problem.t.size < 2:
         raise InvalidInput(f"data: {independent} numbers cannot give {len(problem.names)} parameters; "
                            f"{sum(m.left_out for m in measurements)} samples were left out as NaN")
-    how = "the scene"
+    how, pool = "the scene", Pool(problem)
     if start == "search" and driven:
         state, how = _start_driven(problem, state, loss, f_scale), "growing windows from the scene"
     elif start == "search":
-        state, how = _start(problem, state, np.random.default_rng(seed), loss, f_scale)
+        how = search_free(problem, state, np.random.default_rng(seed), loss, f_scale, pool, fastest)
+        state = state if pool.best is None else pool.best.state
     low, high = _bounds(problem, bounds)
     found = minimise(problem, state, loss=loss, scale=f_scale, low=low, high=high, most=1000)
-    return make_result(problem, found, scene, largest, how, loss)
+    return make_result(problem, found, scene, largest, how, loss, pool)

@@ -25,6 +25,8 @@ class State:
     and log(P2 / P3) are those of a body that exists. The scale of J does not change a free motion.
     """
 
+    free = True    # no torques, no rotors
+
     def __init__(self, attitude: Array, omega: Array, ratios: Array, axes: Array, bias: Array) -> None:
         self.attitude, self.omega, self.ratios, self.axes, self.bias = attitude, omega, ratios, axes, bias
 

@@ -12,6 +12,7 @@ from .._core import InertiaTensor
 from .._scene.scene import Scene
 from ..measured import Axis, Rates, Scalar
 from . import turns
+from .candidates import Candidate, Pool, aliases
 from .driven_problem import DrivenState
 from .least_squares import Minimum
 from .problem import Problem, State
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
 HIDDEN = 1e-10     # a singular value below this part of the largest is not observable
-GOOD_CHI2 = 4.0
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -74,7 +74,7 @@ class FitResult:
     fun, jac : ndarray
         Residuals over sigma, shape (m,), and their derivatives by steps of the parameters, shape (m, p).
     nfev, status, message, success
-        As for SciPy's `least_squares`. `success` is False where chi2 is above 4 for each degree of freedom.
+        As for SciPy's `least_squares`. `success` is False where chi2 is above dof + 4 sqrt(2 dof).
     omega : ndarray, shape (3,)
         Angular velocity at t = 0, body axes [rad/s].
     attitude : Rotation
@@ -85,6 +85,9 @@ class FitResult:
         Of the parameters; small rotations stand for attitude and axes. NaN where not observable.
     chi2, dof : float, int
         The sum of squared residuals over sigma, and how many independent numbers exceed the parameters.
+    candidates : tuple of Candidate
+        The minima that were met with a chi2 within 25 of the best, which is the first: `omega`, `inertia`, the periods
+        `nutation` and `precession` [s], and `chi2`.
     unobservable, twins : tuple of str
         In words: what these data cannot tell, and which other bodies fit as well.
     left_out : int
@@ -114,6 +117,7 @@ class FitResult:
     parameters: tuple[str, ...]
     chi2: float
     dof: int
+    candidates: tuple[Candidate, ...]
     unobservable: tuple[str, ...]
     twins: tuple[str, ...]
     left_out: int
@@ -206,7 +210,7 @@ def _symmetry(problem: Problem, state: State, cov: Array) -> list[str]:
 
 
 def make_result(problem: Problem, found: Minimum, scene: Scene | None, largest: float, how: str, loss: str,
-                ) -> FitResult:
+                pool: Pool) -> FitResult:
     """Make the result from a minimum."""
     state = found.state
     cov, hidden = covariance(found.jacobian, problem.names)
@@ -229,7 +233,8 @@ def make_result(problem: Problem, found: Minimum, scene: Scene | None, largest: 
             x[problem.slices[group]] = value
     chi2 = float(found.residuals @ found.residuals)
     dof = sum(m.independent for m in problem.data) - len(problem.names)
-    good = chi2 <= GOOD_CHI2 * max(dof, 1) or loss != "linear"
+    good = chi2 <= pool.limit or loss != "linear"
+    pool.add(found)
     left_out = sum(m.left_out for m in problem.data)
     message = ("converged" if found.status else "the most evaluations were made") + f"; the start was {how}"
     if not good:
@@ -247,5 +252,6 @@ def make_result(problem: Problem, found: Minimum, scene: Scene | None, largest: 
         numbers = {}
     return FitResult(x, found.cost, found.residuals, found.jacobian, found.nfev, found.status, message,
                      bool(found.status > 0 and good), state.omega, attitude, inertia, cov, stderr, correlation,
-                     problem.names, chi2, dof, tuple(unobservable + hidden), _twins(problem, moments), left_out,
-                     state.bias, scene_out, problem.with_data(problem.data, state), state, numbers)
+                     problem.names, chi2, dof, pool.candidates(), tuple(unobservable + hidden),
+                     _twins(problem, moments) + aliases(problem, pool), left_out, state.bias,
+                     scene_out, problem.with_data(problem.data, state), state, numbers)

@@ -15,6 +15,7 @@ from .turns import Array
 
 if TYPE_CHECKING:
     from ..measured import Measurement
+    from .candidates import Pool
 
 GOOD = 4.0          # chi^2 a residual: above it a start is wrong
 STAGES = ((40_000, 5), (100_000, 4), (400_000, 8), (400_000, 6))        # bodies, epochs: attitudes
@@ -142,8 +143,7 @@ def fits(found: Minimum) -> bool:
     return bool(2 * found.cost <= count + 6 * (2 * count) ** 0.5)
 
 
-def search(problem: Problem, state: State, rng: np.random.Generator, loss: str, scale: float,
-           ) -> Minimum | None:
+def search(problem: Problem, state: State, rng: np.random.Generator, loss: str, scale: float, pool: Pool) -> None:
     """Draw bodies at random, keep the best on the first epochs, and let their windows grow until one takes all data."""
     from ..measured import Attitudes
 
@@ -151,7 +151,6 @@ def search(problem: Problem, state: State, rng: np.random.Generator, loss: str, 
     rich = any(isinstance(m, Attitudes) for m in data)
     last = float(np.abs(problem.t).max())
     speed = fastest_rate(data)
-    best: Minimum | None = None
     for bodies, epochs in STAGES if rich else AXIS_STAGES:
         chosen = np.abs(_epochs(data, epochs))
         until = float(chosen.max())
@@ -179,12 +178,9 @@ def search(problem: Problem, state: State, rng: np.random.Generator, loss: str, 
             if not good:
                 continue
             found = minimise(problem, found.state, loss=loss, scale=scale)
-            if best is None or found.cost < best.cost:
-                best = found
-            if fits(best):
-                more -= 1
-            if fits(best) and (rich or more == 0):
-                return best
-        if best is not None and 2 * best.cost <= GOOD * best.residuals.size:
-            return best
-    return None
+            pool.add(found)
+            more -= pool.fits
+            if pool.fits and (rich or more == 0):
+                return
+        if pool.best is not None and 2 * pool.best.cost <= GOOD * pool.best.residuals.size:
+            return

@@ -1,0 +1,103 @@
+"""The searches for the start of a fit of a free body, in their order."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..measured import Attitudes, Axis, Direction, Measurement, Rates
+from . import sparse, turns
+from .candidates import Pool
+from .least_squares import Minimum, minimise
+from .problem import Problem, State, ratios_of
+from .start import from_rates, grow, search, wahba
+from .turns import Array
+
+STARTS = 12     # other ratios that are tried where the linear start does not fit
+THIN = 8.0      # log of a ratio of second moments beyond which other ratios are tried too
+SPANS = (0.1, 0.2, 0.4, 0.7, 1.0)   # growing windows, of the whole span
+
+
+def _first_attitude(problem: Problem, state: State) -> State:
+    """Return the state with the start attitude that fits the vectors and attitudes best."""
+    pairs = []
+    for m in problem.data:
+        if not isinstance(m, (Attitudes, Axis, Direction)):
+            continue
+        motion = State(np.array([0.0, 0, 0, 1]), state.omega, state.ratios, state.axes, state.bias).motion()
+        q = turns.product(motion.at(m.t)[1], turns.conjugate(state.axes))
+        R = turns.to_matrix(q)
+        if isinstance(m, Attitudes):
+            Y = turns.to_matrix(m.y)
+            pairs += [(R[None, :, :, k], Y[..., k], 1.0) for k in range(3)]
+        elif isinstance(m, Axis):
+            pairs.append(((R @ m.known)[None], m.y, 1.0))
+        else:
+            pairs.append((np.einsum("kij,kj->ki", R, m.y)[None], np.broadcast_to(m.known, m.y.shape), 1.0))
+    if not pairs:
+        return state
+    return State(wahba(pairs)[1][0], state.omega, state.ratios, state.axes, state.bias)
+
+
+def grown(problem: Problem, state: State, spans: Array, loss: str, scale: float) -> Minimum:
+    """Return the minimum on all data, after windows that grow under a loss that bears outliers."""
+    found, _ = grow(problem, state, spans, "soft_l1" if loss == "linear" else loss, scale)
+    return minimise(problem, found.state, loss=loss, scale=scale)
+
+
+def _from_rates(problem: Problem, state: State, gyro: Measurement, rng: np.random.Generator, loss: str, scale: float,
+                pool: Pool) -> str:
+    """Fit growing windows from the linear start, and from other ratios where that does not fit."""
+    ratios, axes = state.ratios, state.axes
+    if "inertia" in problem.slices:
+        moments, axes = from_rates(gyro.t, gyro.y, "axes" in problem.slices)
+        ratios = ratios_of(moments, 0.02)
+    omega = state.omega
+    if "omega" in problem.slices:
+        omega = gyro.y[np.argmin(np.abs(gyro.t))]
+    first = State(state.attitude, omega, ratios, axes, state.bias)
+    if "attitude" in problem.slices:
+        first = _first_attitude(problem, first)
+    spans = np.quantile(np.abs(gyro.t), SPANS)
+    found = grown(problem, first, spans, loss, scale)
+    pool.add(found)
+    how = "a linear start from the rates and growing windows"
+    if (pool.fits and np.abs(found.state.ratios).max() < THIN) or "inertia" not in problem.slices:
+        return how
+    if sparse.is_coarse(gyro):
+        return how
+    for _ in range(STARTS):   # other ratios, the same windows
+        P = rng.uniform(0.1, 1, 3) ** 2
+        other = State(first.attitude, first.omega, ratios_of(P.sum() - P), axes, state.bias)
+        other_found = grown(problem, other, spans, loss, scale)
+        pool.add(other_found)
+        if other_found.cost < 0.999 * found.cost:
+            found, how = other_found, "growing windows from ratios at random"
+    return how
+
+
+def search_free(problem: Problem, state: State, rng: np.random.Generator, loss: str, scale: float, pool: Pool,
+                fastest: float | None) -> str:
+    """Fill the pool with minima, until one fits, and say in words how the best was found."""
+    how = ""
+    rates = [m for m in problem.data if isinstance(m, Rates) and len(m) >= 8]
+    if rates:
+        gyro = max(rates, key=len)
+        how = _from_rates(problem, state, gyro, rng, loss, scale, pool)
+        before = pool.best
+        if "inertia" in problem.slices and "axes" not in problem.slices and sparse.is_coarse(gyro):
+            sparse.search_rates(problem, state, gyro, pool, loss, scale)
+            if pool.best is not before:
+                how = "the nutation's frequency in the rates"
+        if pool.fits or not any(isinstance(m, (Attitudes, Axis, Direction)) for m in problem.data):
+            return how
+    if float(np.abs(problem.t).max()) == 0:
+        return how
+    before = pool.best
+    if any(isinstance(m, Attitudes) for m in problem.data) and {"omega", "attitude"} <= set(problem.slices):
+        sparse.search_attitudes(problem, state, pool, loss, scale, fastest)
+        if pool.fits:
+            return "the frequencies of nutation and precession"
+    search(problem, state, rng, loss, scale, pool)
+    if pool.fits or pool.best is not before:
+        return "a search through motions at random"
+    return how or "nothing: the search found no motion that fits"
