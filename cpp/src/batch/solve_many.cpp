@@ -13,6 +13,7 @@
 #include "batch/parallel.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/core/interrupt.hpp"
+#include "solve/ground/formulas.hpp"
 #include "solve/ground/options.hpp"
 #include "solve/ground/pieces.hpp"
 
@@ -124,6 +125,7 @@ std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeS
   const std::size_t chunk = std::clamp<std::size_t>(n / (2 * thread_limit), 64, 512);
   const auto solve_in_lanes = [&](std::size_t, std::size_t) {
     const StepTolerances step = choose_tolerances(lanes->record, options);
+    Recognitions recognitions;
     for (std::size_t begin = next.fetch_add(chunk); begin < n && !stopped; begin = next.fetch_add(chunk)) {
       std::vector<std::unique_ptr<LaneJob>> jobs;
       std::vector<std::size_t> bodies;
@@ -133,7 +135,7 @@ std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeS
           check_interrupt();
           std::optional<Scene> made = make_one(body);
           if (!made) return;
-          Scene& scene = *made;
+          Scene scene = resolve_formulas(*made, AsCustom::no, recognitions);
           check_options(scene, options);
           if (has_windows(scene) || !lanes->accepts(scene)) return;
           if (scene.torque_sum().acting > 0) require_finite_start(scene);

@@ -115,9 +115,37 @@ AnyTorque with_window(const AnyTorque& like, LastingTorque torque) {
   return std::visit([](const auto& one) { return AnyTorque(one); }, torque);
 }
 
+/// Whether a recognition holds for every inertia: of a sum without multiples of a tensor, or of what is no such sum.
+bool holds_for_any_inertia(const Formula& formula, const std::optional<std::vector<KnownTorque>>& parts) {
+  if (!parts) return !formula.recognise() || !formula.traits().uses_time;   // a gravity gradient needs the time
+  return std::all_of(parts->begin(), parts->end(), [](const KnownTorque& part) {
+    using Kind = KnownTorque::Kind;
+    return part.kind != Kind::damping && part.kind != Kind::angular_damping && part.kind != Kind::gravity_gradient;
+  });
+}
+
 }  // namespace
 
+const std::optional<std::vector<KnownTorque>>& Recognitions::find(const Formula& formula, const Scene& scene) {
+  const Matrix3d &given = scene.given_inertia_B().matrix(), &moving = scene.inertia_B().matrix();
+  for (const Entry& entry : entries_) {
+    if (entry.any_inertia || (entry.given_inertia_B == given && entry.inertia_B == moving))
+      if (entry.formula == formula) return entry.parts;
+  }
+  if (entries_.size() >= most) entries_.clear();
+  auto parts = recognise(formula, scene);
+  const bool any = holds_for_any_inertia(formula, parts);
+  entries_.push_back({formula, given, moving, any, std::move(parts)});
+  return entries_.back().parts;
+}
+
 Scene resolve_formulas(const Scene& scene, AsCustom as_custom, std::vector<std::string>* recognised) {
+  Recognitions known;
+  return resolve_formulas(scene, as_custom, known, recognised);
+}
+
+Scene resolve_formulas(const Scene& scene, AsCustom as_custom, Recognitions& recognitions,
+                       std::vector<std::string>* recognised) {
   const auto& given = scene.torques();
   if (std::none_of(given.begin(), given.end(), [](const auto& torque) { return find_formula(torque) != nullptr; }))
     return scene;
@@ -126,7 +154,7 @@ Scene resolve_formulas(const Scene& scene, AsCustom as_custom, std::vector<std::
     const AnyTorque torque = given[i];
     const Formula* formula = find_formula(torque);
     if (formula == nullptr) continue;
-    const auto known = recognise(*formula, scene);
+    const auto& known = recognitions.find(*formula, scene);
     if (!known) {
       if (as_custom == AsCustom::yes && formula->has_switches()) parts.torques[i] = with_window(torque, formula->as_custom());
       continue;
