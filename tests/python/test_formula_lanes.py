@@ -1,7 +1,13 @@
-"""Formulas of many bodies at once: those of the list run in the lanes of their torques."""
+"""Formulas of many bodies at once: in the lanes of their torques, or in lanes of their own."""
+
+import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
+from test_formula_series import FULL, LAWS, START, TRUTH, Q, find_errors, make
+from test_formula_series import scene as true_scene
 
 import polhode as ph
 from polhode.torques import AngularDamping, Constant, Damping, Formula, Gravity, GravityGradient
@@ -58,3 +64,93 @@ def test_what_is_a_torque_for_one_tensor_alone():
     assert list(many.lanes) == [True, False, True]
     assert_same(ph.solve_many(both[::2], rtol=1e-9, method="rk45"),
                 ph.solve_many([scene(GravityGradient(0.4))] * 2, rtol=1e-9, method="rk45"))
+
+
+@pytest.mark.parametrize("case", TRUTH["cases"], ids=lambda case: f"{case['law']}-{case['inertia'][0][1]}")
+@pytest.mark.parametrize("rtol", [1e-4, 1e-8, 1e-12])
+def test_lanes_of_every_law_against_truth(case, rtol):
+    torque = make(case["law"], case["inertia"])
+    bodies = [true_scene([torque], case["inertia"]).replace(omega=(1 + 0.1 * i) * np.array(START["omega"]))
+              for i in range(10)]
+    many = ph.solve_many(bodies, rtol=rtol, method="taylor")
+    assert many.lanes.all() and set(many.status) == {"finished"}
+
+    class First:
+        omega, attitude = many.omega[0], many.attitude[0]
+
+    assert max(find_errors(First, np.array(case["rows"], dtype=float))) <= 10 * rtol
+    alone = ph.solve(bodies[7], rtol=1e-14, method="taylor")
+    assert np.abs(many.omega[7] - alone.omega).max() <= 20 * rtol
+
+
+def law(name, i=0):
+    """The law with numbers of its own for body i."""
+    function, parameters = LAWS[name]
+    if name == "gradient":
+        parameters = dict(parameters, inertia=tuple(np.ravel(FULL)))
+    grown = {key: tuple(np.array(v) * (1 + 0.02 * i)) if isinstance(v, tuple) else v * (1 + 0.02 * i)
+             for key, v in parameters.items()}
+    return Formula(function, recognise=False, **grown)
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_bodies_have_numbers_of_their_own(name):
+    """In any order and company, with any number of threads, each body has the bits it has alone."""
+    bodies = [scene(law(name, i % 5), Gravity(0.1 * (i % 3), (0, 0.1, 0.3)), inertia=MOMENTS[i] if i % 2 else FULL,
+                    omega=SPINS[i], attitude=TURNS[i], rotors=[ph.Rotor(axis=(0, 0, 1), momentum=0.1 * (i % 4))])
+              for i in range(N)]
+    many = ph.solve_many(bodies, rtol=1e-10, method="taylor")
+    assert many.lanes.all() and set(many.status) == {"finished"}
+    for i in (0, 7, 13):
+        alone = ph.solve(bodies[i], rtol=1e-14, method="taylor")
+        assert np.abs(many.omega[i] - alone.omega).max() <= 1e-8
+        one = ph.solve_many(bodies[i : i + 1], rtol=1e-10, method="taylor")
+        np.testing.assert_array_equal(one.attitude[0], many.attitude[i])
+    order = RNG.permutation(N)
+    mixed = ph.solve_many([bodies[i] for i in order], rtol=1e-10, method="taylor", threads=2)
+    np.testing.assert_array_equal(mixed.omega, many.omega[order])
+
+
+def test_one_scene_and_its_starts():
+    own = scene(law("saturated"))
+    many = ph.solve_many(own, rtol=1e-9, method="taylor", **starts())
+    each = [own.replace(inertia=MOMENTS[i], omega=SPINS[i], attitude=TURNS[i]) for i in range(N)]
+    assert_same(many, ph.solve_many(each, rtol=1e-9, method="taylor"))
+
+
+def test_a_body_that_fails_leaves_the_others_alone():
+    grows = Formula(text="3 * norm(omega) * omega", recognise=False)   # to infinity in a finite time
+    good = scene(law("drag"))
+    many = ph.solve_many([good, scene(grows), good.replace(omega=(1, 1, 1))], rtol=1e-9, method="taylor",
+                         max_steps=500)
+    assert list(many.status)[::2] == ["finished"] * 2 and many.status[1] != "finished" and many.t_reached[1] < 1
+    np.testing.assert_array_equal(many.omega[0], ph.solve_many([good], rtol=1e-9, method="taylor").omega[0])
+
+
+def test_a_switch_is_solved_alone():
+    many = ph.solve_many([scene(Formula(text="-clip(omega, -0.5, 0.5)"))] * 2, rtol=1e-9, method="rk45")
+    assert not many.lanes.any() and many.success.all()
+
+
+PRINT = """
+import hashlib, sys
+sys.path[:0] = {path!r}
+from test_formula_lanes import *
+for name in LAWS:
+    for rtol in (1e-5, 1e-12):
+        many = ph.solve_many(scene(law(name)), rtol=rtol, method="taylor", **starts())
+        print(hashlib.sha256(many.omega.tobytes() + many.attitude.tobytes()).hexdigest())
+print(ph.build_info()["simd"])
+"""
+
+
+def test_avx2_and_avx512_give_the_same_bits():
+    if ph.build_info()["simd"] != "avx512":
+        pytest.skip("needs AVX-512")
+    found = {}
+    for level in ("avx2", "avx512"):
+        run = subprocess.run([sys.executable, "-c", PRINT.format(path=sys.path)],
+                             env={**os.environ, "POLHODE_SIMD": level}, capture_output=True, text=True, check=True)
+        *found[level], simd = run.stdout.split("\n")[:-1]
+        assert simd == level
+    assert len(found["avx2"]) == 2 * len(LAWS) and found["avx2"] == found["avx512"]

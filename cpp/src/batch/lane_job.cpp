@@ -9,9 +9,9 @@
 
 namespace polhode {
 
-LaneJob::LaneJob(Scene scene, const LaneMethod& method)
+LaneJob::LaneJob(Scene scene, const LaneMethod& method, const LaneJob* before)
     : scene_(std::move(scene)),
-      problem_(method.make_problem(scene_)),
+      problem_(method.make_problem(scene_, before != nullptr ? before->problem_.get() : nullptr)),
       kind_(problem_->kind()),
       itinerary_(scene_.times(), scene_.t0()),
       reached_(scene_.times().size(), 0) {

@@ -13,7 +13,8 @@ namespace polhode {
 /// The run of one body in a lane: backward to the times before its start, then forward, in the order of solve().
 class LaneJob {
  public:
-  LaneJob(Scene scene, const LaneMethod& method);
+  /// @param before  the job of another body, or null
+  LaneJob(Scene scene, const LaneMethod& method, const LaneJob* before);
 
   const Scene& scene() const { return scene_; }
   const LaneProblem& problem() const { return *problem_; }

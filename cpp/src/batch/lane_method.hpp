@@ -51,7 +51,8 @@ struct LaneMethod {
   const ode::MethodRecord& record;
   bool (*accepts)(const Scene& scene);   ///< other scenes are solved one by one
   /// The scene must outlive the problem.
-  std::unique_ptr<LaneProblem> (*make_problem)(const Scene& scene);
+  /// @param before  the problem of another body, to share what both have in common, or null
+  std::unique_ptr<LaneProblem> (*make_problem)(const Scene& scene, const LaneProblem* before);
 };
 
 extern const LaneMethod taylor_lanes, rk45_lanes;

@@ -167,7 +167,8 @@ bool accepts_all(const Scene& scene) {
 
 }  // namespace
 
-const LaneMethod rk45_lanes{ode::Rk45::record, &accepts_all, [](const Scene& scene) -> std::unique_ptr<LaneProblem> {
+const LaneMethod rk45_lanes{ode::Rk45::record, &accepts_all,
+                            [](const Scene& scene, const LaneProblem*) -> std::unique_ptr<LaneProblem> {
                               return std::make_unique<EulerLaneProblem>(scene);
                             }};
 

@@ -139,7 +139,7 @@ std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeS
           check_options(scene, options);
           if (has_windows(scene) || !lanes->accepts(scene)) return;
           if (scene.torque_sum().acting > 0) require_finite_start(scene);
-          jobs.push_back(std::make_unique<LaneJob>(std::move(scene), *lanes));
+          jobs.push_back(std::make_unique<LaneJob>(std::move(scene), *lanes, jobs.empty() ? nullptr : jobs.back().get()));
           bodies.push_back(body), in_lanes[body] = 1;
         });
       }

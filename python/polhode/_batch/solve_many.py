@@ -137,7 +137,8 @@ def solve_many(
 
     With ``rtol`` or ``atol``, the methods ``"rk45"`` (the default then) and ``"taylor"`` integrate eight bodies at once
     in SIMD lanes. Each body has its own time, step and error. rk45 gives the same bits as `solve`. taylor meets the
-    same tolerance, with other bits. All other options, and bodies with a `Custom` torque, use `solve`.
+    same tolerance, with other bits. A `Formula` has lanes too: of its own by taylor, and those of the torque that it
+    is. All other options, and bodies with a `Custom` torque, use `solve`.
 
     Parameters
     ----------
