@@ -6,7 +6,7 @@ import sys
 
 import numpy as np
 import pytest
-from test_formula_series import FULL, LAWS, START, TRUTH, Q, find_errors, make
+from test_formula_series import FULL, LAWS, START, TRUTH, find_errors, make
 from test_formula_series import scene as true_scene
 
 import polhode as ph
