@@ -59,9 +59,11 @@ if _TYPE_CHECKING:
     from . import schema as schema
     from ._saved import load as load
     from ._wings import Ensemble as Ensemble
+    from ._wings import Judgement as Judgement
     from ._wings import atlas as atlas
     from ._wings import charts as charts
     from ._wings import ensemble as ensemble
+    from ._wings import judge as judge
     from ._wings import report as report
 
 _attach()   # the methods of compiled classes that are written in Python

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from . import report as report
     from ._ensemble.ensemble import Ensemble as Ensemble
     from ._ensemble.run import ensemble as ensemble
+    from ._judge.judgement import Judgement as Judgement
+    from ._judge.run import judge as judge
     from ._plot.film.film import Film as Film
     from .inertia import robots as robots
 
@@ -69,6 +71,7 @@ WINGS = (
                      "_plot.poinsot": "View family make_view",
                      "_plot.track": "Track",
                      "_solve.motion": "Floats"}),
+    Wing("judge", ("_judge",), names={"Judgement": "_judge.judgement", "judge": "_judge.run"}),
     Wing("web", (), outside=("web",)),
 )
 HOME = pathlib.Path(__file__).parent

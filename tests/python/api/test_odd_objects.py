@@ -85,6 +85,9 @@ DOORS = {
     "plan": (ph.plan, dict(scene=SCENE, accuracy=1e-6, method=None, certify=True, formulation="euler")),
     "lyapunov": (ph.lyapunov, dict(scene=SCENE, span=1e-3, accuracy=1e-6)),
     "fit": (ph.fit, dict(data=RATES, scene=SCENE, fit="omega", start="search", loss="linear", f_scale=1.0, seed=0)),
+    "judge": (ph.judge, dict(t=T30, attitude=FREE.at(T30)[1], omega=FREE.at(T30)[0], inertia=I, order="xyzw",
+                             frame="body", euler=None, degrees=False, tolerance=1e-6, sigma=None)),
+    "Judgement.fails": (ph.judge(T30, omega=FREE.at(T30)[0], inertia=I).fails, dict(level="warning")),
     "Rotor": (ph.Rotor, dict(axis=(0, 0, 1), momentum=1.0, inertia=None, speed=None, free=False, during=None)),
     "FreeMotion": (ph.FreeMotion, dict(inertia=I, omega=W, attitude=Q)),
     "Gyrostat": (ph.Gyrostat, dict(inertia=I, momentum=(1, 0, 0), omega=W, attitude=Q, rotors=None)),
@@ -152,7 +155,8 @@ DOORS = {
     "torques.Damping": (T.Damping, dict(matrix=np.eye(3))), "load": (ph.load, dict(path="x.npz")),
 }
 # What takes nothing but self, a file, or the user's own data is left out; the rest must stand above.
-OUT = ("Ensemble", "FitResult", "Lyapunov", "Motion", "Motions", "Plan", "Sensitivity", "PrincipalAxes",
+OUT = ("Judgement", "line", "to_dict",
+       "Ensemble", "FitResult", "Lyapunov", "Motion", "Motions", "Plan", "Sensitivity", "PrincipalAxes",
        "MassProperties",
        "InertiaTensor", "IntegrationFailure", "InvalidInput", "animate", "plot", "inv", "magnitude", "as_matrix",
        "as_mrp", "atlas", "charts", "recipe", "report", "schema", "shapes", "ensemble", "methods", "build_info",

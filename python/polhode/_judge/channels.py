@@ -1,0 +1,69 @@
+"""States of samples that have one channel alone, and a body that was not given."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from .. import measured
+from .._core import InertiaTensor
+from .._sensitivity.fit import fit as fit_body
+from .conventions import turned_by
+from .findings import Finding
+from .law import Law
+from .laws import Variant, choose
+from .read import Samples
+from .shooting import Data, Track
+from .states import Array, conjugate, multiply, rms, turn
+
+MOST_FITTED = 300
+
+
+def to_data(samples: Samples) -> Data:
+    """Return states: rates from attitudes, or attitudes from rates, where the other was not given."""
+    t = samples.t
+    if samples.omega is None:
+        assert samples.attitude is not None
+        mean = turned_by(samples.attitude[:-1], samples.attitude[1:], np.diff(t), False)
+        middle = 0.5 * (t[1:] + t[:-1])
+        omega = np.stack([np.interp(t, middle, mean[:, k]) for k in range(3)], axis=1)
+        return Data(t, omega, samples.attitude, has_omega=False)
+    if samples.attitude is None:
+        steps = turn(0.5 * (samples.omega[1:] + samples.omega[:-1]) * np.diff(t)[:, None])
+        attitude = np.empty((len(t), 4))
+        attitude[0] = [0, 0, 0, 1]
+        for k, step in enumerate(steps):
+            attitude[k + 1] = multiply(attitude[k], step)
+        return Data(t, samples.omega, attitude, has_attitude=False)
+    return Data(t, samples.omega, samples.attitude)
+
+
+def fitted_body(data: Data) -> Array:
+    """Fit ratios of moments and the principal axes of a free body, and return its tensor."""
+    thin = data.take(slice(None, None, max(1, len(data.t) // MOST_FITTED)))
+    t = thin.t - thin.t[0]
+    given: list[measured.Measurement] = []
+    if data.has_omega:
+        given.append(measured.Rates(t, thin.omega, 1e-3 * data.scale))
+    if data.has_attitude:
+        given.append(measured.Attitudes(t, thin.attitude, 1e-3))
+    groups = ("omega", "attitude", "inertia", "axes") if data.has_attitude else ("omega", "inertia", "axes")
+    inertia = fit_body(given if len(given) > 1 else given[0], fit=groups).inertia
+    matrix: Array = inertia.matrix if isinstance(inertia, InertiaTensor) else np.diag(inertia)
+    return matrix
+
+
+def read_again(data: Data, law: Law, track: Track) -> tuple[Finding, Data, Track, Variant | None] | None:
+    """Try the other readings of attitudes alone; return the one that a body obeys much better, or None."""
+    best, found = (track.length, -rms(track.deviation())), None
+    for cause, text, attitude in (
+        ("conjugate", "attitudes take space to body: the reverse rotation", conjugate(data.attitude)),
+        ("scalar order", "the scalar stands at the other end of the four numbers", np.roll(data.attitude, -1, axis=1)),
+    ):
+        other = to_data(Samples(data.t, None, attitude))
+        kind, trial = choose(other, law)
+        value = (trial.length, -rms(trial.deviation()))
+        if value[0] > best[0] or value[0] == best[0] and value[1] > math.exp(-1.5) * best[1]:
+            best, found = value, (Finding(cause, text, effect=0.5), other, trial, kind)
+    return found
