@@ -14,20 +14,11 @@ import sys
 import time
 
 import numpy as np
+from timing import best
 
 import polhode as ph
 
 BLOCK = (0.20, 0.40, 0.52)
-
-
-def best(work, repeats=15):
-    work()
-    found = np.inf
-    for _ in range(repeats):
-        start = time.thread_time_ns()
-        work()
-        found = min(found, time.thread_time_ns() - start)
-    return found
 
 
 def random_body(rng):

@@ -19,6 +19,7 @@ import sys
 import time
 
 import numpy as np
+from timing import best
 
 import polhode as ph
 
@@ -49,16 +50,6 @@ GOALS = {
     "HeavyTop(...) [us]": (None, None),
     ".at(float) [us]": (None, None),
 }
-
-
-def best(work, repeats=40):
-    work()
-    found = np.inf
-    for _ in range(repeats):
-        start = time.thread_time_ns()
-        work()
-        found = min(found, time.thread_time_ns() - start)
-    return found
 
 
 def random_bodies(n, rng):

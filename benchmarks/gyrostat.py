@@ -8,9 +8,9 @@ instruction sets. Errors are against tests/reference/gyrostat.json, in units of 
 
 import json
 import pathlib
-import time
 
 import numpy as np
+from timing import best
 
 import polhode as ph
 
@@ -19,16 +19,6 @@ TABLE = ROOT / "tests" / "reference" / "gyrostat.json"
 E = 2.2e-16
 BLOCK, START = (0.20, 0.40, 0.52), (0.0, 0.0, 0.0, 1.0)
 SCENES = ("S10", "S11")   # the trigonometric and the hyperbolic form
-
-
-def best(work, repeats=40):
-    work()
-    found = np.inf
-    for _ in range(repeats):
-        start = time.thread_time_ns()
-        work()
-        found = min(found, time.thread_time_ns() - start)
-    return found
 
 
 def measure_error(scene, omega, attitude):

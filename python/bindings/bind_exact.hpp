@@ -3,6 +3,7 @@
 #include <pybind11/operators.h>
 #include <pybind11/typing.h>
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,8 @@
 #include "convert.hpp"
 #include "gil.hpp"
 #include "polhode/core/state.hpp"
+#include "polhode/scene/rotor.hpp"
+#include "polhode/torque/torques.hpp"
 
 // What the closed forms share on their way to Python.
 namespace polhode::python {
@@ -20,6 +23,35 @@ void bind_closed_form(py::module_& m);
 #define POLHODE_DECLARE(type) template <> void bind_closed_form<type>(py::module_& m);
 POLHODE_CLOSED_FORM_TYPES(POLHODE_DECLARE)
 #undef POLHODE_DECLARE
+
+/// The base of the classes in Python, for what Python defines of all of them.
+struct AnyForm {};
+
+/// The class of a closed form, below the common base.
+template <class Form>
+py::class_<Form> make_class(py::module_& m, const char* name, const char* doc) {
+  py::class_<Form> cls(m, name, m.attr("_ClosedForm"), doc);
+  cls.attr("__module__") = "polhode";
+  return cls;
+}
+
+/// The docstring of `at`. @param limit  behind "negative ones too"; @param raises  the text of InvalidInput
+inline std::string at_doc(const std::string& limit, const std::string& raises = "", const std::string& options = "") {
+  return "Angular velocity and attitude at the given times.\n\nParameters\n----------\nt : array_like, any shape\n"
+         "    Times [s], negative ones too" + limit + ".\n" + options + R"(
+Returns
+-------
+omega : ndarray, shape (..., 3)
+    In body axes [rad/s].
+attitude : ndarray, shape (..., 4)
+    Body to space, unit, (x, y, z, w).)" + (raises.empty() ? "" : "\n\nRaises\n------\nInvalidInput\n    " + raises);
+}
+
+/// What a picture draws: the torques and rotors of the scene, its period [s] (0: none), and the longest span [s].
+struct Picture {
+  py::list torques = py::list(), rotors = py::list();
+  double period = 0.0, longest = std::numeric_limits<double>::infinity();
+};
 
 /// A new array of shape t.shape + (width,).
 inline Array result_for(const Array& t, py::ssize_t width) {
@@ -63,15 +95,22 @@ Array along(const Motion& motion, py::handle t) {
   return points;
 }
 
-/// What a closed form started from, and equality.
-template <class Motion>
-void bind_start(py::class_<Motion>& cls, const char* inertia = "The InertiaTensor.") {
+/// What a closed form started from, equality, and its picture. @param picture  makes the Picture of a motion
+template <class Motion, class Make>
+void bind_start(py::class_<Motion>& cls, const Make& picture, const char* inertia = "The InertiaTensor.") {
   cls.def_property_readonly("inertia", &Motion::inertia, inertia)
       .def_property_readonly(
           "omega", [](const Motion& motion) { return from_vector3(motion.omega()); },
           "(3,) omega at t = 0, in body axes [rad/s].")
       .def_property_readonly(
           "attitude", [](const Motion& motion) { return from_quat(motion.attitude()); }, "(4,) attitude at t = 0.")
+      .def_property_readonly(
+          "_picture",
+          [picture](const Motion& motion) {
+            const Picture drawn = picture(motion);
+            return py::make_tuple(drawn.torques, drawn.rotors, drawn.period, drawn.longest);
+          },
+          "The torques and rotors of its scene, its period [s] or 0, the longest span to draw [s].")
       .def(py::self == py::self);
 }
 

@@ -20,8 +20,7 @@ DampedFree make_damped_free(py::handle inertia, py::handle damping, py::handle o
 
 template <>
 void bind_closed_form<DampedFree>(py::module_& m) {
-  py::class_<DampedFree> cls(m, "DampedFree",
-                             R"(A free body with damping proportional to its angular momentum, -c I omega.
+  auto cls = make_class<DampedFree>(m, "DampedFree", R"(A free body with damping proportional to its angular momentum, -c I omega.
 
 In closed form at any time, for any body: it is the free motion in the slowed time s = (1 - exp(-c t)) / c, with omega
 multiplied by exp(-c t). The error is that of FreeMotion.
@@ -46,27 +45,9 @@ InvalidInput
 Notes
 -----
 A change of time in Euler's equations; see docs/damped_free.md.)");
-  cls.attr("__module__") = "polhode";
   cls.def(py::init(&make_damped_free), py::arg("inertia"), py::arg("damping"), py::arg("omega"),
           py::arg("attitude") = py::make_tuple(0, 0, 0, 1))
-      .def("at", &at<DampedFree>, py::arg("t"), R"(Angular velocity and attitude at the given times.
-
-Parameters
-----------
-t : array_like, any shape
-    Times [s], negative ones too.
-
-Returns
--------
-omega : ndarray, shape (..., 3)
-    In body axes [rad/s].
-attitude : ndarray, shape (..., 4)
-    Body to space, unit, (x, y, z, w).
-
-Raises
-------
-InvalidInput
-    A time that is not finite, or at which a driven body is beyond float64.)")
+      .def("at", &at<DampedFree>, py::arg("t"), at_doc("", "A time that is not finite, or at which a driven body is beyond float64.").c_str())
       .def("slowed_time", &DampedFree::slowed_time, py::arg("t"), R"(The time at which the free body has this attitude.
 
 Parameters
@@ -85,7 +66,10 @@ float
       .def("__hash__", [](const DampedFree& f) { return hash_of(f.omega(), f.damping()); })
       .def("__repr__",
            [](const DampedFree& f) { return call_text("DampedFree", f, ", damping=" + to_text(f.damping())); });
-  bind_start(cls);
+  bind_start(cls, [](const DampedFree& f) {
+    return Picture{.torques = py::make_tuple(torques::AngularDamping(f.damping())),
+                   .longest = f.damping() > 0.0 ? 5.0 / f.damping() : std::numeric_limits<double>::infinity()};
+  });
   cls.def(py::pickle(
       [](const DampedFree& f) {
         return py::make_tuple(f.inertia(), f.damping(), from_vector3(f.omega()), from_quat(f.attitude()));

@@ -45,7 +45,7 @@ py::typing::Tuple<Array, Array> states_at(const FreeMotion& motion, py::handle t
 
 template <>
 void bind_closed_form<FreeMotion>(py::module_& m) {
-  py::class_<FreeMotion> cls(m, "FreeMotion", R"(Torque-free motion of any rigid body, in closed form at any time.
+  auto cls = make_class<FreeMotion>(m, "FreeMotion", R"(Torque-free motion of any rigid body, in closed form at any time.
 
 One class for the sphere, symmetric and triaxial bodies, steady rotation, rest, needles and the separatrix, exactly and
 nearly. The error against the exact motion of the same float64 input is a few units of rounding at every time.
@@ -70,26 +70,13 @@ InvalidInput
 Notes
 -----
 Jacobi (1850), "Sur la rotation d'un corps", J. reine angew. Math. 39, in the Cayley-Klein form; see docs/exact.md.)");
-  cls.attr("__module__") = "polhode";
   cls.def(py::init(&make_free_motion), py::arg("inertia"), py::arg("omega"),
           py::arg("attitude") = py::make_tuple(0, 0, 0, 1), py::kw_only(), py::arg("physical") = true)
       .def("at", &states_at, py::arg("t"), py::kw_only(), py::arg("progress") = py::none(),
-           R"(Angular velocity and attitude at the given times.
-
-Parameters
-----------
-t : array_like, any shape
-    Times [s], negative ones too, up to abs(omega t) = 1e25 rad.
-progress : True or callable, optional
+           at_doc(", up to abs(omega t) = 1e25 rad", "", R"(progress : True or callable, optional
     ``progress(times done, all times)`` is called about fifty times a second. What it raises ends the call. True writes
     a line with the time left to stderr.
-
-Returns
--------
-omega : ndarray, shape (..., 3)
-    In body axes [rad/s].
-attitude : ndarray, shape (..., 4)
-    Body to space, unit, (x, y, z, w).)")
+)").c_str())
       .def("euler_angles", &along<FreeMotion, &FreeMotion::euler_angles>, py::arg("t"), R"(Angles about the angular momentum.
 
 Parameters
@@ -163,7 +150,7 @@ ndarray, shape (n,)
           "(3,) in space axes, constant [kg m^2/s].")
       .def("__hash__", [](const FreeMotion& f) { return hash_of(f.omega()); })
       .def("__repr__", [](const FreeMotion& f) { return call_text("FreeMotion", f); });
-  bind_start(cls);
+  bind_start(cls, [](const FreeMotion& motion) { return Picture{.period = motion.period()}; });
   cls.def(py::pickle(
       [](const FreeMotion& f) { return py::make_tuple(f.inertia(), from_vector3(f.omega()), from_quat(f.attitude())); },
       [](const py::tuple& state) {

@@ -44,7 +44,7 @@ Gyrostat make_gyrostat(py::handle inertia, const py::object& rotors, const py::o
 
 template <>
 void bind_closed_form<Gyrostat>(py::module_& m) {
-  py::class_<Gyrostat> cls(m, "Gyrostat", R"(Torque-free motion of a rigid body with rotors, in closed form at any time.
+  auto cls = make_class<Gyrostat>(m, "Gyrostat", R"(Torque-free motion of a rigid body with rotors, in closed form at any time.
 
 Euler's equations are J omega' = (J omega + h) x omega with the rotors' momentum h constant in the body. One class for
 every body and every h: near and on steady turns, separatrices and symmetries too. The error against the exact motion of
@@ -73,22 +73,9 @@ Notes
 -----
 Zhukovsky (1885); Volterra (1899), Acta Math. 22; Wittenburg (1977), Dynamics of Systems of Rigid Bodies; see
 docs/gyrostat.md.)");
-  cls.attr("__module__") = "polhode";
   cls.def(py::init(&make_gyrostat), py::arg("inertia"), py::kw_only(), py::arg("rotors") = py::none(),
           py::arg("momentum") = py::none(), py::arg("omega"), py::arg("attitude") = py::make_tuple(0, 0, 0, 1))
-      .def("at", &at<Gyrostat>, py::arg("t"), R"(Angular velocity and attitude at the given times.
-
-Parameters
-----------
-t : array_like, any shape
-    Times [s], negative ones too, up to abs(omega t) = 1e25 rad.
-
-Returns
--------
-omega : ndarray, shape (..., 3)
-    In body axes [rad/s].
-attitude : ndarray, shape (..., 4)
-    Body to space, unit, (x, y, z, w).)")
+      .def("at", &at<Gyrostat>, py::arg("t"), at_doc(", up to abs(omega t) = 1e25 rad").c_str())
       .def("euler_angles", &along<Gyrostat, &Gyrostat::euler_angles>, py::arg("t"), R"(Angles about the total momentum.
 
 Parameters
@@ -131,7 +118,12 @@ ndarray, shape (..., 3)
       .def("__repr__", [](const Gyrostat& g) {
         return call_text("Gyrostat", g, ", momentum=" + array_text(from_vector3(g.momentum())));
       });
-  bind_start(cls);
+  bind_start(cls, [](const Gyrostat& g) {
+    Picture picture{.period = g.period()};
+    if (!g.momentum().isZero(0.0))
+      picture.rotors.append(Rotor({.axis = g.momentum(), .momentum = g.momentum().norm()}));
+    return picture;
+  });
   cls.def(py::pickle(
       [](const Gyrostat& g) {
         return py::make_tuple(g.inertia(), from_vector3(g.momentum()), from_vector3(g.omega()),

@@ -25,8 +25,7 @@ HeavyTop make_heavy_top(py::handle inertia, py::handle weight_arm, py::handle om
 
 template <>
 void bind_closed_form<HeavyTop>(py::module_& m) {
-  py::class_<HeavyTop> cls(m, "HeavyTop",
-                           R"(Lagrange's top: a symmetric body held at a point of its axis, under gravity.
+  auto cls = make_class<HeavyTop>(m, "HeavyTop", R"(Lagrange's top: a symmetric body held at a point of its axis, under gravity.
 
 In closed form at any time: looping, cuspidal and monotone precession, both steady precessions, sleeping and hanging
 tops on both sides of stability, planar and spherical pendulums, next to and on the homoclinic motion. The error against
@@ -56,27 +55,9 @@ InvalidInput
 Notes
 -----
 F. Klein and A. Sommerfeld, "Ueber die Theorie des Kreisels" (1897-1910); see docs/heavy_top.md.)");
-  cls.attr("__module__") = "polhode";
   cls.def(py::init(&make_heavy_top), py::arg("inertia"), py::arg("weight_arm"), py::arg("omega"),
           py::arg("attitude") = py::make_tuple(0, 0, 0, 1), py::arg("rotor") = 0.0)
-      .def("at", &at<HeavyTop>, py::arg("t"), R"(Angular velocity and attitude at the given times.
-
-Parameters
-----------
-t : array_like, any shape
-    Times [s], negative ones too, up to abs(omega t) = 1e25 rad.
-
-Returns
--------
-omega : ndarray, shape (..., 3)
-    In body axes [rad/s].
-attitude : ndarray, shape (..., 4)
-    Body to space, unit, (x, y, z, w).
-
-Raises
-------
-InvalidInput
-    A time that is not finite, or too long for its phase to have digits.)")
+      .def("at", &at<HeavyTop>, py::arg("t"), at_doc(", up to abs(omega t) = 1e25 rad", "A time that is not finite, or too long for its phase to have digits.").c_str())
       .def_property_readonly("kind", [](const HeavyTop& top) { return to_text(top.kind()); },
                              "'free' (no weight), 'sleeping', 'hanging', 'steady_precession', 'planar_pendulum',\n"
                              "'spherical_pendulum', 'homoclinic', 'looping', 'cuspidal' or 'monotone'.")
@@ -102,7 +83,12 @@ InvalidInput
         return call_text("HeavyTop", top, ", weight_arm=" + to_text(top.weight_arm()),
                          top.rotor() == 0.0 ? "" : ", rotor=" + to_text(top.rotor()));
       });
-  bind_start(cls, "The InertiaTensor about the pivot.");
+  bind_start(cls, [](const HeavyTop& top) {
+    Picture picture{.period = top.nutation_period()};
+    if (top.weight_arm() != 0.0) picture.torques.append(torques::Gravity(1.0, top.axis() * top.weight_arm()));
+    if (top.rotor() != 0.0) picture.rotors.append(Rotor({.axis = top.axis(), .momentum = top.rotor()}));
+    return picture;
+  }, "The InertiaTensor about the pivot.");
   cls.def(py::pickle(
       [](const HeavyTop& top) {
         return py::make_tuple(top.inertia(), top.weight_arm(), from_vector3(top.omega()), from_quat(top.attitude()),

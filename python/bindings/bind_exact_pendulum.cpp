@@ -20,8 +20,7 @@ Pendulum make_pendulum(py::handle inertia, py::handle weight, py::handle arm, py
 
 template <>
 void bind_closed_form<Pendulum>(py::module_& m) {
-  py::class_<Pendulum> cls(m, "Pendulum",
-                           R"(The plane pendulum: any body on a pivot under gravity that swings about one body axis.
+  auto cls = make_class<Pendulum>(m, "Pendulum", R"(The plane pendulum: any body on a pivot under gravity that swings about one body axis.
 
 In closed form at any time and at every energy: swings of any size, rotation over the top, the separatrix between them,
 rest. The axis may be any of the three body axes. It must be principal, horizontal and at right angles to the arm, and
@@ -49,27 +48,9 @@ InvalidInput
 Notes
 -----
 E. T. Whittaker, "Analytical Dynamics" (1937), section 44; see docs/pendulum.md.)");
-  cls.attr("__module__") = "polhode";
   cls.def(py::init(&make_pendulum), py::arg("inertia"), py::arg("weight"), py::arg("arm"), py::arg("omega"),
           py::arg("attitude") = py::make_tuple(0, 0, 0, 1))
-      .def("at", &at<Pendulum>, py::arg("t"), R"(Angular velocity and attitude at the given times.
-
-Parameters
-----------
-t : array_like, any shape
-    Times [s], negative ones too, up to 1e25 rad.
-
-Returns
--------
-omega : ndarray, shape (..., 3)
-    In body axes [rad/s].
-attitude : ndarray, shape (..., 4)
-    Body to space, unit, (x, y, z, w).
-
-Raises
-------
-InvalidInput
-    A time that is not finite, or too long for its phase to have digits.)")
+      .def("at", &at<Pendulum>, py::arg("t"), at_doc(", up to 1e25 rad", "A time that is not finite, or too long for its phase to have digits.").c_str())
       .def_property_readonly("kind", [](const Pendulum& p) { return to_text(p.kind()); },
                              "'rest', 'swinging', 'rotating' or 'separatrix'.")
       .def_property_readonly("period", &Pendulum::period,
@@ -86,7 +67,9 @@ InvalidInput
         return call_text("Pendulum", p,
                          ", weight=" + to_text(p.weight()) + ", arm=" + array_text(from_vector3(p.arm())));
       });
-  bind_start(cls, "The InertiaTensor about the pivot.");
+  bind_start(cls, [](const Pendulum& p) {
+    return Picture{.torques = py::make_tuple(torques::Gravity(p.weight(), p.arm())), .period = p.period()};
+  }, "The InertiaTensor about the pivot.");
   cls.def(py::pickle(
       [](const Pendulum& p) {
         return py::make_tuple(p.inertia(), p.weight(), from_vector3(p.arm()), from_vector3(p.omega()),

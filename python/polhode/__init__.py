@@ -26,15 +26,11 @@ from ._batch.solve_many import solve_many as solve_many
 from ._batch.step import step as step
 from ._build import build_info as build_info
 from ._build import cmake_prefix as cmake_prefix
-from ._core import DampedFree as DampedFree
-from ._core import FreeMotion as FreeMotion
-from ._core import Gyrostat as Gyrostat
-from ._core import HeavyTop as HeavyTop
 from ._core import IntegrationFailure as IntegrationFailure
 from ._core import InvalidInput as InvalidInput
-from ._core import Pendulum as Pendulum
 from ._core import Rotor as Rotor
 from ._core import __version__ as __version__
+from ._core.exact import *  # noqa: F403  the list is the compiled one
 from ._plot.closed_forms import attach as _attach
 from ._scene.scene import Scene as Scene
 from ._sensitivity.fit import fit as fit

@@ -13,6 +13,7 @@ import csv
 import pathlib
 import random
 
+from attitude_series import append_row
 from free_motion_reference import characteristic_time, closed_form, distance, families, nearby, unit
 from mpmath import exp, expm1, mp, mpf
 
@@ -46,13 +47,7 @@ def taylor(I, c, omega, q, time, order=50):
             for a in range(3):
                 b, d = (a + 1) % 3, (a + 2) % 3
                 W[a].append(((I[b] - I[d]) * cauchy(W[b], W[d], n) / I[a] - c * W[a][n]) / (n + 1))
-            x, y, z, s = Q
-            new = [cauchy(s, W[0], n) + cauchy(y, W[2], n) - cauchy(z, W[1], n),
-                   cauchy(s, W[1], n) + cauchy(z, W[0], n) - cauchy(x, W[2], n),
-                   cauchy(s, W[2], n) + cauchy(x, W[1], n) - cauchy(y, W[0], n),
-                   -cauchy(x, W[0], n) - cauchy(y, W[1], n) - cauchy(z, W[2], n)]
-            for k in range(4):
-                Q[k].append(new[k] / (2 * (n + 1)))
+            append_row(Q, W, n, cauchy)
         w, q = [mp.polyval(v[::-1], h) for v in W], [mp.polyval(v[::-1], h) for v in Q]
     return w, unit(q)
 

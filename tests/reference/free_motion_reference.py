@@ -15,6 +15,7 @@ import csv
 import pathlib
 import random
 
+from attitude_series import append_row
 from mpmath import asin, atan, atan2, atanh, cos, ellipfun, ellipk, ellippi, mp, mpf, nint, pi, sin, sqrt, tanh
 
 TABLE = pathlib.Path(__file__).with_name("free_motion.csv")
@@ -160,13 +161,7 @@ def taylor(I, omega, q0, time, order=50):
             for a in range(3):
                 b, c = (a + 1) % 3, (a + 2) % 3
                 W[a].append((I[b] - I[c]) * cauchy(W[b], W[c], n) / (I[a] * (n + 1)))
-            x, y, z, s = Q
-            new = [cauchy(s, W[0], n) + cauchy(y, W[2], n) - cauchy(z, W[1], n),
-                   cauchy(s, W[1], n) + cauchy(z, W[0], n) - cauchy(x, W[2], n),
-                   cauchy(s, W[2], n) + cauchy(x, W[1], n) - cauchy(y, W[0], n),
-                   -cauchy(x, W[0], n) - cauchy(y, W[1], n) - cauchy(z, W[2], n)]
-            for k in range(4):
-                Q[k].append(new[k] / (2 * (n + 1)))
+            append_row(Q, W, n, cauchy)
         w, q = [mp.polyval(c[::-1], h) for c in W], [mp.polyval(c[::-1], h) for c in Q]
     return w, unit(q)
 

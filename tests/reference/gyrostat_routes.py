@@ -5,6 +5,7 @@
 - `Taylor`: the power series of J omega' = (J omega + h) x omega and of the quaternion's equation, step by step.
 """
 
+from attitude_series import append_row
 from mpmath import mp, mpc, mpf
 
 DIGITS = 120
@@ -317,13 +318,7 @@ class Taylor:
                     b, c = (a + 1) % 3, (a + 2) % 3
                     W[a].append(((J[b] - J[c]) * cauchy(W[b], W[c], n) + self.h[b] * W[c][n] - self.h[c] * W[b][n])
                                 / (J[a] * (n + 1)))
-                x, y, z, s = Q
-                new = [cauchy(s, W[0], n) + cauchy(y, W[2], n) - cauchy(z, W[1], n),
-                       cauchy(s, W[1], n) + cauchy(z, W[0], n) - cauchy(x, W[2], n),
-                       cauchy(s, W[2], n) + cauchy(x, W[1], n) - cauchy(y, W[0], n),
-                       -cauchy(x, W[0], n) - cauchy(y, W[1], n) - cauchy(z, W[2], n)]
-                for k in range(4):
-                    Q[k].append(new[k] / (2 * (n + 1)))
+                append_row(Q, W, n, cauchy)
             w, q = [mp.polyval(c[::-1], h) for c in W], unit([mp.polyval(c[::-1], h) for c in Q])
         return w, q
 

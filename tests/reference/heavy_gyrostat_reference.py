@@ -16,6 +16,7 @@ import random
 import sys
 
 import mpmath as mp
+from attitude_series import append_row
 from heavy_top_reference import legendre, moved, start
 from mpmath import mpf
 
@@ -88,12 +89,7 @@ def power_series(A, C, M, h, omega, q, time, order=50):
             for a in range(3):
                 b, c = (a + 1) % 3, (a + 2) % 3
                 W[a].append(((J[b] - J[c]) * cauchy(W[b], W[c], n) + spin[a] + tau[a]) / (J[a] * (n + 1)))
-            new = [cauchy(s, W[0], n) + cauchy(y, W[2], n) - cauchy(z, W[1], n),
-                   cauchy(s, W[1], n) + cauchy(z, W[0], n) - cauchy(x, W[2], n),
-                   cauchy(s, W[2], n) + cauchy(x, W[1], n) - cauchy(y, W[0], n),
-                   -cauchy(x, W[0], n) - cauchy(y, W[1], n) - cauchy(z, W[2], n)]
-            for k in range(4):
-                Q[k].append(new[k] / (2 * (n + 1)))
+            append_row(Q, W, n, cauchy)
         w, p = [mp.polyval(c[::-1], step) for c in W], [mp.polyval(c[::-1], step) for c in Q]
     return [*w, *p]
 

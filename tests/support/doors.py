@@ -22,7 +22,8 @@ def public():
             full = f"{prefix}.{name}" if prefix else name
             found[full] = door
             if isinstance(door, type):
-                found |= {f"{full}.{part}": getattr(door, part) for part in vars(door)
+                found |= {f"{full}.{part}": getattr(door, part) for base in door.__mro__
+                          if base is door or base.__name__.startswith("_") for part in vars(base)
                           if not part.startswith("_") and callable(getattr(door, part))}
                 if "__call__" in vars(door):
                     found[f"{full}.__call__"] = door.__call__

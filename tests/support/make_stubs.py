@@ -70,6 +70,7 @@ def tidy(text: str, public: list[str], home: str) -> str:
     if found:
         text = text.replace("import typing\n", "import typing\n\n"
                             "from polhode._sensitivity.sensitivity import Sensitivity\n", 1)
+    text = re.sub(r"^(from polhode\._core import (\w+))$", r"\1 as \2", text, flags=re.M)   # its names, not only used
     return re.sub(r"^(__version__: str) = .*$", r"\1", text, flags=re.M)
 
 

@@ -53,14 +53,7 @@ void DampedFree::check_time(double t) const {
                          ": omega is e^" + to_text(exponent) + " times that of the start; shorten the span");
 }
 
-State DampedFree::at(double t) const {
-  State state;
-  state.t = t;
-  double q[4];
-  at(&t, 1, state.omega.data(), q);
-  state.attitude = {q[0], q[1], q[2], q[3]};
-  return state;
-}
+State DampedFree::at(double t) const { return exact::find_state(*this, t); }
 
 void DampedFree::at(const double* t, std::size_t n, double* omega, double* attitude) const {
   if (damping_ == 0.0) return free_.at(t, n, omega, attitude);

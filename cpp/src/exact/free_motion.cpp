@@ -175,14 +175,7 @@ void FreeMotion::write_constant(const double* t, std::size_t n, double* omega, d
   }
 }
 
-State FreeMotion::at(double t) const {
-  State state;
-  state.t = t;
-  double q[4];
-  at(&t, 1, state.omega.data(), q);
-  state.attitude = {q[0], q[1], q[2], q[3]};
-  return state;
-}
+State FreeMotion::at(double t) const { return exact::find_state(*this, t); }
 
 void FreeMotion::at(const double* t, std::size_t n, double* omega, double* attitude) const {
   exact::each_part(exact::TimeGrid(t, n), [&](const exact::TimeGrid& part, std::size_t begin) {

@@ -136,14 +136,7 @@ void Gyrostat::check_time(double t) const {
   }
 }
 
-State Gyrostat::at(double t) const {
-  State state;
-  state.t = t;
-  double q[4];
-  at(&t, 1, state.omega.data(), q);
-  state.attitude = {q[0], q[1], q[2], q[3]};
-  return state;
-}
+State Gyrostat::at(double t) const { return exact::find_state(*this, t); }
 
 void Gyrostat::at(const double* t, std::size_t n, double* omega, double* attitude) const {
   exact::each_part(exact::TimeGrid(t, n), [&](const exact::TimeGrid& part, std::size_t begin) {

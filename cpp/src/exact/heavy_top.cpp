@@ -270,10 +270,6 @@ void HeavyTop::turn_back(const exact::TimeGrid& times, double* omega, double* at
   }
 }
 
-State HeavyTop::at(double t) const {
-  double omega[3], attitude[4];
-  at(&t, 1, omega, attitude);
-  return {t, {omega[0], omega[1], omega[2]}, {attitude[0], attitude[1], attitude[2], attitude[3]}};
-}
+State HeavyTop::at(double t) const { return exact::find_state(*this, t); }
 
 }  // namespace polhode

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "exact/time_parts.hpp"
 #include "exact/pendulum_start.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/core/interrupt.hpp"
@@ -101,14 +102,7 @@ double Pendulum::period() const {
 
 double Pendulum::frequency() const { return std::ldexp(frequency_, rate_exponent_); }
 
-State Pendulum::at(double t) const {
-  State state;
-  state.t = t;
-  double q[4];
-  at(&t, 1, state.omega.data(), q);
-  state.attitude = {q[0], q[1], q[2], q[3]};
-  return state;
-}
+State Pendulum::at(double t) const { return exact::find_state(*this, t); }
 
 void Pendulum::at(const double* t, std::size_t n, double* omega, double* attitude) const {
   for (std::size_t i = 0; i < n; ++i) {

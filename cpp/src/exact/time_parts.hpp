@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "polhode/core/interrupt.hpp"
+#include "polhode/core/state.hpp"
 #include "polhode/exact/detail/time_grid.hpp"
 
 namespace polhode::exact {
@@ -16,6 +17,17 @@ void each_part(const TimeGrid& times, const Use& use) {
     if (begin > 0) check_interrupt();
     use(times.piece(begin, std::min(most, times.n - begin)), begin);
   }
+}
+
+/// The state of a closed form at one time.
+template <class Form>
+State find_state(const Form& form, double t) {
+  State state;
+  state.t = t;
+  double q[4];
+  form.at(&t, 1, state.omega.data(), q);
+  state.attitude = {q[0], q[1], q[2], q[3]};
+  return state;
 }
 
 }  // namespace polhode::exact

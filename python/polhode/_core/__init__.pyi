@@ -3,18 +3,16 @@ The compiled core of polhode. Use the names of the package `polhode`, not these.
 """
 from __future__ import annotations
 import collections.abc
-import matplotlib.axes
-import matplotlib.figure
 import numpy
 import numpy.typing
 import polhode
-import polhode._wings
 import typing
 
 from polhode._sensitivity.sensitivity import Sensitivity
 from . import attitude
 from . import torques
 from . import symbols
+from . import exact
 class InvalidInput(ValueError):
     pass
 class IntegrationFailure(RuntimeError):
@@ -369,7 +367,7 @@ class MassProperties:
         """
         Mass [kg].
         """
-class FreeMotion:
+class FreeMotion(exact._ClosedForm):
     """
     Torque-free motion of any rigid body, in closed form at any time.
 
@@ -397,11 +395,6 @@ class FreeMotion:
     -----
     Jacobi (1850), "Sur la rotation d'un corps", J. reine angew. Math. 39, in the Cayley-Klein form; see docs/exact.md.
     """
-    @staticmethod
-    def _repr_html_(form: typing.Any) -> str:
-        """
-        Return the start and the properties of a closed form.
-        """
     def __eq__(self: FreeMotion, arg0: object) -> bool:
         ...
     def __getstate__(self: FreeMotion) -> tuple[InertiaTensor, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
@@ -418,27 +411,6 @@ class FreeMotion:
         ...
     def __setstate__(self: FreeMotion, arg0: tuple[typing.Any, ...]) -> None:
         ...
-    def animate(self, t: typing.Any = None, *, body: typing.Any = 'box', axis: typing.Any = None) -> polhode._wings.Film:
-        """
-        Make a film of the motion: the body turns, beside the polhode on the ellipsoid of its energy.
-
-        Parameters
-        ----------
-        t : array_like, shape (n,), or float, optional
-            As for `plot`: the times, or the end of the span [s].
-        body, axis
-            As for :meth:`Motion.animate`.
-
-        Returns
-        -------
-        Film
-            A notebook plays it; ``.save(path)`` writes .html, .gif or .mp4.
-
-        Raises
-        ------
-        InvalidInput
-            As :meth:`Motion.animate`.
-        """
     def at(self: FreeMotion, t: typing.Any, *, progress: typing.Any = None) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
         Angular velocity and attitude at the given times.
@@ -502,28 +474,6 @@ class FreeMotion:
         ndarray, shape (..., 3)
             The polhode's point turned by the attitude; it stays in the plane L . v = sqrt(2 T) [kg^-1/2 m^-1].
         """
-    def plot(self, t: typing.Any = None, *parts: str, ax: matplotlib.axes.Axes | None = None, marks: typing.Any = None, dark: bool = False) -> matplotlib.figure.Figure:
-        """
-        Draw the motion.
-
-        Parameters
-        ----------
-        t : array_like, shape (n,), or float, optional
-            The times, or the end of the span that starts at 0 [s]. By default two periods, or ten turns where a period is
-            endless or long. A part's name may stand in its place.
-        *parts, ax, marks, dark
-            As for :meth:`Motion.plot`.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            A notebook shows it.
-
-        Raises
-        ------
-        InvalidInput
-            As :meth:`Motion.plot`.
-        """
     def polhode(self: FreeMotion, t: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
         """
         Poinsot's point of contact in body axes.
@@ -568,6 +518,11 @@ class FreeMotion:
         The error of a column is a few units of rounding of its size, in every regime. See docs/sensitivity.md.
         """
     @property
+    def _picture(self) -> tuple[list[typing.Any], list[typing.Any], float, float]:
+        """
+        The torques and rotors of its scene, its period [s] or 0, the longest span to draw [s].
+        """
+    @property
     def angular_momentum(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (3,) in space axes, constant [kg m^2/s].
@@ -608,7 +563,7 @@ class FreeMotion:
         """
         Mean rate of precession about the angular momentum [rad/s].
         """
-class Gyrostat:
+class Gyrostat(exact._ClosedForm):
     """
     Torque-free motion of a rigid body with rotors, in closed form at any time.
 
@@ -640,11 +595,6 @@ class Gyrostat:
     Zhukovsky (1885); Volterra (1899), Acta Math. 22; Wittenburg (1977), Dynamics of Systems of Rigid Bodies; see
     docs/gyrostat.md.
     """
-    @staticmethod
-    def _repr_html_(form: typing.Any) -> str:
-        """
-        Return the start and the properties of a closed form.
-        """
     def __eq__(self: Gyrostat, arg0: object) -> bool:
         ...
     def __getstate__(self: Gyrostat) -> tuple[InertiaTensor, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
@@ -661,27 +611,6 @@ class Gyrostat:
         ...
     def __setstate__(self: Gyrostat, arg0: tuple[typing.Any, ...]) -> None:
         ...
-    def animate(self, t: typing.Any = None, *, body: typing.Any = 'box', axis: typing.Any = None) -> polhode._wings.Film:
-        """
-        Make a film of the motion: the body turns, beside the polhode on the ellipsoid of its energy.
-
-        Parameters
-        ----------
-        t : array_like, shape (n,), or float, optional
-            As for `plot`: the times, or the end of the span [s].
-        body, axis
-            As for :meth:`Motion.animate`.
-
-        Returns
-        -------
-        Film
-            A notebook plays it; ``.save(path)`` writes .html, .gif or .mp4.
-
-        Raises
-        ------
-        InvalidInput
-            As :meth:`Motion.animate`.
-        """
     def at(self: Gyrostat, t: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
         Angular velocity and attitude at the given times.
@@ -713,28 +642,6 @@ class Gyrostat:
             (phi, theta, psi) [rad], intrinsic z-x-z of the body axes in a space frame whose z axis is the total momentum
             (space z turned there the shortest way): precession, nutation and spin. phi and psi in [-pi, pi].
         """
-    def plot(self, t: typing.Any = None, *parts: str, ax: matplotlib.axes.Axes | None = None, marks: typing.Any = None, dark: bool = False) -> matplotlib.figure.Figure:
-        """
-        Draw the motion.
-
-        Parameters
-        ----------
-        t : array_like, shape (n,), or float, optional
-            The times, or the end of the span that starts at 0 [s]. By default two periods, or ten turns where a period is
-            endless or long. A part's name may stand in its place.
-        *parts, ax, marks, dark
-            As for :meth:`Motion.plot`.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            A notebook shows it.
-
-        Raises
-        ------
-        InvalidInput
-            As :meth:`Motion.plot`.
-        """
     def polhode(self: Gyrostat, t: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
         """
         The total momentum in body axes.
@@ -748,6 +655,11 @@ class Gyrostat:
         -------
         ndarray, shape (..., 3)
             J omega + h [kg m^2/s]: on a sphere about 0 and on an ellipsoid of constant energy about h.
+        """
+    @property
+    def _picture(self) -> tuple[list[typing.Any], list[typing.Any], float, float]:
+        """
+        The torques and rotors of its scene, its period [s] or 0, the longest span to draw [s].
         """
     @property
     def angular_momentum(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -792,7 +704,7 @@ class Gyrostat:
         """
         Period of omega [s]: infinite on a separatrix, 0 where omega is constant.
         """
-class DampedFree:
+class DampedFree(exact._ClosedForm):
     """
     A free body with damping proportional to its angular momentum, -c I omega.
 
@@ -820,11 +732,6 @@ class DampedFree:
     -----
     A change of time in Euler's equations; see docs/damped_free.md.
     """
-    @staticmethod
-    def _repr_html_(form: typing.Any) -> str:
-        """
-        Return the start and the properties of a closed form.
-        """
     def __eq__(self: DampedFree, arg0: object) -> bool:
         ...
     def __getstate__(self: DampedFree) -> tuple[InertiaTensor, float, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
@@ -841,27 +748,6 @@ class DampedFree:
         ...
     def __setstate__(self: DampedFree, arg0: tuple[typing.Any, ...]) -> None:
         ...
-    def animate(self, t: typing.Any = None, *, body: typing.Any = 'box', axis: typing.Any = None) -> polhode._wings.Film:
-        """
-        Make a film of the motion: the body turns, beside the polhode on the ellipsoid of its energy.
-
-        Parameters
-        ----------
-        t : array_like, shape (n,), or float, optional
-            As for `plot`: the times, or the end of the span [s].
-        body, axis
-            As for :meth:`Motion.animate`.
-
-        Returns
-        -------
-        Film
-            A notebook plays it; ``.save(path)`` writes .html, .gif or .mp4.
-
-        Raises
-        ------
-        InvalidInput
-            As :meth:`Motion.animate`.
-        """
     def at(self: DampedFree, t: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
         Angular velocity and attitude at the given times.
@@ -883,28 +769,6 @@ class DampedFree:
         InvalidInput
             A time that is not finite, or at which a driven body is beyond float64.
         """
-    def plot(self, t: typing.Any = None, *parts: str, ax: matplotlib.axes.Axes | None = None, marks: typing.Any = None, dark: bool = False) -> matplotlib.figure.Figure:
-        """
-        Draw the motion.
-
-        Parameters
-        ----------
-        t : array_like, shape (n,), or float, optional
-            The times, or the end of the span that starts at 0 [s]. By default two periods, or ten turns where a period is
-            endless or long. A part's name may stand in its place.
-        *parts, ax, marks, dark
-            As for :meth:`Motion.plot`.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            A notebook shows it.
-
-        Raises
-        ------
-        InvalidInput
-            As :meth:`Motion.plot`.
-        """
     def slowed_time(self: DampedFree, t: typing.SupportsFloat | typing.SupportsIndex) -> float:
         """
         The time at which the free body has this attitude.
@@ -918,6 +782,11 @@ class DampedFree:
         -------
         float
             (1 - exp(-c t)) / c [s].
+        """
+    @property
+    def _picture(self) -> tuple[list[typing.Any], list[typing.Any], float, float]:
+        """
+        The torques and rotors of its scene, its period [s] or 0, the longest span to draw [s].
         """
     @property
     def attitude(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -949,7 +818,7 @@ class DampedFree:
         """
         Bound on the angle of rotation from t = 0 on, abs(omega) / c [rad]; infinite for c <= 0.
         """
-class Pendulum:
+class Pendulum(exact._ClosedForm):
     """
     The plane pendulum: any body on a pivot under gravity that swings about one body axis.
 
@@ -980,11 +849,6 @@ class Pendulum:
     -----
     E. T. Whittaker, "Analytical Dynamics" (1937), section 44; see docs/pendulum.md.
     """
-    @staticmethod
-    def _repr_html_(form: typing.Any) -> str:
-        """
-        Return the start and the properties of a closed form.
-        """
     def __eq__(self: Pendulum, arg0: object) -> bool:
         ...
     def __getstate__(self: Pendulum) -> tuple[InertiaTensor, float, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
@@ -1001,27 +865,6 @@ class Pendulum:
         ...
     def __setstate__(self: Pendulum, arg0: tuple[typing.Any, ...]) -> None:
         ...
-    def animate(self, t: typing.Any = None, *, body: typing.Any = 'box', axis: typing.Any = None) -> polhode._wings.Film:
-        """
-        Make a film of the motion: the body turns, beside the polhode on the ellipsoid of its energy.
-
-        Parameters
-        ----------
-        t : array_like, shape (n,), or float, optional
-            As for `plot`: the times, or the end of the span [s].
-        body, axis
-            As for :meth:`Motion.animate`.
-
-        Returns
-        -------
-        Film
-            A notebook plays it; ``.save(path)`` writes .html, .gif or .mp4.
-
-        Raises
-        ------
-        InvalidInput
-            As :meth:`Motion.animate`.
-        """
     def at(self: Pendulum, t: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
         Angular velocity and attitude at the given times.
@@ -1043,27 +886,10 @@ class Pendulum:
         InvalidInput
             A time that is not finite, or too long for its phase to have digits.
         """
-    def plot(self, t: typing.Any = None, *parts: str, ax: matplotlib.axes.Axes | None = None, marks: typing.Any = None, dark: bool = False) -> matplotlib.figure.Figure:
+    @property
+    def _picture(self) -> tuple[list[typing.Any], list[typing.Any], float, float]:
         """
-        Draw the motion.
-
-        Parameters
-        ----------
-        t : array_like, shape (n,), or float, optional
-            The times, or the end of the span that starts at 0 [s]. By default two periods, or ten turns where a period is
-            endless or long. A part's name may stand in its place.
-        *parts, ax, marks, dark
-            As for :meth:`Motion.plot`.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            A notebook shows it.
-
-        Raises
-        ------
-        InvalidInput
-            As :meth:`Motion.plot`.
+        The torques and rotors of its scene, its period [s] or 0, the longest span to draw [s].
         """
     @property
     def arm(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -1110,7 +936,7 @@ class Pendulum:
         """
         m g [N].
         """
-class HeavyTop:
+class HeavyTop(exact._ClosedForm):
     """
     Lagrange's top: a symmetric body held at a point of its axis, under gravity.
 
@@ -1143,11 +969,6 @@ class HeavyTop:
     -----
     F. Klein and A. Sommerfeld, "Ueber die Theorie des Kreisels" (1897-1910); see docs/heavy_top.md.
     """
-    @staticmethod
-    def _repr_html_(form: typing.Any) -> str:
-        """
-        Return the start and the properties of a closed form.
-        """
     def __eq__(self: HeavyTop, arg0: object) -> bool:
         ...
     def __getstate__(self: HeavyTop) -> tuple[InertiaTensor, float, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], float]:
@@ -1164,27 +985,6 @@ class HeavyTop:
         ...
     def __setstate__(self: HeavyTop, arg0: tuple[typing.Any, ...]) -> None:
         ...
-    def animate(self, t: typing.Any = None, *, body: typing.Any = 'box', axis: typing.Any = None) -> polhode._wings.Film:
-        """
-        Make a film of the motion: the body turns, beside the polhode on the ellipsoid of its energy.
-
-        Parameters
-        ----------
-        t : array_like, shape (n,), or float, optional
-            As for `plot`: the times, or the end of the span [s].
-        body, axis
-            As for :meth:`Motion.animate`.
-
-        Returns
-        -------
-        Film
-            A notebook plays it; ``.save(path)`` writes .html, .gif or .mp4.
-
-        Raises
-        ------
-        InvalidInput
-            As :meth:`Motion.animate`.
-        """
     def at(self: HeavyTop, t: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
         Angular velocity and attitude at the given times.
@@ -1206,27 +1006,10 @@ class HeavyTop:
         InvalidInput
             A time that is not finite, or too long for its phase to have digits.
         """
-    def plot(self, t: typing.Any = None, *parts: str, ax: matplotlib.axes.Axes | None = None, marks: typing.Any = None, dark: bool = False) -> matplotlib.figure.Figure:
+    @property
+    def _picture(self) -> tuple[list[typing.Any], list[typing.Any], float, float]:
         """
-        Draw the motion.
-
-        Parameters
-        ----------
-        t : array_like, shape (n,), or float, optional
-            The times, or the end of the span that starts at 0 [s]. By default two periods, or ten turns where a period is
-            endless or long. A part's name may stand in its place.
-        *parts, ax, marks, dark
-            As for :meth:`Motion.plot`.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            A notebook shows it.
-
-        Raises
-        ------
-        InvalidInput
-            As :meth:`Motion.plot`.
+        The torques and rotors of its scene, its period [s] or 0, the longest span to draw [s].
         """
     @property
     def attitude(self) -> numpy.typing.NDArray[numpy.float64]:

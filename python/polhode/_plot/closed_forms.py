@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .. import torques
-from .._core import DampedFree, FreeMotion, Gyrostat, HeavyTop, InertiaTensor, Pendulum, Rotor
+from .._core import InertiaTensor
+from .._core.exact import _ClosedForm
 from .._scene.scene import Scene
 from .._solve.motion import Floats
 from . import html
@@ -28,34 +28,20 @@ LONGEST = 40        # turns of two periods that are drawn
 
 def make_scene(form: Any, times: Floats) -> Scene:
     """Return the scene that a closed form solves."""
-    parts: dict[str, Any] = {}
-    if isinstance(form, Gyrostat) and form.momentum.any():
-        parts["rotors"] = [Rotor(form.momentum, momentum=float(np.linalg.norm(form.momentum)))]
-    if isinstance(form, HeavyTop):
-        if form.weight_arm:
-            parts["torques"] = [torques.Gravity(1.0, form.axis * form.weight_arm)]
-        if form.rotor:
-            parts["rotors"] = [Rotor(form.axis, momentum=form.rotor)]
-    if isinstance(form, Pendulum):
-        parts["torques"] = [torques.Gravity(form.weight, form.arm)]
-    if isinstance(form, DampedFree):
-        parts["torques"] = [torques.AngularDamping(form.damping)]
+    torques, rotors, _, _ = form._picture
     return Scene(inertia=form.inertia, omega=form.omega, attitude=form.attitude, times=times,
-                 name=type(form).__name__, **parts)
+                 name=type(form).__name__, torques=torques, rotors=rotors)
 
 
 def find_span(form: Any) -> float:
     """Return two periods [s], or ten turns where there is no period of at most twenty turns."""
     rate = float(np.linalg.norm(form.omega))
-    if isinstance(form, DampedFree):
-        turns = 2 * math.pi * TURNS / rate if rate else 1.0
-        return min(turns, 5 / form.damping) if form.damping > 0 else turns
-    period = form.nutation_period if isinstance(form, HeavyTop) else form.period
+    _, _, period, longest = form._picture
     if 0 < period < math.inf:
         largest = float(np.linalg.norm(form.at(np.linspace(0, period, 65))[0], axis=1).max())
         if 2 * period * largest <= 2 * math.pi * LONGEST:
             return 2.0 * float(period)
-    return 2 * math.pi * TURNS / rate if rate else 1.0
+    return min(2 * math.pi * TURNS / rate if rate else 1.0, float(longest))
 
 
 def make_track(form: Any, t: Any) -> Track:
@@ -131,8 +117,7 @@ def attach() -> None:
     """Give the compiled classes their methods."""
     for method in (plot, animate):
         method.__doc__ = inspect.getdoc(method)   # without the indent, for the stubs
-    for cls in (FreeMotion, Gyrostat, DampedFree, HeavyTop, Pendulum):
-        setattr(cls, "plot", plot)
-        setattr(cls, "animate", animate)
-        setattr(cls, "_repr_html_", html.of_closed_form)
+    setattr(_ClosedForm, "plot", plot)
+    setattr(_ClosedForm, "animate", animate)
+    setattr(_ClosedForm, "_repr_html_", html.of_closed_form)
     setattr(InertiaTensor, "_repr_html_", html.of_tensor)

@@ -24,7 +24,7 @@ Attempt run_carried(CountedRuns& runs, double rtol, double safety, bool all_term
       motion.omega.empty() || trace.rate_error == 0.0 ? 0.0 : trace.rate_error / motion.omega_scale();
   const double error = std::max({rates, motion.attitude.empty() ? 0.0 : trace.attitude_error, trace.state_error});
   // The carried error can grow without bound, but two attitudes differ by half a turn at most.
-  constexpr double floor = 8 * std::numeric_limits<double>::epsilon();   // of samples, whatever the steps
+  constexpr double floor = 8 * std::numeric_limits<double>::epsilon();   // of samples, for all steps
   attempt.error = safety * std::min(error, std::numbers::pi) + floor;
   attempt.holds_until = attempt.error <= accuracy ? unknown_error : trace.holds_until;
   return attempt;

@@ -28,7 +28,7 @@ class DampedForm final : public ClosedFormOf<DampedFree> {
 
   double rate(const double* omega) const override {
     const double w = math::hypot(omega[0], omega[1], omega[2]), start = motion().omega().norm();
-    // Where omega grows, at |c|; a body far slower than at the start is not worth short steps.
+    // Where omega grows, at |c|; a body far slower than at the start needs no short steps.
     return w > 0.0 ? w + std::abs(motion().damping()) * (w / (w + start)) : 0.0;
   }
 

@@ -11,7 +11,7 @@ namespace polhode {
 
 /// What the looks found.
 struct Looks {
-  std::vector<double> breaks = {};   ///< times at which a torque jumps or kinks, whatever the state [s], sorted
+  std::vector<double> breaks = {};   ///< times at which a torque jumps or kinks in every state [s], sorted
   /// A time near which a torque jumps with the state [s]; NaN: none was found.
   double state_jump = std::numeric_limits<double>::quiet_NaN();
   bool too_many = false;             ///< more breaks than are located

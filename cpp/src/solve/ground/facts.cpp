@@ -140,24 +140,24 @@ bool may_spin_up(const Scene& scene, const TorqueSum& torques) {
 double estimate_turns(const Scene& scene, const TorqueSum& torques, double span) {
   const double nutation = compute_nutation_rate(scene.inertia_B(), scene.rotor_momentum());
   const double start = math::hypot(scene.omega().norm(), nutation);
-  double turned = start * span;
-  if (torques.acting == 0) return turned / (2 * std::numbers::pi);
+  double angle = start * span;
+  if (torques.acting == 0) return angle / (2 * std::numbers::pi);
   if (may_spin_up(scene, torques)) {
     if (!torques.uses_time && !torques.uses_attitude && !torques.uses_rates) {
       return turn_under_thrust(scene, span) / (2 * std::numbers::pi);
     }
     // The geometric mean of two cases: a torque that averages out, and one that always accelerates.
     const double acceleration = compute_torque_scale(scene) / scene.inertia_B().moments()[0];
-    turned = math::hypot(start, std::sqrt(acceleration)) * span;
-    turned = std::sqrt(turned * std::max(turned, start * span + 0.5 * acceleration * span * span));
+    angle = math::hypot(start, std::sqrt(acceleration)) * span;
+    angle = std::sqrt(angle * std::max(angle, start * span + 0.5 * acceleration * span * span));
   } else if (torques.has_potential) {
     const double acceleration = compute_torque_scale(scene) / scene.inertia_B().moments()[0];
-    turned = math::hypot(start, std::sqrt(acceleration)) * span;
+    angle = math::hypot(start, std::sqrt(acceleration)) * span;
   } else if (torques.uses_rates) {
     const double slowest = -compute_drive_rates(scene)[2];
-    if (slowest > 0) turned = start * -math::expm1(-slowest * span) / slowest;
+    if (slowest > 0) angle = start * -math::expm1(-slowest * span) / slowest;
   }
-  return turned / (2 * std::numbers::pi);
+  return angle / (2 * std::numbers::pi);
 }
 
 double compute_decay_rate(const Scene& scene, const TorqueSum& torques) {

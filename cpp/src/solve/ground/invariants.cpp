@@ -107,8 +107,8 @@ std::map<std::string, double> compute_drift(const Scene& scene, const Motion& mo
       const double T = compute_kinetic(scene.inertia_B().matrix(), motion.omega.data() + 3 * i);
       largest_V = std::max(largest_V, std::abs(energy[i] - T));
       largest_T = std::max(largest_T, T);
-      const double turned = rate == 0.0 ? 0.0 : rate * (L[3 * i + 2] - L0[2]);
-      moved = std::max(moved, std::abs(energy[i] - start_energy - turned));
+      const double orbital = rate == 0.0 ? 0.0 : rate * (L[3 * i + 2] - L0[2]);
+      moved = std::max(moved, std::abs(energy[i] - start_energy - orbital));
     }
     drift[sum.keeps_energy ? "energy" : "jacobi"] = relative(moved, largest_T + largest_V);
   }

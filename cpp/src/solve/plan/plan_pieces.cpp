@@ -194,7 +194,7 @@ class PiecePlanner {
     PiecePlan& plan = plan_piece(part);
     Facts& facts = facts_.back();
     if (plan.method == "exact") {
-      Plan unbounded;   // nobody asks for the error of a pilot run
+      Plan unbounded;   // a pilot run needs no error
       unbounded.model = plan.model, unbounded.method = plan.method;
       return run_closed_form(part, facts, options, std::move(form_), unbounded);
     }

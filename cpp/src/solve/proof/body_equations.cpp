@@ -306,7 +306,7 @@ class BodyEquations::Maker {
     add_gyroscopic(body_.orbit_index(to_index(orbit - orbits.begin())), Interval(3.0) * n * n);
   }
 
-  void add(const torques::Custom&) {}    // calls_custom() tells of it
+  void add(const torques::Custom&) {}    // calls_custom() finds it
   void add(const torques::Formula&) {}   // nor of it
   void add(const torques::During&) {}    // pieces have no windows
 

@@ -35,7 +35,7 @@ class QuadraticSystem {
   void add_variable(int row, int variable, const Interval& factor) {
     add({row, Term::Kind::variable, variable, factor});
   }
-  /// A product is formed once, whatever the number of components that hold it.
+  /// A product is formed once, for all components that hold it.
   void add_product(int row, int a, int b, const Interval& factor);
 
   /// Multiplies the right-hand side by a number: time in other units, or backwards.
