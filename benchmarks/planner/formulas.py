@@ -274,17 +274,24 @@ def compute_truth(scene, torque, starts, most=200_000):
     return np.array([found[t] for t in scene.times])
 
 
-def find_error(motion, known, starts):
+def find_size(scene, starts):
+    """The largest number of the states in the motion."""
+    if not starts:
+        return None
+    between = np.concatenate([np.linspace(0, t, 200) for t in (scene.times.min(), scene.times.max())])
+    motion = ph.solve(scene.replace(times=between), 1e-6)
+    return max(np.abs(starts).max(), np.abs(motion.states["x"]).max())
+
+
+def find_error(motion, known, size_of_states):
     """The largest error of the rates, the attitude and the states, as `error` is defined."""
     w, q = known[:, :3], known[:, 3:7]
     size = max(np.linalg.norm(np.asarray(motion.scene.omega)), np.linalg.norm(w, axis=1).max())
     sign = np.sign(np.sum(q * motion.attitude, axis=1))[:, None]
     parts = [np.linalg.norm(motion.omega - w, axis=1).max() / size,
              2 * np.linalg.norm(motion.attitude - sign * q, axis=1).max()]
-    if starts:
-        x = known[:, 7:]
-        largest = max(np.abs(x).max(), np.abs(starts).max())
-        parts.append(np.abs(motion.states["x"] - x).max() / largest)
+    if size_of_states is not None:
+        parts.append(np.abs(motion.states["x"] - known[:, 7:]).max() / size_of_states)
     return float(max(parts))
 
 
@@ -305,9 +312,10 @@ def main():
             known = compute_truth(scene, torque, starts)
             if known is None:
                 continue
+            size = find_size(scene, starts)
             for accuracy in ACCURACIES:
                 motion = ph.solve(scene, accuracy)
-                found = find_error(motion, known, starts) if len(motion.t) == len(scene.times) else np.inf
+                found = find_error(motion, known, size) if len(motion.t) == len(scene.times) else np.inf
                 claims.append({"kind": kind, "index": index, "accuracy": accuracy, "error_kind": motion.error_kind,
                                "error": motion.error, "found": found, "success": motion.success,
                                "method": motion.plan.method, "seconds": motion.stats["seconds"]})

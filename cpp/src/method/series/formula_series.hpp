@@ -48,7 +48,7 @@ class FormulaSeries {
   FormulaSeries perturbed(double part, int choice) const;
   /// A copy that starts from another state: this one plus an error.
   FormulaSeries shifted(double t0, const double* error) const;
-  /// As BodySeries does; the error of a state is relative to its largest size so far.
+  /// As BodySeries does; the error of a state is relative to its largest size in the run so far.
   void measure_error(const double* y, const double* error, double* out) const;
 
   void compute_series(math::DD t, double unit, const double* y, const double* carry, int order, double* rows) const;
