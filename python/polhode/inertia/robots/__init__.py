@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .files import SUFFIXES as suffixes
+from .formats import SUFFIXES as suffixes
 from .ignore import Rule
 from .link import Link, Robot
 from .paths import Search

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,9 +11,7 @@ from .. import evidence as ev
 from ..corruptions import Cause, undo
 from ..diagnosis import CONVINCED, GEOMETRY_UNITS
 from .geometry import Array
-
-if TYPE_CHECKING:
-    from .link import Link
+from .record import LinkRecord
 
 BEATEN = 3.0        # nats by which a cause must beat the next of another kind: 20 to one
 SUPPORT = 2.0       # nats for each factor e of links that the same cause explains
@@ -52,7 +50,8 @@ class Known:
     identified: bool = False
 
 
-def candidates(given: ev.Bodies, alone: ev.Evidence, known: Known, link: Link, broken: set[str]) -> list[Candidate]:
+def candidates(given: ev.Bodies, alone: ev.Evidence, known: Known, link: LinkRecord,
+               broken: set[str]) -> list[Candidate]:
     """Return the causes that leave a sound body, agree with what is known, and gain enough."""
     geometry = known.geometry if known.quality in LEFT else ev.Geometry()
     if geometry is not known.geometry:

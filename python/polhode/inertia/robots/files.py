@@ -8,8 +8,8 @@ import re
 from collections.abc import Iterator, Sequence
 
 from ..._core import InvalidInput
+from .formats import FORMATS, SHARED, SUFFIXES
 
-SUFFIXES = (".urdf", ".mjcf", ".sdf", ".xml", ".xacro", ".world")
 STDIN = "-"
 MOST = 1_000_000     # files of one call
 _SKIPPED = {".git", ".hg", ".svn", "__pycache__", "node_modules", ".venv"}
@@ -41,7 +41,7 @@ def _walk(folder: pathlib.Path) -> Iterator[pathlib.Path]:
 
 def _is_robot(file: pathlib.Path) -> bool:
     """Decide by the first element; a suffix of its own is enough."""
-    if file.suffix.lower() not in (".xml", ".world"):
+    if file.suffix.lower() not in SHARED:
         return True
     try:
         with open(file, "rb") as opened:
@@ -49,4 +49,4 @@ def _is_robot(file: pathlib.Path) -> bool:
     except OSError:
         return False
     found = _ROOT.search(re.sub(rb"<!--.*?(-->|\Z)", b"", head, flags=re.S))
-    return found is not None and found[1] in (b"robot", b"mujoco", b"sdf", b"gazebo")
+    return found is not None and any(found[1].decode() in format.roots for format in FORMATS.values())

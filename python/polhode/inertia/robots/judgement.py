@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,9 +16,7 @@ from ..findings import Diagnosis, Finding
 from .causes import Candidate, Known, candidates, choose
 from .geometry import Array
 from .placeholders import is_negligible, is_placeholder
-
-if TYPE_CHECKING:
-    from .link import Link
+from .record import LinkRecord
 
 OSMIUM = 22_590.0        # [kg/m^3]: of a link that is denser than this, the geometry shows a part only
 MARKER = 0.03            # [m]: shapes up to this size mark frames
@@ -35,7 +32,7 @@ LIGHT = 2.0              # [kg/m^3]
 class Case:
     """A link between the two passes over its file: what is broken, and the causes that would explain it."""
 
-    link: Link
+    link: LinkRecord
     broken: list[Breach]
     known: Known
     margin: float
@@ -44,7 +41,7 @@ class Case:
     settled: Finding | None = None   # where no cause has to be looked for
 
 
-def study(link: Link) -> Case | None:
+def study(link: LinkRecord) -> Case | None:
     """Find what is broken in a link, and each cause that may explain it."""
     if link.trouble is not None:
         # The file's name stands beside the message, which is about the rest.
@@ -63,13 +60,13 @@ def study(link: Link) -> Case | None:
         return _simple(link, mass, matrix) or _study(link, mass, com, matrix)
 
 
-def _settled(link: Link, what: str, cause: str, text: str, advice: str, code: str = "") -> Case:
+def _settled(link: LinkRecord, what: str, cause: str, text: str, advice: str, code: str = "") -> Case:
     level = CODES[code].level if code else ""
     finding = Finding(what, 100.0, text, cause, advice, level=level, code=code)
     return Case(link, [], Known(ev.Geometry(), "none"), np.nan, None, [], finding)
 
 
-def _simple(link: Link, mass: float, matrix: Array) -> Case | None:
+def _simple(link: LinkRecord, mass: float, matrix: Array) -> Case | None:
     """Zeros, before anything else is tried."""
     nothing = is_negligible(matrix, mass)
     if mass == 0 and nothing:
@@ -86,7 +83,7 @@ def _simple(link: Link, mass: float, matrix: Array) -> Case | None:
     return None
 
 
-def _study(link: Link, mass: float, com: Array, matrix: Array) -> Case:
+def _study(link: LinkRecord, mass: float, com: Array, matrix: Array) -> Case:
     known = _known(link, mass, matrix)
     given = ev.single(mass, com, matrix)
     alone = ev.weigh(given, known.geometry)
@@ -100,7 +97,7 @@ def _study(link: Link, mass: float, com: Array, matrix: Array) -> Case:
     return case
 
 
-def _known(link: Link, mass: float, matrix: Array) -> Known:
+def _known(link: LinkRecord, mass: float, matrix: Array) -> Known:
     """The quality of the geometry as evidence.
 
     "body": what is seen, all of it. "hull": the same, with convex hulls of open meshes. "collision": the shapes that
@@ -126,7 +123,7 @@ def _known(link: Link, mass: float, matrix: Array) -> Known:
     return Known(geometry, quality, small=small)
 
 
-def _agrees(link: Link, geometry: ev.Geometry, mass: float, matrix: Array) -> bool:
+def _agrees(link: LinkRecord, geometry: ev.Geometry, mass: float, matrix: Array) -> bool:
     """Return whether tensor over mass is that of the geometry, so that only the density is in question."""
     if not geometry.references:
         return False

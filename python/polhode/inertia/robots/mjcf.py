@@ -11,6 +11,7 @@ from ..._core import InvalidInput, MassProperties
 from ..._xml import Node, parse
 from . import geometry, meshes
 from .by_mujoco import complete
+from .format import Format, NoRobot
 from .geometry import Array, Assembly, Part, Pose
 from .link import Link, Robot, Source, read_link
 from .mjcf_model import Compiler, Model, gather, onto, orientation, pose, unit
@@ -37,7 +38,7 @@ def read(root: Node, file: pathlib.Path, search: Search) -> Robot:
     if len(links) == before:
         notes += [f"<{tag}> is not read: its additions are not judged" for tag in UNREAD[:2] if tag in found]
     if not links and not notes:
-        raise root.wrong("<worldbody> holds no <body>")
+        raise NoRobot(root, "<worldbody> holds no <body>")
     return Robot("MJCF", root.get("model") or file.stem, links, notes, str(file))
 
 
@@ -277,3 +278,6 @@ def _mesh_file(asset: Node, model: Model) -> str:
             if (beside / choice).is_file():
                 return choice if beside == model.file.parent else str(beside.absolute() / choice)
     return choices[0]
+
+
+FORMAT = Format("MJCF", ("mujoco",), (".mjcf",), read, parts=("mujocoinclude",), mass="mass", centre="pos")

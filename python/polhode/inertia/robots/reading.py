@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import os
-import pathlib
-from collections.abc import Callable
 
 from ... import _files
 from ..._core import InvalidInput
-from ..._xml import Node, parse, parse_bytes
-from . import mjcf, sdf, urdf
+from ..._xml import parse, parse_bytes
+from .formats import FORMATS
 from .link import Robot
 from .paths import Search
 
-_readers: dict[str, Callable[[Node, pathlib.Path, Search], Robot]] = {
-    "robot": urdf.read, "mujoco": mjcf.read, "mujocoinclude": mjcf.read, "sdf": sdf.read, "gazebo": sdf.read}
+_readers = {root: format.read for format in FORMATS.values() for root in (*format.roots, *format.parts)}
 
 
 def read(path: str | os.PathLike[str], *, search: Search | None = None, data: bytes | None = None) -> Robot:

@@ -8,6 +8,8 @@ import numpy as np
 
 from ..._xml import Node
 from ..findings import Finding
+from .format import Format
+from .formats import FORMATS
 from .link import Link
 from .report import Report
 
@@ -103,8 +105,9 @@ def _edit(edits: _Edits, link: Link, finding: Finding, report: Report) -> str:
         return f"not repaired: the numbers stand in {link.file}" if link.file != report.file else \
             "not repaired: the numbers come from the geoms"
     before = len(edits.changes)
-    if not (_edit_tensor(edits, link, finding, report.format) and _edit_mass(edits, link, finding, report.format)
-            and _edit_centre(edits, link, finding, report.format)):
+    form = FORMATS[report.format]
+    if not (_edit_tensor(edits, link, finding) and _edit_mass(edits, link, finding, form)
+            and _edit_centre(edits, link, finding, form)):
         del edits.changes[before:]
         return "not repaired: the element has no such numbers to replace"
     return "" if len(edits.changes) > before else "not repaired: the numbers of the link are right"
@@ -114,7 +117,7 @@ def _number(x: float) -> str:
     return f"{x + 0.0:.9g}"
 
 
-def _edit_tensor(edits: _Edits, link: Link, finding: Finding, form: str) -> bool:
+def _edit_tensor(edits: _Edits, link: Link, finding: Finding) -> bool:
     assert finding.matrix is not None and link.matrix is not None
     node, matrix = link.source.tensor, finding.matrix
     changed = {name: matrix[at] for name, at in ENTRIES.items()
@@ -123,10 +126,10 @@ def _edit_tensor(edits: _Edits, link: Link, finding: Finding, form: str) -> bool
         return True
     if node is None:
         return False
-    if form == "MJCF":
-        if node.get("fullinertia") is not None:
-            order = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
-            return edits.attribute(node, "fullinertia", " ".join(_number(matrix[ENTRIES[name]]) for name in order))
+    if node.get("fullinertia") is not None:
+        order = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+        return edits.attribute(node, "fullinertia", " ".join(_number(matrix[ENTRIES[name]]) for name in order))
+    if node.get("diaginertia") is not None:
         if any(name in changed for name in ("ixy", "ixz", "iyz")):
             return False
         return edits.attribute(node, "diaginertia", " ".join(map(_number, matrix.diagonal())))
@@ -138,18 +141,18 @@ def _edit_tensor(edits: _Edits, link: Link, finding: Finding, form: str) -> bool
     return True
 
 
-def _edit_mass(edits: _Edits, link: Link, finding: Finding, form: str) -> bool:
+def _edit_mass(edits: _Edits, link: Link, finding: Finding, form: Format) -> bool:
     if finding.mass is None or link.mass is None or np.isclose(finding.mass, link.mass, rtol=1e-9, atol=0):
         return True
     node = link.source.mass
     if node is None:
         return False
-    if form == "SDF":
+    if not form.mass:
         return edits.text(node, _number(finding.mass))
-    return edits.attribute(node, "value" if form == "URDF" else "mass", _number(finding.mass))
+    return edits.attribute(node, form.mass, _number(finding.mass))
 
 
-def _edit_centre(edits: _Edits, link: Link, finding: Finding, form: str) -> bool:
+def _edit_centre(edits: _Edits, link: Link, finding: Finding, form: Format) -> bool:
     if finding.com is None:
         return True
     com = link.pose.rotation @ finding.com
@@ -159,7 +162,7 @@ def _edit_centre(edits: _Edits, link: Link, finding: Finding, form: str) -> bool
     com = np.where(np.abs(com) < 1e-9 * np.abs(com).max(), 0.0, com)
     if node is None:
         return False
-    if form == "SDF":
+    if not form.centre:
         rest = node.text.split()[3:]
         return not node.get("relative_to") and edits.text(node, " ".join([*map(_number, com), *rest]))
-    return edits.attribute(node, "xyz" if form == "URDF" else "pos", " ".join(map(_number, com)))
+    return edits.attribute(node, form.centre, " ".join(map(_number, com)))

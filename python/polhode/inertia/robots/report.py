@@ -17,12 +17,11 @@ from ..findings import Diagnosis, Finding
 from .check import judge
 from .expand import expand
 from .files import STDIN, gather
+from .format import NoRobot
 from .ignore import Rule, rules
 from .link import Link, Robot
 from .paths import Search
 from .reading import read
-
-NOTHING = ("<link> is missing", "holds no <body>", "holds xacro's macros and no link")   # no robot, and no fault
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -76,6 +75,8 @@ class Report:
         Where that error stands.
     expanded : bool
         True for a xacro file: line numbers are those of the expanded text, and are left out.
+    empty : bool
+        True for a file that is none of a robot, which its error says too.
     """
 
     file: str
@@ -86,6 +87,7 @@ class Report:
     error: str = ""
     line: int | None = None
     expanded: bool = False
+    empty: bool = False
 
     @property
     def level(self) -> str:
@@ -144,7 +146,7 @@ def check(paths: str | os.PathLike[str] | Sequence[str | os.PathLike[str]], *,
         if progress is not None:
             progress(str(file))
         report = check_file(file, search, excuses, xacro=xacro, elsewhere=own)
-        if named or not any(text in report.error for text in NOTHING):
+        if named or not report.empty:
             reports.append(report)
     return reports
 
@@ -162,7 +164,8 @@ def check_file(file: pathlib.Path, search: Search, excuses: Sequence[Rule] = (),
                        or (place := str(pathlib.Path(link.file).resolve())) == here or place not in elsewhere]
         links = tuple(_report(link, found, excuses) for link, found in judge(robot))
     except InvalidInput as error:
-        return Report(str(file), error=str(error), line=getattr(error, "line", None))
+        return Report(str(file), error=str(error), line=getattr(error, "line", None),
+                      empty=isinstance(error, NoRobot))
     except (MemoryError, KeyboardInterrupt):
         raise
     except Exception as error:   # a fault of polhode, which must not end the check of the other files

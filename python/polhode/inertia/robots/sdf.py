@@ -10,6 +10,7 @@ import numpy as np
 from ..._core import InvalidInput
 from ..._xml import Node, Wrong, parse
 from . import geometry
+from .format import Format, NoRobot
 from .geometry import Assembly, Pose
 from .link import Link, Robot, Source, read_link
 from .paths import Search
@@ -44,7 +45,7 @@ def read(root: Node, file: pathlib.Path, search: Search) -> Robot:
     state = _Reading(file, search)
     _walk(root, _Place("", file, False, None), state)
     if not state.links and not state.notes:
-        raise root.wrong("<link> is missing")
+        raise NoRobot(root, "<link> is missing")
     again = sum(count - 1 for count in state.seen.values())
     if again:
         state.notes.append(f"{again} further <include> of the same models: judged once")
@@ -201,3 +202,6 @@ def _geometry(link: Link, into: Assembly, node: Node, owner: Node, place: _Place
             link.add_mesh(into, uri, factors, pose, place.file, search)
         elif shape.tag not in ("empty", "plane"):   # a plane has no inside
             link.leave_out(into, "kind of shape", f"<{shape.tag}> is not read: not compared with it")
+
+
+FORMAT = Format("SDF", ("sdf", "gazebo"), (".sdf",), read)

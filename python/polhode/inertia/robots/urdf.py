@@ -9,6 +9,7 @@ import numpy as np
 from ..._attitude.rotation import Rotation
 from ..._xml import Node
 from . import geometry
+from .format import Format, NoRobot
 from .geometry import Assembly, Pose
 from .link import Link, Robot, Source, read_link
 from .paths import Search
@@ -20,9 +21,9 @@ def read(root: Node, file: pathlib.Path, search: Search) -> Robot:
     nodes = list(root.children("link"))
     if not nodes:
         if macros:
-            raise root.wrong("holds xacro's macros and no link: expand it first (xacro robot.xacro > robot.urdf), or "
-                             "install xacro")
-        raise root.wrong("<link> is missing")
+            raise NoRobot(root, "holds xacro's macros and no link: expand it first (xacro robot.xacro > robot.urdf), "
+                                "or install xacro")
+        raise NoRobot(root, "<link> is missing")
     links = [read_link(node.get("name") or f"link {i + 1}", node, lambda link: _fill(link, node, file, search))
              for i, node in enumerate(nodes)]
     notes = [f"<{macros[0]}> is left over from xacro: what it stands for is not judged"] if macros else []
@@ -77,3 +78,6 @@ def _geometry(link: Link, into: Assembly, node: Node, file: pathlib.Path, search
             link.add_mesh(into, shape.word("filename"), np.resize(scale, 3), pose, file, search)
         elif ":" not in shape.tag and shape.tag != "plane":   # a plane has no inside
             link.leave_out(into, "kind of shape", f"<{shape.tag}> is not read: not compared with it")
+
+
+FORMAT = Format("URDF", ("robot",), (".urdf",), read, mass="value", centre="xyz")
