@@ -71,6 +71,12 @@ def smoke_lyapunov():
     assert isinstance(found, ph.Lyapunov) and abs(found.exponent) < 0.5
 
 
+def smoke_judge():
+    omega, attitude = ph.FreeMotion(BLOCK, OMEGA).at(np.linspace(0, 5, 100))
+    found = ph.judge(np.linspace(0, 5, 100), attitude, omega, inertia=BLOCK)
+    assert isinstance(found, ph.Judgement) and found.fine
+
+
 def smoke_free_sensitivity():
     s = ph.free_sensitivity(BLOCK, OMEGA, (0, 0, 0, 1), TIMES)
     assert s.d_omega.shape == (5, 3, 6) and np.allclose(s.d_omega[..., 3:] @ BLOCK, 0, atol=1e-13)
@@ -259,7 +265,8 @@ SMOKE = {
     "plan": smoke_plan,
     "solve": smoke_solve,
     "solve_many": smoke_solve_many,
-} | {name: smoke_ensemble for name in ("Ensemble", "ensemble") if _wings.is_there("ensemble")}
+} | {name: smoke_ensemble for name in ("Ensemble", "ensemble") if _wings.is_there("ensemble")} | {
+    name: smoke_judge for name in ("Judgement", "judge") if _wings.is_there("judge")}
 
 
 @pytest.mark.parametrize("name", [n for n in ph.__all__ if not isinstance(getattr(ph, n), types.ModuleType)])
