@@ -19,8 +19,7 @@ BLOCK = 20_000   # trials at once
 def grid(t: Array, low: float, high: float) -> Array:
     """Return trial frequencies from `low` to `high` [rad/s]."""
     step = STEP / float(np.ptp(t))
-    out: Array = low + step * np.arange(max(int((high - low) / step), 1) + 1)
-    return out
+    return np.asarray(low + step * np.arange(max(int((high - low) / step), 1) + 1), np.float64)
 
 
 def _grid(f: Array) -> tuple[float, float, float]:
@@ -35,7 +34,7 @@ def project(t: Array, y: Array, weight: Array, lines: Sequence[tuple[int, int]],
 
 def periodogram(t: Array, z: npt.NDArray[Any], f: Array) -> Array:
     """Return the sum over the columns of z (n, k) of abs(sum z exp(-i f t))^2."""
-    parts = np.ascontiguousarray(z).view(np.float64)
+    parts: Array = np.ascontiguousarray(z).view(np.float64)
     return np.asarray(_core._periodogram(t, parts, z.shape[1], _grid(f)))
 
 

@@ -178,6 +178,12 @@ def fitted():
     return lambda: [ph.fit(ph.measured.Rates(t, rates, 0.05), fit=("omega", "inertia"), seed=k) for k in range(200)]
 
 
+def judged():
+    t = np.linspace(0, 50, 20_000)
+    omega, attitude = ph.FreeMotion(BLOCK, OMEGA).at(t)
+    return lambda: [ph.judge(t, attitude, omega) for _ in range(20)]
+
+
 def stepped(count, bodies):
     L, q = RNG.normal(size=(bodies, 3)), np.tile(HERE, (bodies, 1)).astype(float)
     return lambda: ph.step(BLOCK, L, q, 1e-3, count=count, threads=1)
@@ -261,6 +267,7 @@ LONG = {
     "solve, columns": lambda: solved(1000.0, accuracy=1e-9, sensitivity=("omega", "inertia", "gravity.weight")),
     "lyapunov": exponent,
     "fit": fitted,
+    "judge": judged,
     "step, one body": lambda: stepped(50_000_000, 1),
     "step, many bodies": lambda: stepped(2000, 20000),
     "ensemble": ensembles,
@@ -290,8 +297,9 @@ OUT = {
         "inertia.check", "inertia.diagnose", "inertia.equivalent_box", "inertia.equivalent_ellipsoid",
         "inertia.Diagnosis", "inertia.Finding", "inertia.Flaw"),
     "holds a result, or is an exception": (
-        "FitResult", "Ensemble", "IntegrationFailure", "InvalidInput", "Lyapunov", "Motion", "Motions", "Plan",
-        "Sensitivity", "charts.Entrant", "recipe.Draw", "recipe.Recipe", "build_info", "cmake_prefix", "methods"),
+        "FitResult", "Ensemble", "IntegrationFailure", "InvalidInput", "Judgement", "Lyapunov", "Motion",
+        "Motions", "Plan", "Sensitivity", "charts.Entrant", "recipe.Draw", "recipe.Recipe", "build_info",
+        "cmake_prefix", "methods"),
     "copies arrays, or is a few passes of NumPy's, which has no place for an interrupt": (
         "Scene", "Rotation.", "measured.", "MassProperties.from_points"),
     "plans: its pilots have at most some hundred steps": ("plan",),

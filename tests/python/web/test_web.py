@@ -204,7 +204,8 @@ def read(numbers, text):
 def test_numbers_are_written_with_the_fewest_digits_and_read_back(numbers):
     bits = np.random.default_rng(6).integers(0, 2**63, 5000, dtype=np.uint64)
     near_one = np.ldexp(np.round(np.random.default_rng(7).uniform(size=2000), 6), 20)
-    for value in (*bits.view(float), *near_one, 0.0, 1.0, 2.0**53, 2.0**53 + 2, 1e21, 1e23, 5e-324, 1.7976931348623157e308):
+    known = (0.0, 1.0, 2.0**53, 2.0**53 + 2, 1e21, 1e23, 5e-324, 1.7976931348623157e308)
+    for value in (*bits.view(float), *near_one, *known):
         if not np.isfinite(value):
             continue
         length = numbers.call("write", float(value))

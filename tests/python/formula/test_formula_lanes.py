@@ -12,6 +12,7 @@ from test_formula_series import scene as true_scene
 import polhode as ph
 from polhode.torques import AngularDamping, Constant, Damping, Formula, Gravity, GravityGradient
 
+CASES = [case for case in TRUTH["cases"] if case["law"] in LAWS]   # the others have states
 RNG = np.random.default_rng(23)
 N = 21
 HALF = RNG.uniform(0.2, 1, (N, 3))
@@ -66,7 +67,7 @@ def test_what_is_a_torque_for_one_tensor_alone():
                 ph.solve_many([scene(GravityGradient(0.4))] * 2, rtol=1e-9, method="rk45"))
 
 
-@pytest.mark.parametrize("case", TRUTH["cases"], ids=lambda case: f"{case['law']}-{case['inertia'][0][1]}")
+@pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case['law']}-{case['inertia'][0][1]}")
 @pytest.mark.parametrize("rtol", [1e-4, 1e-8, 1e-12])
 def test_lanes_of_every_law_against_truth(case, rtol):
     torque = make(case["law"], case["inertia"])
