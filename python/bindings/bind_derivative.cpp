@@ -6,6 +6,7 @@
 #include "gil.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/derivative/sensitivity.hpp"
+#include "polhode/scene/parameter.hpp"
 
 namespace polhode::python {
 namespace {
@@ -57,6 +58,11 @@ void bind_solve_sensitivity(py::module_& m) {
       .def_readonly("error", &FoundSensitivity::error)
       .def_readonly("steps", &FoundSensitivity::steps)
       .def_readonly("runs", &FoundSensitivity::runs);
+  m.def("_parameter_names", [](const Scene& scene, const std::string& group) {
+    std::vector<std::string> names;
+    for (const SceneParameter& parameter : find_parameters(scene, group)) names.push_back(parameter.column);
+    return names;
+  }, py::arg("scene"), py::arg("group"));
   m.def("sensitivity", &sensitivity_of, py::arg("scene"), py::arg("groups"), py::arg("accuracy"), py::arg("certify"),
         py::arg("side"), py::arg("max_steps"),
         "The motion of a scene and its derivatives.");

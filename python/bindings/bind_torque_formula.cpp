@@ -255,6 +255,41 @@ float
     V [J].
 )doc";
 
+constexpr const char* with_parameters_doc = R"doc(Return the formula with other numbers of some of its parameters.
+
+Parameters
+----------
+**parameters : float or array_like, shape (n,)
+    Numbers by the names of its parameters, of the same shapes.
+
+Returns
+-------
+Formula
+
+Raises
+------
+InvalidInput
+    For a name that it does not have, or another shape.
+)doc";
+
+Formula replace_parameters(const Formula& formula, const py::kwargs& numbers) {
+  std::vector<double> values = formula::list_values(formula.parameters());
+  for (const Input& given : to_inputs(numbers, "with_parameters.")) {
+    const formula::Place place = formula::find_place(formula.parameters(), given.name);
+    const std::string where = "with_parameters." + given.name;
+    if (place.first < 0) {
+      std::string known;
+      for (const Input& one : formula.parameters()) known += (known.empty() ? "" : ", ") + one.name;
+      throw InvalidInput(where, "one of the formula's parameters", known.empty() ? "a formula without any" : known);
+    }
+    if (std::ssize(given.values) != place.count)
+      throw InvalidInput(where, std::to_string(place.count) + (place.count == 1 ? " number" : " numbers"),
+                         std::to_string(given.values.size()));
+    std::copy(given.values.begin(), given.values.end(), values.begin() + place.first);
+  }
+  return formula.with_parameters(values);
+}
+
 }  // namespace
 
 void bind_torque_formula(py::module_& m) {
@@ -273,6 +308,7 @@ void bind_torque_formula(py::module_& m) {
                              "dict: names for shared parts of the text.");
   type.def_property_readonly("parameters", [](const Formula& formula) { return from_inputs(formula.parameters()); },
                              "dict: the named numbers, sorted by name.");
+  type.def("with_parameters", &replace_parameters, with_parameters_doc);
   type.def_property_readonly("recognise", &Formula::recognise, "bool: whether it may be replaced.");
   bind_traits(type);
   bind_value(type);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include "polhode/ode/series.hpp"
 
 // The numbers that the kernels of the variational equations share with their callers.
@@ -23,9 +25,37 @@ struct ColumnForce {
   int component;
 };
 
-/// Eight columns in lanes: d omega (3) and the small rotation in body axes (3), each with its series.
-struct ColumnRows {
-  alignas(64) double of[6][ode::most_series_order + 1][ode::series_width];
+/// The series of one number of eight columns.
+struct alignas(64) ColumnSeriesRows {
+  double of[ode::most_series_order + 1][ode::series_width] = {};
+};
+
+/// The series of eight columns, number after number: d omega (3), the small rotation in body axes (3), further states.
+using ColumnRows = ColumnSeriesRows*;
+
+/// A term of x' = A(t) x + f(t): a series, or a constant, times number `from` of x. Of a force there is no `from`.
+struct LinearTerm {
+  int from = 0;
+  std::ptrdiff_t series = -1;   ///< where it stands in a row; -1: a constant
+  double factor = 0.0;          ///< the constant
+};
+
+/// What forces eight columns: parts of a series, or of 1.
+struct LinearForce {
+  alignas(64) double parts[8] = {};
+  std::ptrdiff_t series = -1;
+};
+
+/// The equations of eight columns. Terms of number i are terms[first_term[i]] up to terms[first_term[i + 1]], and
+/// forces alike.
+struct LinearEquations {
+  int size;
+  const LinearTerm* terms;
+  const int* first_term;
+  const LinearForce* forces;
+  const int* first_force;
+  const double* series;      ///< rows of the coefficients of all series
+  std::ptrdiff_t stride;     ///< numbers of a row
 };
 
 struct ColumnKernels {
@@ -38,7 +68,9 @@ struct ColumnKernels {
   /// @param linear  constant part of the derivative of w' by omega, row by row
   /// @param pulled  the torque depends on the attitude
   void (*expand_columns)(const MatrixRow* matrix, const double* linear, bool pulled, const ColumnForce* forces,
-                         int force_count, int order, double unit, ColumnRows& columns);
+                         int force_count, int order, double unit, ColumnRows columns);
+  /// The same for equations of any kind.
+  void (*expand_linear)(const LinearEquations& equations, int order, double unit, ColumnRows columns);
 };
 
 /// Null if the compiler could not build the instruction set.

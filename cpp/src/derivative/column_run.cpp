@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "method/samples.hpp"
-#include "derivative/column_series.hpp"
+#include "derivative/column_motion.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/core/interrupt.hpp"
 
@@ -47,10 +47,6 @@ std::vector<double> find_further_ends(const Scene& scene) {
   return ends;
 }
 
-AnyTorque to_any(const LastingTorque& torque) {
-  return std::visit([](const auto& one) { return AnyTorque(one); }, torque);
-}
-
 /// Where a run writes its samples.
 class SampleTarget {
  public:
@@ -65,14 +61,11 @@ class SampleTarget {
   }
 
   /// Samples within the last step.
-  void put(ColumnStepper& stepper, const ColumnSeries& series, const std::vector<double>& times,
-           const std::size_t* which, std::size_t count) {
-    times_.resize(count), states_.resize(15 * count), rows_.resize(6 * columns_ * count);
+  void put(ColumnMotion& motion, const std::vector<double>& times, const std::size_t* which, std::size_t count) {
+    times_.resize(count), states_.resize(7 * count), rows_.resize(6 * columns_ * count);
     for (std::size_t i = 0; i < count; ++i) times_[i] = times[which[i]];
-    double *y = states_.data(), *omega = y + 8 * count, *attitude = y + 11 * count;
-    stepper.interpolate_many(times_.data(), count, y);
-    series.body().unpack(y, count, omega, attitude);
-    stepper.columns_at(times_.data(), count, rows_.data());
+    double *omega = states_.data(), *attitude = omega + 3 * count;
+    motion.sample(times_.data(), count, omega, attitude, rows_.data());
     for (std::size_t i = 0; i < count; ++i)
       put(which[i], omega + 3 * i, attitude + 4 * i, rows_.data() + 6 * columns_ * i);
   }
@@ -260,26 +253,26 @@ void ColumnRun::follow(const std::vector<Piece>& pieces, const std::vector<std::
     rotating = here, before = &piece;
     if (piece.end == at.state.t) continue;
     const Scene part = make_piece_scene(scene_, piece, at.state, {piece.end}, {true, true});
-    ColumnSeries series(part, find_causes(piece, rotating), at.columns);
-    ColumnStepper stepper(series, at.state.t, piece.end, {.rtol = rtol});
-    while (stepper.t() != piece.end) {
+    const auto motion = make_column_motion(part, find_causes(piece, rotating), at.columns, piece.end, {.rtol = rtol},
+                                           equations_[&piece]);
+    while (motion->t() != piece.end) {
       check_interrupt();
       if (out.steps++ >= max_steps)
-        throw IntegrationFailure(stepper.t(), "sensitivity: more than " + std::to_string(max_steps) + " steps");
-      if (stepper.advance(piece.end) != ode::StepResult::accepted)
-        throw IntegrationFailure(stepper.t(), "sensitivity: the motion or its derivatives leave the range of float64");
+        throw IntegrationFailure(motion->t(), "sensitivity: more than " + std::to_string(max_steps) + " steps");
+      if (motion->advance(piece.end) != ode::StepResult::accepted)
+        throw IntegrationFailure(motion->t(), "sensitivity: the motion or its derivatives leave the range of float64");
       // Samples at the end of the piece come after what happens there.
       std::size_t count = 0;
-      const auto within = [&](double t) { return (forward ? t <= stepper.t() : t >= stepper.t()) && t != piece.end; };
+      const auto within = [&](double t) { return (forward ? t <= motion->t() : t >= motion->t()) && t != piece.end; };
       while (next + count < order.size() && within(scene_.times()[order[next + count]])) ++count;
       if (count == 0) continue;
-      target.put(stepper, series, scene_.times(), order.data() + next, count);
+      target.put(*motion, scene_.times(), order.data() + next, count);
       next += count;
     }
     double attitude[4];
-    series.body().unpack(stepper.y(), 1, at.state.omega.data(), attitude);
+    motion->end(at.state.omega.data(), attitude, at.columns);
     at.state.attitude = {attitude[0], attitude[1], attitude[2], attitude[3]};
-    at.state.t = piece.end, at.columns = series.columns();
+    at.state.t = piece.end;
     if (!last) continue;
     std::vector<bool> then;
     for (const Rotor& rotor : scene_.rotors()) then.push_back(rotor.rotates_at(at.state.t));

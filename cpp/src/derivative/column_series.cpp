@@ -26,21 +26,12 @@ ColumnSeries::ColumnSeries(const Scene& piece, const std::vector<ColumnCause>& c
     : body_(piece, true),
       terms_(make_column_terms(piece, body_.axes(), body_.moments(), causes)),
       kernels_(*choose_level(simd_level(), baseline_column_kernels, avx2_column_kernels, avx512_column_kernels)),
-      count_(causes.size()) {
+      columns_(6, causes.size(), body_.axes(), body_.is_rotated(), columns) {
   const Source axes[3] = {Source::space_x, Source::space_y, Source::space_z};
   for (int c = 0; c < 3; ++c) sees_space_[c] = terms_.space[c] != 0.0 || terms_.uses(axes[c]);
   sees_space_[2] = sees_space_[2] || !terms_.moment.isZero(0.0);
   sees_orbit_ = terms_.orbit_rate != 0.0;
-  const std::size_t groups = (count_ + 7) / 8;
-  arrived_.resize(groups), start_.resize(groups), series_.resize(groups), forces_.resize(groups);
-  const Matrix3d R_PB = body_.axes().transpose();
-  for (std::size_t c = 0; c < count_; ++c) {
-    for (std::size_t half = 0; half < 6; half += 3) {
-      const Vector3d v = R_PB * Vector3d(columns[half * count_ + c], columns[(half + 1) * count_ + c],
-                                         columns[(half + 2) * count_ + c]);
-      for (int i = 0; i < 3; ++i) arrived_[c / 8].high[half + static_cast<std::size_t>(i)][c % 8] = v[i];
-    }
-  }
+  forces_.resize(columns_.groups());
   for (const ColumnTerms::Force& force : terms_.forces) {
     auto& own = forces_[static_cast<std::size_t>(force.column) / 8];
     const double* first = &source(force.source)[0][force.part];
@@ -55,18 +46,17 @@ ColumnSeries::ColumnSeries(const Scene& piece, const std::vector<ColumnCause>& c
 void ColumnSeries::compute_series(DD t, double unit, const double* y, const double* carry, int order,
                                   double* rows) const {
   body_.compute_series(t, unit, y, carry, order, rows);
-  rows_ = rows, order_ = order;
+  rows_ = rows;
   VectorRows& w = source(Source::rates);
   for (int k = 0; k <= order; ++k) body_.compute_rates(rows + dimension * k, w[k]);
   rate_ = std::max({std::abs(w[0][0]), std::abs(w[0][1]), std::abs(w[0][2]), 1.0 / unit});
   see_vectors(t, unit, y, order);
   find_products(t, unit, order);
   fill_matrix(order);
-  start_ = arrived_;
-  for (std::size_t g = 0; g < series_.size(); ++g) {
-    for (int i = 0; i < 6; ++i) std::copy_n(start_[g].high[i], 8, series_[g].of[i][0]);
+  columns_.begin(order);
+  for (std::size_t g = 0; g < columns_.groups(); ++g) {
     kernels_.expand_columns(matrix_, terms_.linear, terms_.pulled, forces_[g].data(),
-                            static_cast<int>(forces_[g].size()), order, unit, series_[g]);
+                            static_cast<int>(forces_[g].size()), order, unit, columns_.rows(g));
   }
 }
 
@@ -170,95 +160,7 @@ void ColumnSeries::fill_matrix(int order) const {
 void ColumnSeries::compute_sizes(const double* row, double* sizes) const {
   body_.compute_sizes(row, sizes);
   const auto k = static_cast<int>((row - rows_) / dimension);
-  sizes[2] = k < 3 ? 1.0 : measure(k);
-}
-
-/// The largest size of a row of a column relative to that of its first three rows.
-double ColumnSeries::measure(int row) const {
-  double largest = 0.0;
-  const auto size = [&](const ColumnRows& rows, int k, std::size_t lane) {
-    double parts[6];
-    for (int i = 0; i < 6; ++i) parts[i] = std::abs(rows.of[i][k][lane]);
-    return std::max(std::max({parts[0], parts[1], parts[2]}) / rate_, std::max({parts[3], parts[4], parts[5]})) +
-           0.0 * (parts[0] + parts[1] + parts[2] + parts[3] + parts[4] + parts[5]);   // NaN if one is
-  };
-  for (std::size_t c = 0; c < count_; ++c) {
-    const ColumnRows& rows = series_[c / 8];
-    const double first = std::max({size(rows, 0, c % 8), size(rows, 1, c % 8), size(rows, 2, c % 8)});
-    const double ratio = size(rows, row, c % 8) / (first > 0.0 ? first : 1.0);
-    if (!(ratio <= largest)) largest = ratio;
-  }
-  return largest;
-}
-
-void ColumnSeries::advance(double s) {
-  for (std::size_t g = 0; g < series_.size(); ++g) {
-    for (int i = 0; i < 6; ++i) {
-      static constexpr double zero[8] = {};
-      alignas(64) double increment[8];
-      ode::evaluate_series(series_[g].of[i][0], order_, ode::series_width, zero, start_[g].low[i], &s, 1, increment);
-      for (int lane = 0; lane < 8; ++lane) {
-        const DD sum = math::two_sum(start_[g].high[i][lane], increment[lane]);
-        arrived_[g].high[i][lane] = sum.hi, arrived_[g].low[i][lane] = sum.lo;
-      }
-    }
-  }
-}
-
-/// Six numbers of the columns of one group from P to body axes; `out` has a row of `count_` for each number.
-void ColumnSeries::to_body(std::size_t group, const double (*column)[8], double* out) const {
-  const Matrix3d& R = body_.axes();
-  const std::size_t lanes = std::min<std::size_t>(8, count_ - 8 * group);
-  if (!body_.is_rotated()) {
-    for (std::size_t i = 0; i < 6; ++i) std::copy_n(column[i], lanes, out + i * count_ + 8 * group);
-    return;
-  }
-  for (int i = 0; i < 6; ++i) {
-    const double(*v)[8] = column + (i < 3 ? 0 : 3);
-    for (std::size_t c = 0; c < lanes; ++c)
-      out[static_cast<std::size_t>(i) * count_ + 8 * group + c] =
-          R(i % 3, 0) * v[0][c] + R(i % 3, 1) * v[1][c] + R(i % 3, 2) * v[2][c];
-  }
-}
-
-void ColumnSeries::evaluate(const double* s, std::size_t n, double* out) const {
-  constexpr std::size_t most = 16;   // at once
-  alignas(64) double values[6][most][8], column[6][8];
-  for (std::size_t begin = 0; begin < n; begin += most) {
-    const std::size_t count = std::min(most, n - begin);
-    for (std::size_t g = 0; g < series_.size(); ++g) {
-      for (int i = 0; i < 6; ++i)
-        ode::evaluate_series(series_[g].of[i][0], order_, ode::series_width, start_[g].high[i], start_[g].low[i],
-                             s + begin, count, values[i][0]);
-      for (std::size_t k = 0; k < count; ++k) {
-        for (int i = 0; i < 6; ++i) std::copy_n(values[i][k], 8, column[i]);
-        to_body(g, column, out + 6 * count_ * (begin + k));
-      }
-    }
-  }
-}
-
-std::vector<double> ColumnSeries::columns() const {
-  std::vector<double> out(6 * count_);
-  for (std::size_t g = 0; g < arrived_.size(); ++g) to_body(g, arrived_[g].high, out.data());
-  return out;
-}
-
-ode::StepResult ColumnStepper::advance(double t_end) {
-  const ode::StepResult result = Base::advance(t_end);
-  if (result == ode::StepResult::accepted)
-    series_.advance(((time_.hi - time_old_.hi) + (time_.lo - time_old_.lo)) / unit_old_);
-  return result;
-}
-
-void ColumnStepper::columns_at(const double* times, std::size_t n, double* out) const {
-  constexpr std::size_t most = 64;
-  double s[most];
-  for (std::size_t begin = 0; begin < n; begin += most) {
-    const std::size_t count = std::min(most, n - begin);
-    for (std::size_t i = 0; i < count; ++i) s[i] = ((times[begin + i] - time_old_.hi) - time_old_.lo) / unit_old_;
-    series_.evaluate(s, count, out + begin * series_.numbers());
-  }
+  sizes[2] = k < 3 ? 1.0 : columns_.measure(k, rate_);
 }
 
 }  // namespace polhode

@@ -81,14 +81,36 @@ std::vector<SceneParameter> find_all(const Scene& scene, const std::vector<std::
 }
 
 void require_formulas(const Scene& scene) {
-  SceneParts parts = scene.parts();
-  for (AnyTorque& torque : parts.torques)
-    torque = std::visit([](const auto& one) { return AnyTorque(one); }, drop_windows(torque));
-  const Scene lasting(std::move(parts));
-  const std::string why = needs_formula_series(lasting) ? "a Formula that is no torque of the list"
-                                                        : compute_series_refusal(lasting);
+  std::vector<AnyTorque> torques = scene.torques();
+  for (AnyTorque& torque : torques) torque = to_any(drop_windows(torque));
+  const Scene lasting = scene.with_torques(std::move(torques));
+  const std::string why = !lasting.states().empty() ? "a Formula with states of its own, which has no columns yet"
+                                                    : compute_series_refusal(lasting);
   if (!why.empty())
     throw InvalidInput("sensitivity", "left out for a torque without a formula that can be differentiated", why);
+}
+
+/// The scene with the torques of the list that its formulas are. A formula that is differentiated by its own numbers, or
+/// while the inertia changes, stays one.
+Scene resolve(const Scene& scene, const std::vector<SceneParameter>& parameters) {
+  using Of = SceneParameter::Of;
+  std::vector<AnyTorque> torques = scene.torques();
+  for (std::size_t i = 0; i < torques.size(); ++i) {
+    const bool stays = std::any_of(parameters.begin(), parameters.end(), [&](const SceneParameter& parameter) {
+      return parameter.of == Of::inertia || parameter.of == Of::axes || parameter.of == Of::rotor ||
+             (parameter.of == Of::torque && parameter.index == i);
+    });
+    AnyTorque& torque = torques[i];
+    const LastingTorque lasting = drop_windows(torque);
+    const auto* formula = std::get_if<torques::Formula>(&lasting);
+    if (!stays || formula == nullptr) continue;
+    if (const auto* during = std::get_if<torques::During>(&torque)) {
+      torque = torques::During(formula->as_given(), during->windows());
+    } else {
+      torque = formula->as_given();
+    }
+  }
+  return resolve_formulas(scene.with_torques(std::move(torques)), AsCustom::no);
 }
 
 }  // namespace
@@ -98,7 +120,7 @@ MotionSensitivity compute_sensitivity(const Scene& given, const std::vector<std:
   if (!(options.accuracy > 0.0 && options.accuracy <= 1.0))
     throw InvalidInput("accuracy", "above 0 and at most 1", to_text(options.accuracy));
   const std::vector<SceneParameter> parameters = find_all(given, groups);   // resolved torques keep their numbers
-  const Scene scene = resolve_formulas(given, AsCustom::no);
+  const Scene scene = resolve(given, parameters);
   require_formulas(scene);
   const ColumnRun columns(scene, parameters, options.side);
   // The error of a column grows with the turns, as that of a state does.

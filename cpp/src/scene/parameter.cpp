@@ -80,6 +80,16 @@ std::vector<SceneParameter> find_torque_parameters(const Scene& scene, std::stri
     return found;
   }
   std::string known;
+  if (const LastingTorque lasting = drop_windows(torque); std::holds_alternative<torques::Formula>(lasting)) {
+    const std::vector<formula::Input>& own = std::get<torques::Formula>(lasting).parameters();
+    for (std::size_t field = 0; field < own.size(); ++field) {
+      known += (known.empty() ? "'" : ", '") + own[field].name + "'";
+      const std::size_t count = own[field].values.size();
+      for (std::size_t c = 0; own[field].name == name.field && c < count; ++c)
+        found.push_back({Of::torque, index, static_cast<int>(field), static_cast<int>(c),
+                         count == 1 ? prefix : prefix + "_" + (count == 3 ? std::string(1, "xyz"[c]) : std::to_string(c))});
+    }
+  }
   for (std::size_t field = 0; field < record.parameters.size(); ++field) {
     const TorqueParameter& parameter = record.parameters[field];
     if (parameter.kind == Kind::choice) continue;
@@ -120,18 +130,6 @@ std::vector<SceneParameter> find_rotor_parameters(const Scene& scene, std::strin
 }
 
 }  // namespace
-
-LastingTorque drop_windows(const AnyTorque& torque) {
-  return std::visit(
-      []<class T>(const T& one) -> LastingTorque {
-        if constexpr (std::is_same_v<T, torques::During>) {
-          return one.torque();
-        } else {
-          return one;
-        }
-      },
-      torque);
-}
 
 std::vector<SceneParameter> find_parameters(const Scene& scene, std::string_view group) {
   constexpr std::pair<std::string_view, Of> triples[] = {

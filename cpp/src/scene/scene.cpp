@@ -110,6 +110,12 @@ SceneParts Scene::parts() const {
   return copy;
 }
 
+Scene Scene::with_torques(std::vector<AnyTorque> torques) const {
+  SceneParts copy = *parts_;
+  copy.torques = std::move(torques);
+  return Scene(std::move(copy));
+}
+
 void compute_rotor_speed(const Scene& scene, std::size_t n, const double* t, const double* omega, double* speed) {
   for (std::size_t i = 0; i < n; ++i) {
     const Vector3d w_B{omega[3 * i], omega[3 * i + 1], omega[3 * i + 2]};

@@ -23,7 +23,8 @@ AngularDamping AngularDamping::from_values(std::span<const TorqueValue> values) 
 }
 
 formula::Program AngularDamping::law(const Matrix3d& inertia_B) const {
-  return formula::trace([&](const auto& in) { return -rate_ * formula::apply_matrix(inertia_B, in.omega); });
+  return formula::trace([&](const auto& in) { return -in.p("rate") * formula::apply_matrix(inertia_B, in.omega); },
+                        {{"rate", {rate_}}});
 }
 
 }  // namespace polhode::torques

@@ -30,9 +30,9 @@ TorqueValues Constant::values() const { return {torque_, std::string(frame_ == F
 
 formula::Program Constant::law(const Matrix3d&) const {
   return formula::trace([&](const auto& in) {
-    const auto torque = formula::make_vector<formula::Expr>(torque_);
+    const auto torque = in.template p<3>("torque");
     return frame_ == Frame::body ? torque : to_body(in.attitude, torque);
-  });
+  }, {{"torque", {torque_[0], torque_[1], torque_[2]}}});
 }
 
 }  // namespace polhode::torques

@@ -20,7 +20,14 @@ const TorqueRecord& Damping::record() {
 Damping Damping::from_values(std::span<const TorqueValue> values) { return Damping(std::get<Matrix3d>(values[0])); }
 
 formula::Program Damping::law(const Matrix3d&) const {
-  return formula::trace([&](const auto& in) { return -formula::apply_matrix(matrix_, in.omega); });
+  formula::Input matrix{"matrix", {}};
+  for (int i = 0; i < 9; ++i) matrix.values.push_back(matrix_(i / 3, i % 3));
+  return formula::trace([&](const auto& in) {
+    const auto C = in.template p<9>("matrix");
+    formula::Vec<formula::Expr, 3> tau;
+    for (std::size_t i = 0; i < 9; ++i) tau[i / 3] = tau[i / 3] - C[i] * in.omega[i % 3];
+    return tau;
+  }, {matrix});
 }
 
 }  // namespace polhode::torques

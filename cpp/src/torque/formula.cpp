@@ -28,6 +28,12 @@ void require_states(const formula::Program& program) {
                        std::to_string(program.outputs.size()));
 }
 
+void replace(std::vector<formula::Input>& inputs, const std::vector<double>& numbers) {
+  std::size_t next = 0;
+  for (formula::Input& input : inputs)
+    for (double& value : input.values) value = numbers.at(next++);
+}
+
 }  // namespace
 
 struct Formula::Parts {
@@ -88,10 +94,25 @@ const std::vector<formula::Input>& Formula::states() const { return parts_->text
 
 Formula Formula::with_starts(const std::vector<double>& starts) const {
   formula::Text text = parts_->text;
-  std::size_t next = 0;
-  for (formula::Input& state : text.states)
-    for (double& start : state.values) start = starts.at(next++);
+  replace(text.states, starts);
   return Formula(text, recognise_);
+}
+
+Formula Formula::with_parameters(const std::vector<double>& values) const {
+  formula::Text text = parts_->text;
+  replace(text.parameters, values);
+  return Formula(text, recognise_);
+}
+
+Formula Formula::as_given() const {
+  Formula other = *this;
+  other.recognise_ = false;
+  return other;
+}
+
+formula::Program Formula::law(const Matrix3d&) const {
+  const formula::Program given = formula::parse(parts_->text);
+  return parts_->potential ? formula::derive_torque(given) : given;
 }
 
 bool Formula::has_switches() const { return parts_->facts.has_switches; }

@@ -30,8 +30,8 @@ Gravity Gravity::from_values(std::span<const TorqueValue> values) {
 formula::Program Gravity::law(const Matrix3d&) const {
   return formula::trace([&](const auto& in) {
     const auto vertical = to_body(in.attitude, formula::make_vector<formula::Expr>(Vector3d::UnitZ()));
-    return -cross(formula::make_vector<formula::Expr>(moment_), vertical);
-  });
+    return -cross(in.p("weight") * in.template p<3>("arm"), vertical);
+  }, {{"arm", {arm_[0], arm_[1], arm_[2]}}, {"weight", {weight_}}});
 }
 
 }  // namespace polhode::torques

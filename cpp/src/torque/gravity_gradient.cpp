@@ -29,11 +29,12 @@ GravityGradient GravityGradient::from_values(std::span<const TorqueValue> values
 
 formula::Program GravityGradient::law(const Matrix3d& inertia_B) const {
   return formula::trace([&](const auto& in) {
-    const auto angle = mean_motion_ * in.t + phase_;
+    const auto n = in.p("mean_motion");
+    const auto angle = n * in.t + in.p("phase");
     const formula::Vec<formula::Expr, 3> radial{{cos(angle), sin(angle), 0.0}};
     const auto u = to_body(in.attitude, radial);
-    return strength() * cross(u, formula::apply_matrix(inertia_B, u));
-  });
+    return 3.0 * n * n * cross(u, formula::apply_matrix(inertia_B, u));
+  }, {{"mean_motion", {mean_motion_}}, {"phase", {phase_}}});
 }
 
 }  // namespace polhode::torques

@@ -30,18 +30,40 @@ std::vector<formula::Input> list_states(std::span<const AnyTorque> torques) {
   return all;
 }
 
+AnyTorque to_any(const LastingTorque& torque) {
+  return std::visit([](const auto& one) { return AnyTorque(one); }, torque);
+}
+
+LastingTorque drop_windows(const AnyTorque& torque) {
+  return std::visit(
+      []<class T>(const T& one) -> LastingTorque {
+        if constexpr (std::is_same_v<T, torques::During>) {
+          return one.torque();
+        } else {
+          return one;
+        }
+      },
+      torque);
+}
+
 formula::Program make_law(const AnyTorque& torque, const Matrix3d& inertia_B) {
   return std::visit(
       [&](const auto& any) -> formula::Program {
         if constexpr (requires { any.law(inertia_B); }) {
           return any.law(inertia_B);
         } else if constexpr (requires { any.windows(); any.torque(); }) {
-          return make_law(std::visit([](const auto& one) { return AnyTorque(one); }, any.torque()), inertia_B);
+          return make_law(to_any(any.torque()), inertia_B);
         } else {
           throw InvalidInput("torques", "formulas", std::string(any.record().name));
         }
       },
       torque);
+}
+
+formula::Program make_bound_law(const AnyTorque& torque, const Matrix3d& inertia_B) {
+  if (const auto* formula = std::get_if<torques::Formula>(&torque)) return formula->program();
+  const formula::Program law = make_law(torque, inertia_B);
+  return formula::bind_parameters(law, formula::list_values(law.parameters));
 }
 
 TorqueTraits traits(const AnyTorque& torque) {

@@ -467,6 +467,24 @@ class Formula:
         ndarray, shape (3,)
             In body axes [N m].
         """
+    def with_parameters(self, **kwargs) -> Formula:
+        """
+        Return the formula with other numbers of some of its parameters.
+
+        Parameters
+        ----------
+        **parameters : float or array_like, shape (n,)
+            Numbers by the names of its parameters, of the same shapes.
+
+        Returns
+        -------
+        Formula
+
+        Raises
+        ------
+        InvalidInput
+            For a name that it does not have, or another shape.
+        """
     @property
     def let(self) -> dict[str, typing.Any]:
         """

@@ -12,7 +12,7 @@ from .._core import InertiaTensor
 from .._scene.scene import Scene
 from . import turns
 from .driven import differentiate
-from .parameters import get, put
+from .parameters import get, names_of, put
 from .problem import Problem, State
 from .turns import Array
 
@@ -114,8 +114,8 @@ class DrivenProblem(Problem):
     def __init__(self, data: Sequence[Measurement], groups: Sequence[str], base: DrivenState) -> None:
         wide = {"attitude": [f"attitude_{c}" for c in "xyz"], "omega": [f"omega_{c}" for c in "xyz"],
                 "inertia": list(SECONDS)}
-        for group, value in base.numbers.items():
-            wide[group] = names_of(base.scene, group, value.size)
+        for group in base.numbers:
+            wide[group] = names_of(base.scene, group)
         super().__init__(data, groups, base, wide)
 
     def _motion(self, state: State, names: Sequence[str]) -> tuple[Array, Array, Array, Array]:
@@ -155,11 +155,3 @@ class DrivenProblem(Problem):
         other = self.base if base is None else base
         assert isinstance(other, DrivenState)
         return DrivenProblem(data, self.groups, other)
-
-
-def names_of(scene: Scene, group: str, width: int) -> list[str]:
-    """Return the names of a group's parameters."""
-    if width == 1:
-        return [group]
-    letters = ["x", "y", "z"] if width == 3 else [a + b for a in "xyz" for b in "xyz"]
-    return [f"{group}_{c}" for c in letters]

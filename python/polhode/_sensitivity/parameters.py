@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from .. import torques
+from .. import _core, torques
 from .._core import InvalidInput, Rotor
 from .._scene.scene import Scene
 from .turns import Array
@@ -20,6 +20,11 @@ def _key(torque: Any) -> str:
     """The name in scene files: 'gravity_gradient' of GravityGradient."""
     name = type(_inner(torque)).__name__
     return "".join("_" + c.lower() if c.isupper() and k else c.lower() for k, c in enumerate(name))
+
+
+def _read(holder: Any, field: str) -> Any:
+    """The number of a torque or a rotor, or None."""
+    return holder.parameters.get(field) if isinstance(holder, torques.Formula) else getattr(holder, field, None)
 
 
 def find(scene: Scene, group: str) -> tuple[str, int, str]:
@@ -39,9 +44,13 @@ def find(scene: Scene, group: str) -> tuple[str, int, str]:
                                f"scene, as 'torques.0.weight' or 'gravity.weight', got {group!r}")
         index, field = among[0], parts[1]
     holder = _inner(kinds[what][index])
-    value = getattr(holder, field, None)
+    value = _read(holder, field)
+    if isinstance(holder, torques.Formula) and value is None:
+        raise InvalidInput(f"fit: must be numbers of Formula, which has {', '.join(holder.parameters) or 'none'}, "
+                           f"got {group!r}")
     others = ("traits", "value", "windows")
     fits = field in ("momentum", "inertia", "speed") if what == "rotors" else field not in others
+    fits = fits or isinstance(holder, torques.Formula)
     if not fits or value is None or isinstance(value, str):
         raise InvalidInput(f"fit: {group!r} is no number of {holder!r}; ends of windows are not fitted")
     return what, index, field
@@ -51,7 +60,13 @@ def get(scene: Scene, group: str) -> Array:
     """Return the numbers of a group, shape (1,), (3,) or (9,)."""
     what, index, field = find(scene, group)
     holder = _inner(getattr(scene, what)[index])
-    return np.array(getattr(holder, field), dtype=float).reshape(-1)
+    return np.array(_read(holder, field), dtype=float).reshape(-1)
+
+
+def names_of(scene: Scene, group: str) -> list[str]:
+    """Return the names of a group's numbers."""
+    stem = ".".join(map(str, find(scene, group)))
+    return [group + name.removeprefix(stem) for name in _core._parameter_names(scene, group)]
 
 
 def put(scene: Scene, group: str, value: Array) -> Scene:
@@ -59,15 +74,18 @@ def put(scene: Scene, group: str, value: Array) -> Scene:
     what, index, field = find(scene, group)
     items = list(getattr(scene, what))
     holder = _inner(items[index])
-    shape = np.shape(getattr(holder, field))
+    shape = np.shape(_read(holder, field))
     new: Any = value.reshape(shape) if shape else float(value[0])
     if what == "rotors":
         names = ("axis", "momentum", "inertia", "speed", "free")
         given = {name: getattr(holder, name) for name in names if getattr(holder, name) is not None}
         made: Any = Rotor(**{**given, **({"during": holder.during} if holder.during else {}), field: new})
     else:
-        fields = [name for name in dir(holder) if not name.startswith("_") and name not in ("traits", "value")]
-        made = type(holder)(**{**{name: getattr(holder, name) for name in fields}, field: new})
+        if isinstance(holder, torques.Formula):
+            made = holder.with_parameters(**{field: new})
+        else:
+            fields = [name for name in dir(holder) if not name.startswith("_") and name not in ("traits", "value")]
+            made = type(holder)(**{**{name: getattr(holder, name) for name in fields}, field: new})
         if isinstance(items[index], torques.During):
             made = torques.During(made, items[index].windows)
     items[index] = made

@@ -28,7 +28,4 @@ struct SceneParameter {
 /// @throws InvalidInput for a name that the scene does not have
 std::vector<SceneParameter> find_parameters(const Scene& scene, std::string_view group);
 
-/// The torque without its windows.
-LastingTorque drop_windows(const AnyTorque& torque);
-
 }  // namespace polhode

@@ -66,6 +66,8 @@ class Scene {
   SeveralTorques all_torques() const { return {parts_->torques, rotor_momentum_}; }
   /// A copy of all parts, for a scene that differs in some of them. Free rotors have the momentum of this start.
   SceneParts parts() const;
+  /// The same scene with other torques. Free rotors keep what they were given by.
+  Scene with_torques(std::vector<AnyTorque> torques) const;
 
  private:
   std::shared_ptr<const SceneParts> parts_;

@@ -19,7 +19,7 @@ class AngularDamping {
   /// c I, the matrix of the same torque as Damping [N m s]
   Matrix3d compute_matrix(const Matrix3d& inertia_B) const { return rate_ * inertia_B; }
 
-  /// The same torque as a formula.
+  /// The same torque as a formula of its parameters.
   formula::Program law(const Matrix3d& inertia_B) const;
 
   TorqueTraits traits() const { return {.uses_rates = true, .vanishes = rate_ == 0.0}; }

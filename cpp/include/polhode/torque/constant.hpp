@@ -19,7 +19,7 @@ class Constant {
   const Vector3d& torque() const { return torque_; }
   Frame frame() const { return frame_; }
 
-  /// The same torque as a formula.
+  /// The same torque as a formula of its parameters.
   formula::Program law(const Matrix3d& inertia_B) const;
 
   TorqueTraits traits() const {

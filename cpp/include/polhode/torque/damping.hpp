@@ -17,7 +17,7 @@ class Damping {
 
   const Matrix3d& matrix() const { return matrix_; }
 
-  /// The same torque as a formula.
+  /// The same torque as a formula of its parameters.
   formula::Program law(const Matrix3d& inertia_B) const;
 
   TorqueTraits traits() const { return {.uses_rates = true, .vanishes = matrix_.isZero(0.0)}; }

@@ -40,9 +40,14 @@ class Formula {
   const std::vector<formula::Input>& states() const;      ///< with their starts
   /// A copy whose states start from other numbers, in their order.
   Formula with_starts(const std::vector<double>& starts) const;
+  /// A copy with other numbers of its parameters, in their order.
+  Formula with_parameters(const std::vector<double>& values) const;
   bool recognise() const { return recognise_; }
+  /// A copy that solve() does not replace.
+  Formula as_given() const;
 
-  formula::Program law(const Matrix3d&) const { return program(); }
+  /// The torque as a formula of its parameters.
+  formula::Program law(const Matrix3d& inertia_B) const;
   bool has_switches() const;
 
   TorqueTraits traits() const;

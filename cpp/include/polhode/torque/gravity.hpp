@@ -19,7 +19,7 @@ class Gravity {
   double weight() const { return weight_; }
   const Vector3d& arm() const { return arm_; }
 
-  /// The same torque as a formula.
+  /// The same torque as a formula of its parameters.
   formula::Program law(const Matrix3d& inertia_B) const;
 
   TorqueTraits traits() const {

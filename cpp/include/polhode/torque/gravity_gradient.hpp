@@ -25,7 +25,7 @@ class GravityGradient {
   double phase() const { return phase_; }
   double strength() const { return 3 * mean_motion_ * mean_motion_; }   ///< 3 n^2 [1/s^2]
 
-  /// The same torque as a formula.
+  /// The same torque as a formula of its parameters.
   formula::Program law(const Matrix3d& inertia_B) const;
 
   TorqueTraits traits() const {

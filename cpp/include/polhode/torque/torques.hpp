@@ -46,8 +46,17 @@ struct SeveralTorques {
 /// with equal starts and rates. @throws InvalidInput for two states of one name that differ
 std::vector<formula::Input> list_states(std::span<const AnyTorque> torques);
 
-/// A torque of the list as a formula, without its windows. @throws InvalidInput for a Custom
+/// A torque without windows, as one of any kind.
+AnyTorque to_any(const LastingTorque& torque);
+
+/// The torque without its windows.
+LastingTorque drop_windows(const AnyTorque& torque);
+
+/// A torque of the list as a formula of its parameters, without its windows. @throws InvalidInput for a Custom
 formula::Program make_law(const AnyTorque& torque, const Matrix3d& inertia_B);
+
+/// The same with its parameters as numbers.
+formula::Program make_bound_law(const AnyTorque& torque, const Matrix3d& inertia_B);
 
 TorqueTraits traits(const AnyTorque& torque);
 std::string_view torque_name(const AnyTorque& torque);   ///< of its record

@@ -95,7 +95,7 @@ template <bool pulled>
 class ColumnExpansion {
  public:
   ColumnExpansion(const MatrixRow* matrix, const double* linear, const ColumnForce* forces, int force_count,
-                  double unit, int lane, ColumnRows& columns)
+                  double unit, int lane, ColumnRows columns)
       : matrix_(matrix), linear_(linear), forces_(forces), force_count_(force_count), unit_(unit), lane_(lane),
         rows_(columns) {}
 
@@ -124,7 +124,7 @@ class ColumnExpansion {
 
  private:
   POLHODE_INLINE void load(int n, Columns (&x)[6]) const {
-    for (int i = 0; i < 6; ++i) x[i] = load_columns(rows_.of[i][n] + lane_);
+    for (int i = 0; i < 6; ++i) x[i] = load_columns(rows_[i].of[n] + lane_);
   }
 
   /// Begins with what forces row n.
@@ -143,9 +143,9 @@ class ColumnExpansion {
     for (int i = 0; i < 3; ++i) {
       Columns d = sums.rates[i] + sums.pull[i];
       for (int c = 0; c < 3; ++c)
-        d = madd(all_columns(linear_[3 * i + c]), load_columns(rows_.of[c][n] + lane_), d);
-      store_columns(rows_.of[i][n + 1] + lane_, d * scale);
-      store_columns(rows_.of[3 + i][n + 1] + lane_, (load_columns(rows_.of[i][n] + lane_) + sums.turn[i]) * scale);
+        d = madd(all_columns(linear_[3 * i + c]), load_columns(rows_[c].of[n] + lane_), d);
+      store_columns(rows_[i].of[n + 1] + lane_, d * scale);
+      store_columns(rows_[3 + i].of[n + 1] + lane_, (load_columns(rows_[i].of[n] + lane_) + sums.turn[i]) * scale);
     }
   }
 
@@ -155,21 +155,56 @@ class ColumnExpansion {
   int force_count_;
   double unit_;
   int lane_;
-  ColumnRows& rows_;
+  ColumnRows rows_;
 };
 
 template <bool pulled>
 void expand_columns(const MatrixRow* matrix, const double* linear, const ColumnForce* forces, int force_count,
-                    int order, double unit, ColumnRows& columns) {
+                    int order, double unit, ColumnRows columns) {
   for (int lane = 0; lane < 8; lane += columns_at_once)
     ColumnExpansion<pulled>(matrix, linear, forces, force_count, unit, lane, columns).run(order);
 }
 
 void expand_columns(const MatrixRow* matrix, const double* linear, bool pulled, const ColumnForce* forces,
-                    int force_count, int order, double unit, ColumnRows& columns) {
+                    int force_count, int order, double unit, ColumnRows columns) {
   (pulled ? &expand_columns<true> : &expand_columns<false>)(matrix, linear, forces, force_count, order, unit, columns);
 }
 
-constexpr ColumnKernels column_kernels{&expand_vectors, &multiply_rows, &expand_columns};
+/// The sum of a number's terms in row n, in two parts, so that no product waits for the last one.
+POLHODE_INLINE Columns add_terms(const LinearEquations& f, int i, int n, int lane, const ColumnSeriesRows* x) {
+  Columns even = all_columns(0.0), odd = all_columns(0.0);
+  for (const LinearForce* force = f.forces + f.first_force[i]; force != f.forces + f.first_force[i + 1]; ++force) {
+    const Columns parts = load_columns(force->parts + lane);
+    if (force->series >= 0) even = madd(parts, all_columns(f.series[n * f.stride + force->series]), even);
+    else if (n == 0) even = even + parts;
+  }
+  for (const LinearTerm* term = f.terms + f.first_term[i]; term != f.terms + f.first_term[i + 1]; ++term) {
+    const double(*from)[ode::series_width] = x[term->from].of;
+    if (term->series < 0) {
+      odd = madd(all_columns(term->factor), load_columns(from[n] + lane), odd);
+      continue;
+    }
+    const double* a = f.series + term->series;
+    int k = 0;
+    for (; k < n; k += 2, a += 2 * f.stride) {
+      even = madd(all_columns(a[0]), load_columns(from[n - k] + lane), even);
+      odd = madd(all_columns(a[f.stride]), load_columns(from[n - k - 1] + lane), odd);
+    }
+    if (k == n) even = madd(all_columns(a[0]), load_columns(from[0] + lane), even);
+  }
+  return even + odd;
+}
+
+void expand_linear(const LinearEquations& equations, int order, double unit, ColumnRows columns) {
+  for (int lane = 0; lane < 8; lane += columns_at_once) {
+    for (int n = 0; n < order; ++n) {
+      const Columns scale = all_columns(unit * reciprocals.of[n + 1]);
+      for (int i = 0; i < equations.size; ++i)
+        store_columns(columns[i].of[n + 1] + lane, add_terms(equations, i, n, lane, columns) * scale);
+    }
+  }
+}
+
+constexpr ColumnKernels column_kernels{&expand_vectors, &multiply_rows, &expand_columns, &expand_linear};
 
 }  // namespace polhode::POLHODE_ISA

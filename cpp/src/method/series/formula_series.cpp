@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <utility>
 
+#include "method/series/body_laws.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/formula/expression.hpp"
 #include "polhode/math/detail/coin.hpp"
@@ -21,27 +21,20 @@ using formula::Graph;
 using formula::Vec;
 using math::DD;
 
+bool is_power_of_two(double x) { return (std::bit_cast<std::uint64_t>(x) & 0xf'ffff'ffff'ffffull) == 0; }
+
+}  // namespace
+
 Scene drop_torques(const Scene& scene) {
   SceneParts parts = scene.parts();
   parts.torques.clear();
   return Scene(std::move(parts));
 }
 
-/// The product of two quaternions, the second a constant.
-Vec<Expr, 4> multiply(const Vec<Expr, 4>& p, const Quat& q) {
-  return {{p[3] * q.x + p[0] * q.w + p[1] * q.z - p[2] * q.y, p[3] * q.y - p[0] * q.z + p[1] * q.w + p[2] * q.x,
-           p[3] * q.z + p[0] * q.y - p[1] * q.x + p[2] * q.w, p[3] * q.w - p[0] * q.x - p[1] * q.y - p[2] * q.z}};
-}
-
-/// Numbers of memory that begin at a boundary of 64 bytes.
-double* align(std::vector<double>& numbers) {
+double* align_to_line(std::vector<double>& numbers) {
   const auto address = reinterpret_cast<std::uintptr_t>(numbers.data());
   return numbers.data() + (64 - address % 64) % 64 / sizeof(double);
 }
-
-bool is_power_of_two(double x) { return (std::bit_cast<std::uint64_t>(x) & 0xf'ffff'ffff'ffffull) == 0; }
-
-}  // namespace
 
 bool needs_formula_series(const Scene& scene) {
   return std::any_of(scene.torques().begin(), scene.torques().end(), [](const AnyTorque& torque) {
@@ -51,15 +44,17 @@ bool needs_formula_series(const Scene& scene) {
   });
 }
 
-FormulaSeries::FormulaSeries(const Scene& scene, bool) : frame_(drop_torques(scene), true) {
+FormulaSeries::FormulaSeries(const Scene& scene, bool) : FormulaSeries(scene, nullptr) {}
+
+FormulaSeries::FormulaSeries(const Scene& scene, std::shared_ptr<const formula::Table> table)
+    : frame_(drop_torques(scene), true), table_(std::move(table)) {
   states_ = list_states(scene.torques());
   const std::vector<double> starts = formula::list_values(states_);
   if (starts.size() > most_width - ode::series_width)
     throw InvalidInput("torques", "formulas with at most 56 numbers of states", std::to_string(starts.size()));
   int end = ode::series_width;
   for (const formula::Input& state : states_) ends_.push_back(end += static_cast<int>(state.values.size()));
-  const formula::Program system = make_system(scene);
-  table_ = std::make_shared<const formula::Table>(formula::Tape(system));
+  if (!table_) table_ = std::make_shared<const formula::Table>(formula::Tape(make_body_system(scene, frame_, states_)));
   start_.assign(static_cast<std::size_t>(width()), 0.0);
   std::copy_n(frame_.start(), ode::series_width, start_.begin());
   std::copy(starts.begin(), starts.end(), start_.begin() + ode::series_width);
@@ -67,53 +62,18 @@ FormulaSeries::FormulaSeries(const Scene& scene, bool) : frame_(drop_torques(sce
   workspace_.resize(table_->workspace_size(ode::most_series_order) + 8);
 }
 
-/// Euler's equations in the frame's variables, with the torques as accelerations there.
-formula::Program FormulaSeries::make_system(const Scene& scene) {
+formula::Program make_body_system(const Scene& scene, const BodySeries& frame,
+                                  const std::vector<formula::Input>& states) {
   formula::Program made;
   Graph& graph = made.graph;
-  const SeriesTerms& terms = frame_.terms();
+  const SeriesTerms& terms = frame.terms();
   const bool plain = terms.variables == RateVariables::plain;
   const Vec<Expr, 3> r = formula::list_states<3>(graph, formula::first_rate);
   const Vec<Expr, 4> q_WP = formula::list_states<4>(graph, formula::first_attitude);
-  const Matrix3d& R_BP = frame_.axes();
-  const Vector3d& I = frame_.moments();
   const double half_over_k = terms.to_rates[0];
   const Vec<Expr, 3> w_P = plain ? r : Vec<Expr, 3>{{(r[1] - r[0]) * half_over_k, r[2], (r[0] + r[1]) * 0.5}};
-  const bool rotated = frame_.is_rotated();
-  const Vec<Expr, 3> w_B = rotated ? formula::apply_matrix(R_BP, w_P) : w_P;
-  const Vec<Expr, 4> q_WB = rotated ? multiply(q_WP, frame_.from_axes()) : q_WP;
-
-  std::vector<Form> body;
-  for (const Expr& rate : w_B.components) body.push_back(rate.form());
-  for (const Expr& part : q_WB.components) body.push_back(part.form());
-  Vec<Expr, 3> tau_B;
-  std::vector<std::optional<Form>> rates(formula::list_values(states_).size());
-  for (std::size_t k = 0; k < scene.torques().size(); ++k) {
-    const formula::Program law = make_law(scene.torques()[k], scene.inertia_B().matrix());
-    std::vector<Form> given = body;
-    std::vector<std::size_t> places;   // of the law's states among all
-    for (const formula::Input& state : law.states) {
-      const formula::Place place = formula::find_place(states_, state.name);
-      for (int i = 0; i < place.count; ++i) {
-        places.push_back(static_cast<std::size_t>(place.first + i));
-        given.push_back(graph.state(formula::first_extra + place.first + i));
-      }
-    }
-    const std::vector<Form> outputs = formula::embed(law, graph, given, rotated ? &R_BP : nullptr);
-    for (std::size_t i = 0; i < 3; ++i) tau_B[i] = tau_B[i] + Expr(graph, outputs[i]);
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      std::optional<Form>& rate = rates[places[i]];
-      if (rate && *rate != outputs[3 + i])
-        throw InvalidInput("torques[" + std::to_string(k) + "].states", "with the rates that the torques before it give",
-                           "another rate", "name states of different torques differently");
-      rate = outputs[3 + i];
-    }
-  }
-  Vec<Expr, 3> tau_P = rotated ? formula::apply_matrix(Matrix3d(R_BP.transpose()), tau_B) : tau_B;
-  if (const Vector3d h_P = R_BP.transpose() * scene.rotor_momentum(); !h_P.isZero(0.0))
-    tau_P = tau_P + cross(formula::make_vector<Expr>(h_P), w_P);
-  Vec<Expr, 3> a;
-  for (int i = 0; i < 3; ++i) a[static_cast<std::size_t>(i)] = tau_P[static_cast<std::size_t>(i)] / I[i];
+  std::vector<Form> rates;
+  const Vec<Expr, 3> a = BodyLaws(graph, frame, w_P, q_WP, states).accelerate(scene, rates);
 
   Vec<Expr, 3> change;
   const double* product = terms.product;
@@ -127,7 +87,7 @@ formula::Program FormulaSeries::make_system(const Scene& scene) {
   for (const Expr& rate : change.components) made.outputs.push_back(rate.form());
   const Vec<Expr, 4> turn = formula::multiply_pure(q_WP, w_P);
   for (const Expr& rate : turn.components) made.outputs.push_back((rate * 0.5).form());
-  for (std::optional<Form>& rate : rates) made.outputs.push_back(*std::move(rate));
+  for (Form& rate : rates) made.outputs.push_back(std::move(rate));
   if (!plain)
     for (const Expr& rate : w_P.components) made.rates.push_back(rate.form());
   return formula::rewrite(made);
@@ -186,11 +146,11 @@ void FormulaSeries::measure_error(const double* y, const double* error, double* 
   }
 }
 
-void FormulaSeries::compute_series(DD t, double unit, const double* y, const double*, int order, double* rows) const {
+void FormulaSeries::expand(DD t, double unit, const double* y, int order, double* rows, double* extras) const {
   double states[most_width];
   std::copy_n(y, 3, states);
   std::copy_n(y + 4, width() - 4, states + 3);
-  table_->compute_series(simd_level(), t, unit, states, order, rows, nullptr, align(workspace_));
+  table_->compute_series(simd_level(), t, unit, states, order, rows, extras, align_to_line(workspace_));
 }
 
 void FormulaSeries::compute_sizes(const double* row, double* sizes) const {

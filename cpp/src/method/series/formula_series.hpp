@@ -14,6 +14,17 @@ namespace polhode {
 /// Whether a scene has a torque that only formula::Table expands.
 bool needs_formula_series(const Scene& scene);
 
+/// The same scene without torques.
+Scene drop_torques(const Scene& scene);
+
+/// Where numbers of memory begin at a boundary of 64 bytes, of which eight numbers are kept free.
+double* align_to_line(std::vector<double>& numbers);
+
+/// Euler's equations in the variables of a frame, with the torques as accelerations there.
+/// @param states  those of the torques
+formula::Program make_body_system(const Scene& scene, const BodySeries& frame,
+                                  const std::vector<formula::Input>& states);
+
 /// A body under torques that are formulas, as an ode::WideProblem. The equations of the whole body are one table, in the
 /// variables of a BodySeries without torques: rates in principal axes or separatrix variables, and q_WP. The states of
 /// the formulas follow, eight numbers a row's octet.
@@ -30,7 +41,10 @@ class FormulaSeries {
 
   /// @param attitude  is integrated in any case
   explicit FormulaSeries(const Scene& scene, bool attitude = true);
+  /// @param table  of make_body_system()
+  FormulaSeries(const Scene& scene, std::shared_ptr<const formula::Table> table);
 
+  const BodySeries& frame() const { return frame_; }
   int width() const { return table_->width(); }
   int count_blocks() const { return 2 + static_cast<int>(ends_.size()); }
   const double* start() const { return start_.data(); }
@@ -51,15 +65,17 @@ class FormulaSeries {
   /// As BodySeries does; the error of a state is relative to its largest size in the run so far.
   void measure_error(const double* y, const double* error, double* out) const;
 
-  void compute_series(math::DD t, double unit, const double* y, const double* carry, int order, double* rows) const;
+  void compute_series(math::DD t, double unit, const double* y, const double*, int order, double* rows) const {
+    expand(t, unit, y, order, rows, nullptr);
+  }
+  /// The same with the rows of the table's extras, aligned to 64 bytes, or null.
+  void expand(math::DD t, double unit, const double* y, int order, double* rows, double* extras) const;
   void compute_sizes(const double* row, double* sizes) const;
   double compute_time_scale(math::DD t, const double* y) const;
   void start_carry(double* carry) const;
   void correct(math::DD t, long step, double* y, double* carry) const;
 
  private:
-  formula::Program make_system(const Scene& scene);
-
   BodySeries frame_;
   std::vector<formula::Input> states_;
   std::vector<int> ends_;          ///< columns behind each of them

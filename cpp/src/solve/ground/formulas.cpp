@@ -112,7 +112,7 @@ std::optional<std::vector<KnownTorque>> recognise(const Formula& formula, const 
 
 AnyTorque with_window(const AnyTorque& like, LastingTorque torque) {
   if (const auto* during = std::get_if<During>(&like)) return During(std::move(torque), during->windows());
-  return std::visit([](const auto& one) { return AnyTorque(one); }, torque);
+  return to_any(torque);
 }
 
 /// Whether a recognition holds for every inertia: of a sum without multiples of a tensor, or of what is no such sum.
@@ -149,29 +149,29 @@ Scene resolve_formulas(const Scene& scene, AsCustom as_custom, Recognitions& rec
   const auto& given = scene.torques();
   if (std::none_of(given.begin(), given.end(), [](const auto& torque) { return find_formula(torque) != nullptr; }))
     return scene;
-  SceneParts parts = scene.parts();
+  std::vector<AnyTorque> torques = given;
   for (std::size_t i = 0; i < given.size(); ++i) {
     const AnyTorque torque = given[i];
     const Formula* formula = find_formula(torque);
     if (formula == nullptr) continue;
     const auto& known = recognitions.find(*formula, scene);
     if (!known) {
-      if (as_custom == AsCustom::yes && formula->has_switches()) parts.torques[i] = with_window(torque, formula->as_custom());
+      if (as_custom == AsCustom::yes && formula->has_switches()) torques[i] = with_window(torque, formula->as_custom());
       continue;
     }
     std::string names;
     for (std::size_t k = 0; k < known->size(); ++k) {
       const AnyTorque part = with_window(torque, make_torque((*known)[k]));
-      if (k == 0) parts.torques[i] = part;
-      else parts.torques.push_back(part);
+      if (k == 0) torques[i] = part;
+      else torques.push_back(part);
       names.append(k > 0 ? " and " : "").append(show((*known)[k]));
     }
-    if (known->empty()) parts.torques[i] = with_window(torque, torques::Constant(Vector3d::Zero()));
+    if (known->empty()) torques[i] = with_window(torque, torques::Constant(Vector3d::Zero()));
     if (recognised != nullptr)
       recognised->push_back("The formula of torques[" + std::to_string(i) + "] is " +
                             (known->empty() ? "zero in every state." : names + "."));
   }
-  return Scene(std::move(parts));
+  return scene.with_torques(std::move(torques));
 }
 
 }  // namespace polhode

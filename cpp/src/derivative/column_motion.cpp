@@ -1,0 +1,68 @@
+#include "derivative/column_motion.hpp"
+
+#include "derivative/column_series.hpp"
+#include "derivative/formula_columns.hpp"
+#include "polhode/ode/taylor.hpp"
+
+namespace polhode {
+namespace {
+
+/// Taylor steps of a state, and of the columns with it.
+template <class Series>
+class SeriesMotion final : public ColumnMotion {
+ public:
+  template <class... Given>
+  SeriesMotion(double t0, double t_end, const ode::Tolerances& tolerances, Given&&... given)
+      : series_(std::forward<Given>(given)...), stepper_(series_, t0, series_.body().start(), t_end, tolerances) {}
+
+  double t() const override { return stepper_.t(); }
+  ode::StepResult advance(double t_end) override {
+    const ode::StepResult result = stepper_.advance(t_end);
+    if (result == ode::StepResult::accepted) series_.columns().advance(stepper_.step());
+    return result;
+  }
+  void sample(const double* times, std::size_t n, double* omega, double* attitude, double* columns) override {
+    states_.resize(ode::most_series_width * n), places_.resize(n);
+    stepper_.interpolate_many(times, n, states_.data());
+    series_.body().unpack(states_.data(), n, omega, attitude);
+    for (std::size_t i = 0; i < n; ++i) places_[i] = stepper_.place(times[i]);
+    series_.columns().evaluate(places_.data(), n, columns);
+  }
+  void end(double* omega, double* attitude, std::vector<double>& columns) override {
+    series_.body().unpack(stepper_.y(), 1, omega, attitude);
+    columns = series_.columns().columns();
+  }
+
+ private:
+  /// Times of the last step in units of its series.
+  class Stepper final : public ode::Taylor::Stepper<Series> {
+    using Base = ode::Taylor::Stepper<Series>;
+
+   public:
+    using Base::Base;
+    double step() const {
+      return ((this->time_.hi - this->time_old_.hi) + (this->time_.lo - this->time_old_.lo)) / this->unit_old_;
+    }
+    double place(double t) const { return ((t - this->time_old_.hi) - this->time_old_.lo) / this->unit_old_; }
+  };
+
+  Series series_;
+  Stepper stepper_;
+  std::vector<double> states_, places_;
+};
+
+}  // namespace
+
+std::unique_ptr<ColumnMotion> make_column_motion(const Scene& piece, const std::vector<ColumnCause>& causes,
+                                                 const std::vector<double>& columns, double t_end,
+                                                 const ode::Tolerances& tolerances,
+                                                 std::shared_ptr<const ColumnEquations>& equations) {
+  if (!needs_formula_series(piece))
+    return std::make_unique<SeriesMotion<ColumnSeries>>(piece.t0(), t_end, tolerances, piece, causes, columns);
+  const BodySeries frame(drop_torques(piece), true);
+  if (!equations || equations->variables != frame.terms().variables) equations = make_column_equations(piece, causes);
+  return std::make_unique<SeriesMotion<FormulaColumns>>(piece.t0(), t_end, tolerances, piece, equations, causes.size(),
+                                                        columns);
+}
+
+}  // namespace polhode

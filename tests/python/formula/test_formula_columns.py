@@ -1,0 +1,196 @@
+"""Derivatives of motions under formulas: against central differences of 26 digits, and against torques of the list."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import polhode as ph
+from polhode.formula import norm, to_body
+from polhode.torques import (AngularDamping, Constant, Custom, Damping, During, Formula, Gravity, GravityGradient)
+
+TRUTH = json.loads((Path(__file__).parents[2] / "reference" / "formula_columns.json").read_text())
+START, TIMES = TRUTH["start"], np.array(TRUTH["times"])
+Q = np.array(START["attitude"]) / np.linalg.norm(START["attitude"])
+
+
+def pd(t, omega, attitude, p):
+    return -p.kp * attitude[:3] * attitude[3] - p.kd * omega
+
+
+def spring(t, omega, attitude, p):
+    aim = to_body(attitude, (0, 1, 0))
+    across = np.cross((0, 0, 1), aim)
+    sine = norm(across)
+    return p.k * np.arctan2(sine, aim[2]) / sine * across - p.c * omega
+
+
+def mixture(t, omega, attitude, p):
+    size = p.a + omega[0] ** 2 + omega[1] ** 2
+    return np.array([0.2 * np.exp(-p.b * t) * np.sin(omega[2]) - 0.1 * omega[0],
+                     0.1 * np.log(size) * attitude[0] - 0.05 * omega[1] ** 3,
+                     0.3 * size**-1.3 * np.cos(0.7 * t)])
+
+
+def gradient(t, omega, attitude, p):
+    u = to_body(attitude, (np.cos(p.n * t + 0.3), np.sin(p.n * t + 0.3), 0))
+    return 3 * p.n**2 * np.cross(u, u * np.array((1.0, 1.5, 2.25)))
+
+
+def integral(t, omega, attitude, p, s):
+    return -p.kp * attitude[:3] * attitude[3] - 0.9 * omega - p.ki * s.s, {"s": attitude[:3] * attitude[3]}
+
+
+LAWS = {
+    "pd": (pd, {"kp": 0.7, "kd": (0.5, 0.5, 0.4)}),
+    "spring": (spring, {"k": 0.6, "c": 0.05}),
+    "mixture": (mixture, {"a": 1.5, "b": 0.1}),
+    "gradient": (gradient, {"n": 0.4}),
+    "integral": (integral, {"kp": 0.7, "ki": 0.1}),
+}
+
+
+def make(law, **more):
+    function, parameters = LAWS[law]
+    states = {"s": (0, 0, 0)} if law == "integral" else None
+    return Formula(function, states=states, **parameters, **more)
+
+
+def scene(torques, inertia=(1, 2, 2.5), **more):
+    return ph.Scene(**dict(dict(inertia=np.array(inertia), omega=START["omega"], attitude=Q, torques=torques,
+                                times=TIMES), **more))
+
+
+def sizes(rows, scale):
+    """The larger of abs(d omega) / scale and the angle, (times, columns)."""
+    return np.maximum(np.linalg.norm(rows[..., :3], axis=-1) / scale, np.linalg.norm(rows[..., 3:], axis=-1))
+
+
+def stacked(s):
+    return np.moveaxis(np.concatenate([s.d_omega, s.d_attitude], axis=1), 1, 2)   # (times, columns, 6)
+
+
+@pytest.mark.parametrize("case", TRUTH["cases"], ids=lambda case: f"{case['law']}-{case['inertia'][0][1]}")
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-6, 1e-9, 1e-12])
+def test_columns_have_the_error_that_they_state(case, accuracy):
+    law = case["law"]
+    own = tuple(f"formula.{name}" for name in LAWS[law][1])
+    groups = ("omega", "attitude", "inertia", *own, "axes")
+    s = ph.solve(scene([make(law)], case["inertia"]), accuracy, sensitivity=groups).sensitivity
+    assert [name.removeprefix("torques.0.") for name in s.columns] == list(case["columns"])
+    truth = np.moveaxis(np.array(list(case["columns"].values()), dtype=float), 0, 1)
+    scale = max(np.linalg.norm(START["omega"]), np.linalg.norm(s.omega, axis=1).max())
+    found = (sizes(stacked(s) - truth, scale) / sizes(truth, scale)).max(axis=0)
+    assert (found <= s.error).all(), found / s.error
+    assert (s.error <= 1.01 * accuracy + 1e-13).all()
+
+
+KNOWN = {
+    "gravity": (Gravity(2.0, (0.3, 0.2, 0.5)), "cross(weight * arm, to_body([0, 0, -1]))",
+                dict(weight=2.0, arm=(0.3, 0.2, 0.5)), ("weight", "arm")),
+    "space": (Constant((0.1, -0.2, 0.3), "space"), "to_body(torque)", dict(torque=(0.1, -0.2, 0.3)), ("torque",)),
+    "body": (Constant((0.1, -0.2, 0.3)), "torque", dict(torque=(0.1, -0.2, 0.3)), ("torque",)),
+    "angular": (Damping(0.2 * np.diag((1, 2, 2.5))), "-rate * [1, 2, 2.5] * omega", dict(rate=0.2), ()),
+}
+
+
+@pytest.mark.parametrize("recognise", [True, False])
+@pytest.mark.parametrize("name", KNOWN)
+@pytest.mark.parametrize("windows", [None, [(-0.5, 1.25), (2, 9)]])
+def test_a_formula_has_the_columns_of_the_torque_that_it_is(recognise, name, windows):
+    torque, text, parameters, own = KNOWN[name]
+    formula = Formula(text=text, recognise=recognise, **parameters)
+    if windows:
+        torque, formula = During(torque, windows), During(formula, windows)
+    groups = ["omega", "attitude", "inertia", "axes", *(f"torques.0.{field}" for field in own)]
+    groups += ["torques.0.windows"] if windows else []
+    rotors = [ph.Rotor((0, 0, 1), momentum=0.3, during=[(0, 2.5)]), ph.Rotor((1, 0, 0), inertia=0.2, speed=3, free=True)]
+    for more in (dict(), dict(rotors=rotors)):
+        a, b = (ph.solve(scene([one], **more), 1e-10, sensitivity=groups).sensitivity for one in (torque, formula))
+        assert a.columns == b.columns
+        np.testing.assert_allclose(b.d_omega, a.d_omega, atol=1e-9 * np.abs(a.d_omega).max())
+        np.testing.assert_allclose(b.d_attitude, a.d_attitude, atol=1e-9 * np.abs(a.d_attitude).max())
+
+
+def test_the_inertia_does_not_change_the_numbers_of_a_formula():
+    text = "-rate * [1, 2, 2.5] * omega"   # AngularDamping while the moments are 1, 2, 2.5
+    own = scene([Formula(text=text, rate=0.2)])
+    assert "AngularDamping" in " ".join(ph.plan(own).reasons)
+    d = ph.solve(own, 1e-9, sensitivity="inertia").sensitivity.d_omega
+    fixed = ph.solve(scene([Damping(0.2 * np.diag((1, 2, 2.5)))]), 1e-9, sensitivity="inertia").sensitivity.d_omega
+    grown = ph.solve(scene([AngularDamping(0.2)]), 1e-9, sensitivity="inertia").sensitivity.d_omega
+    np.testing.assert_allclose(d, fixed, atol=1e-8)
+    assert np.abs(d - grown).max() > 1e-3
+
+
+def test_potentials_sums_and_switches():
+    both = [Formula(potential="weight * to_space(arm).z", weight=2.0, arm=(0.3, 0.2, 0.5)), make("pd")]
+    same = [Gravity(2.0, (0.3, 0.2, 0.5)), make("pd", recognise=False)]
+    groups = ("omega", "torques.0.weight", "torques.0.arm", "torques.1.kp", "torques.1.kd")
+    a, b = (ph.solve(scene(torques), 1e-10, sensitivity=groups).sensitivity for torques in (both, same))
+    np.testing.assert_allclose(a.d_omega, b.d_omega, atol=1e-9)
+    assert a.columns == b.columns and a.columns[-4:] == ("torques.1.kp", *(f"torques.1.kd_{c}" for c in "xyz"))
+
+
+def test_every_instruction_set_has_right_columns():
+    code = ("import polhode as ph, sys, numpy as np; sys.path.insert(0, %r); import test_formula_columns as t; "
+            "s = ph.solve(t.scene([t.make('spring')], [[1.2, .2, -.1], [.2, 2, .3], [-.1, .3, 1.7]]), 1e-10, "
+            "sensitivity=('omega', 'inertia', 'formula.k')).sensitivity; "
+            "sys.stdout.buffer.write(np.concatenate([s.d_omega, s.d_attitude]).tobytes())" % str(Path(__file__).parent))
+    found = {}
+    for level in ("baseline", "avx2", "avx512"):
+        done = subprocess.run([sys.executable, "-c", code], env=dict(os.environ, POLHODE_SIMD=level), capture_output=True)
+        if done.returncode == 0:
+            found[level] = np.frombuffer(done.stdout)
+    for level in found:
+        np.testing.assert_allclose(found[level], found["baseline"], rtol=1e-9, atol=1e-10)
+    if {"avx2", "avx512"} <= set(found):
+        np.testing.assert_array_equal(found["avx2"], found["avx512"])
+
+
+def test_parameters_of_a_formula_are_fitted():
+    t = np.linspace(0.1, 20, 120)
+    rng = np.random.default_rng(11)
+    truth = scene([make("pd")], times=t, omega=(0.3, 1.0, -0.2))
+    motion = ph.solve(truth, 1e-10)
+    data = [ph.measured.Rates(t, motion.omega + 1e-3 * rng.normal(size=(120, 3)), 1e-3),
+            ph.measured.Attitudes(t, motion.attitude, 1e-3)]
+    wrong = truth.replace(torques=[Formula(pd, kp=0.5, kd=(0.4, 0.6, 0.5))])
+    result = ph.fit(data, wrong, fit=("omega", "torques.0.kp", "formula.kd"), seed=1)
+    assert result.success
+    found = result.scene.torques[0].parameters
+    error = result.stderr[result.problem.slices["torques.0.kp"]][0]
+    assert abs(found["kp"] - 0.7) < 5 * error < 0.02
+    assert np.abs(np.subtract(found["kd"], (0.5, 0.5, 0.4))).max() < 0.02
+    assert isinstance(result.scene.torques[0], Formula) and result.scene.torques[0].text == make("pd").text
+
+
+def test_numbers_are_replaced_by_name():
+    law = make("pd")
+    other = law.with_parameters(kd=(1, 2, 3))
+    assert other.parameters == {"kd": (1.0, 2.0, 3.0), "kp": 0.7} and other.text == law.text and law != other
+    assert law.with_parameters() == law and other.with_parameters(kd=(0.5, 0.5, 0.4)) == law
+    for wrong, words in ((dict(kz=1), "kz"), (dict(kd=1), "3 numbers"), (dict(kp=(1, 2)), "1 number"),
+                         (dict(kp=np.nan), "kp"), (dict(kp="a"), "kp")):
+        with pytest.raises(ph.InvalidInput, match=words):
+            law.with_parameters(**wrong)
+
+
+def test_lyapunov_exponents_of_formulas():
+    gravity, text = Gravity(1.0, (0.1, 0.2, 0.5)), "cross(m, to_body([0, 0, -1]))"
+    own = Formula(text=text, recognise=False, m=(0.1, 0.2, 0.5))
+    a, b = (ph.lyapunov(scene([torque], times=[60.0])) for torque in (gravity, own))
+    assert abs(a.exponent - b.exponent) < 1e-6 * max(1, abs(a.exponent))
+
+
+def test_what_has_no_columns_is_refused_in_words():
+    with pytest.raises(ph.InvalidInput, match="kp.*kd|kd.*kp"):
+        ph.solve(scene([make("pd")]), 1e-6, sensitivity="torques.0.ki")
+    with pytest.raises(ph.InvalidInput, match="formula"):
+        ph.solve(scene([make("pd"), Custom(lambda t, w, q: (0, 0, 0))]), 1e-6, sensitivity="omega")
+    with pytest.raises(ph.InvalidInput, match="of Formula, which has kd, kp"):
+        ph.fit(ph.measured.Rates(TIMES, np.ones((2, 3)), 1), scene([make("pd")]), fit=("torques.0.ki",))
