@@ -19,7 +19,7 @@ TurnSide to_turn_side(const std::string& side) {
 
 /// A motion, its derivatives by column, the names and errors of the columns, and the cost.
 struct FoundSensitivity {
-  Array omega, attitude, d_omega, d_attitude;
+  Array omega, attitude, d_omega, d_attitude, d_states;
   std::vector<std::string> columns;
   py::object error;   // None without a certificate
   long steps;
@@ -40,6 +40,7 @@ FoundSensitivity sensitivity_of(const Scene& scene, const std::vector<std::strin
           .attitude = Array({n, py::ssize_t{4}}, found.attitude.data()),
           .d_omega = Array({n, py::ssize_t{3}, width}, found.d_omega.data()),
           .d_attitude = Array({n, py::ssize_t{3}, width}, found.d_attitude.data()),
+          .d_states = Array({n, static_cast<py::ssize_t>(scene.count_states()), width}, found.d_states.data()),
           .columns = found.columns,
           .error = certify ? py::object(Array(width, found.error.data())) : py::none(),
           .steps = found.steps,
@@ -54,6 +55,7 @@ void bind_solve_sensitivity(py::module_& m) {
       .def_readonly("attitude", &FoundSensitivity::attitude)
       .def_readonly("d_omega", &FoundSensitivity::d_omega)
       .def_readonly("d_attitude", &FoundSensitivity::d_attitude)
+      .def_readonly("d_states", &FoundSensitivity::d_states)
       .def_readonly("columns", &FoundSensitivity::columns)
       .def_readonly("error", &FoundSensitivity::error)
       .def_readonly("steps", &FoundSensitivity::steps)

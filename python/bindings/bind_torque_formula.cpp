@@ -272,23 +272,41 @@ InvalidInput
     For a name that it does not have, or another shape.
 )doc";
 
-Formula replace_parameters(const Formula& formula, const py::kwargs& numbers) {
-  std::vector<double> values = formula::list_values(formula.parameters());
-  for (const Input& given : to_inputs(numbers, "with_parameters.")) {
-    const formula::Place place = formula::find_place(formula.parameters(), given.name);
-    const std::string where = "with_parameters." + given.name;
+/// The numbers of inputs, some of them replaced by name.
+std::vector<double> replace(const std::vector<Input>& inputs, const py::kwargs& numbers, const std::string& prefix) {
+  std::vector<double> values = formula::list_values(inputs);
+  for (const Input& given : to_inputs(numbers, prefix)) {
+    const formula::Place place = formula::find_place(inputs, given.name);
+    const std::string where = prefix + given.name;
     if (place.first < 0) {
       std::string known;
-      for (const Input& one : formula.parameters()) known += (known.empty() ? "" : ", ") + one.name;
-      throw InvalidInput(where, "one of the formula's parameters", known.empty() ? "a formula without any" : known);
+      for (const Input& one : inputs) known += (known.empty() ? "" : ", ") + one.name;
+      throw InvalidInput(where, "a name that the formula has", known.empty() ? "a formula without any" : known);
     }
     if (std::ssize(given.values) != place.count)
       throw InvalidInput(where, std::to_string(place.count) + (place.count == 1 ? " number" : " numbers"),
                          std::to_string(given.values.size()));
     std::copy(given.values.begin(), given.values.end(), values.begin() + place.first);
   }
-  return formula.with_parameters(values);
+  return values;
 }
+
+constexpr const char* with_starts_doc = R"doc(Return the formula with other starts of some of its states.
+
+Parameters
+----------
+**states : float or array_like, shape (n,)
+    Numbers by the names of its states, of the same shapes.
+
+Returns
+-------
+Formula
+
+Raises
+------
+InvalidInput
+    For a name that it does not have, or another shape.
+)doc";
 
 }  // namespace
 
@@ -308,7 +326,12 @@ void bind_torque_formula(py::module_& m) {
                              "dict: names for shared parts of the text.");
   type.def_property_readonly("parameters", [](const Formula& formula) { return from_inputs(formula.parameters()); },
                              "dict: the named numbers, sorted by name.");
-  type.def("with_parameters", &replace_parameters, with_parameters_doc);
+  type.def("with_parameters", [](const Formula& formula, const py::kwargs& numbers) {
+    return formula.with_parameters(replace(formula.parameters(), numbers, "with_parameters."));
+  }, with_parameters_doc);
+  type.def("with_starts", [](const Formula& formula, const py::kwargs& numbers) {
+    return formula.with_starts(replace(formula.states(), numbers, "with_starts."));
+  }, with_starts_doc);
   type.def_property_readonly("recognise", &Formula::recognise, "bool: whether it may be replaced.");
   bind_traits(type);
   bind_value(type);

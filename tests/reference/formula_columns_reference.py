@@ -54,11 +54,10 @@ LAWS = {"pd": (pd, {"kp": f(0.7), "kd": vector(0.5, 0.5, 0.4)}), "spring": (spri
 CASES = [("pd", BLOCK), ("pd", FULL), ("spring", FULL), ("mixture", BLOCK), ("gradient", FULL), ("integral", BLOCK)]
 
 
-def run(law, inertia, omega, attitude, parameters):
+def run(law, inertia, omega, attitude, parameters, states):
     """Rows of w and q at the times."""
     function, inverse = LAWS[law][0], mp.inverse(inertia)
     I = [[inertia[i, j] for j in range(3)] for i in range(3)]
-    states = vector(0, 0, 0) if law == "integral" else []
 
     def given(t, w, q, I, *s):
         return function(t, w, q, I, parameters, *s)
@@ -95,6 +94,7 @@ def moved(law, inertia, column, by):
     attitude = [x / size for x in attitude]
     tensor = mp.matrix([[f(x) for x in row] for row in inertia])
     parameters = {name: list(value) if isinstance(value, list) else value for name, value in LAWS[law][1].items()}
+    states = vector(0, 0, 0) if law == "integral" else []
     what, _, which = column.rpartition("_")
     if what == "omega":
         omega["xyz".index(which)] += by
@@ -112,22 +112,25 @@ def moved(law, inertia, column, by):
             x = [f(int(i == k)) for i in range(3)]
             E = mp.expm(by * mp.matrix([[0, -x[2], x[1]], [x[2], 0, -x[0]], [-x[1], x[0], 0]]))
             tensor = E * tensor * E.T
+    elif what == "states.s":
+        states["xyz".index(which)] += by
     elif column in parameters:
         parameters[column] += by
     else:
         parameters[what]["xyz".index(which)] += by
-    return run(law, tensor, omega, attitude, parameters)
+    return run(law, tensor, omega, attitude, parameters, states)
 
 
 def differences(job):
-    """d omega and the small rotation in space at each time."""
+    """d omega, the small rotation in space and the changes of states at each time."""
     law, inertia, column = job
     mp.mp.dps = 40
     plus, minus = moved(law, inertia, column, H), moved(law, inertia, column, -H)
     rows = []
     for a, b in zip(plus, minus):
         turn = product(a[3:7], [-x for x in b[3:6]] + [b[6]])
-        rows.append([(x - y) / (2 * H) for x, y in zip(a[:3], b[:3])] + [x / turn[3] / H for x in turn[:3]])
+        rows.append([(x - y) / (2 * H) for x, y in zip(a[:3], b[:3])] + [x / turn[3] / H for x in turn[:3]] +
+                    [(x - y) / (2 * H) for x, y in zip(a[7:], b[7:])])
     return [[mp.nstr(x, 17) for x in row] for row in rows]
 
 
@@ -135,6 +138,7 @@ def columns_of(law):
     names = [f"{group}_{c}" for group in ("omega", "attitude") for c in "xyz"] + [f"inertia_{c}" for c in "123"]
     for name, value in LAWS[law][1].items():
         names += [f"{name}_{c}" for c in "xyz"] if isinstance(value, list) else [name]
+    names += [f"states.s_{c}" for c in "xyz"] if law == "integral" else []
     return names + [f"axes_{c}" for c in "xyz"]
 
 

@@ -56,6 +56,8 @@ def torque_signatures(text: str) -> str:
         text = head + body.replace("(self, *args, **kwargs)", f"({', '.join(['self', *parameters])})",
                                    1) if parameters else text
     text = text.replace("**kwargs) -> None", "**parameters: numpy.typing.ArrayLike) -> None")   # of Formula
+    for name in ("with_parameters", "with_starts"):
+        text = text.replace(f"{name}(self, **kwargs)", f"{name}(self, **numbers: numpy.typing.ArrayLike)")
     return text.replace("import typing\n", "import numpy\nimport numpy.typing\nimport typing\n",
                         1) if "numpy." in text else text
 

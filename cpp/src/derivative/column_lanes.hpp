@@ -28,7 +28,7 @@ class ColumnLanes {
   /// The series of a group, whose rows from 1 on the caller fills.
   ColumnRows rows(std::size_t group) { return series_.data() + size_ * group; }
 
-  /// The largest size of a row of a column relative to that of its first three rows. A state is measured by itself.
+  /// The largest size of a row of a column relative to that of its first three rows. Each state is measured alone.
   /// @param rate  divides d omega, which is then comparable with the small rotation
   double measure(int row, double rate) const;
   /// Ends the step at s units of time of the last series.

@@ -1,5 +1,8 @@
 #include "derivative/column_motion.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "derivative/column_series.hpp"
 #include "derivative/formula_columns.hpp"
 #include "polhode/ode/taylor.hpp"
@@ -28,8 +31,12 @@ class SeriesMotion final : public ColumnMotion {
     for (std::size_t i = 0; i < n; ++i) places_[i] = stepper_.place(times[i]);
     series_.columns().evaluate(places_.data(), n, columns);
   }
-  void end(double* omega, double* attitude, std::vector<double>& columns) override {
-    series_.body().unpack(stepper_.y(), 1, omega, attitude);
+  void end(State& state, std::vector<double>& columns) const override {
+    double attitude[4];
+    series_.body().unpack(stepper_.y(), 1, state.omega.data(), attitude);
+    state.attitude = {attitude[0], attitude[1], attitude[2], attitude[3]};
+    std::copy_n(stepper_.y() + ode::series_width, state.states.size(), state.states.begin());
+    state.t = stepper_.t();
     columns = series_.columns().columns();
   }
 

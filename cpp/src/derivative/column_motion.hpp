@@ -21,7 +21,7 @@ class ColumnMotion {
   /// w_B (n, 3), q_WB (n, 4) and the columns (n, numbers, columns) in body axes, at times within the last step.
   virtual void sample(const double* times, std::size_t n, double* omega, double* attitude, double* columns) = 0;
   /// The same at the end of the last step.
-  virtual void end(double* omega, double* attitude, std::vector<double>& columns) = 0;
+  virtual void end(State& state, std::vector<double>& columns) const = 0;
 };
 
 /// @param columns    at the start, (numbers of a column, columns)

@@ -14,12 +14,13 @@ namespace polhode {
 using Of = SceneParameter::Of;
 using torques::Window;
 
-/// A state with its columns: d omega and the small rotation, (6, columns) in body axes.
+/// A state with its columns: d omega, the small rotation and the changes of states, (numbers, columns) in body axes.
 struct ColumnRun::Moment {
   State state;
   std::vector<double> columns;
+  std::size_t count;   ///< of columns
 
-  double& at(std::size_t row, std::size_t c) { return columns[row * (columns.size() / 6) + c]; }
+  double& at(std::size_t row, std::size_t c) { return columns[row * count + c]; }
   void add(std::size_t first_row, std::size_t c, const Vector3d& v) {
     for (int i = 0; i < 3; ++i) at(first_row + static_cast<std::size_t>(i), c) += v[i];
   }
@@ -50,36 +51,41 @@ std::vector<double> find_further_ends(const Scene& scene) {
 /// Where a run writes its samples.
 class SampleTarget {
  public:
-  SampleTarget(ColumnSamples& out, std::size_t columns) : out_(out), columns_(columns) {}
+  SampleTarget(ColumnSamples& out, std::size_t states, std::size_t columns)
+      : out_(out), states_count_(states), columns_(columns) {}
 
-  /// @param rows  (6, columns)
+  /// @param rows  (6 and the states, columns)
   void put(std::size_t sample, const double* omega, const double* attitude, const double* rows) const {
     std::copy_n(omega, 3, out_.omega.data() + 3 * sample);
     std::copy_n(attitude, 4, out_.attitude.data() + 4 * sample);
     std::copy_n(rows, 3 * columns_, out_.d_omega.data() + 3 * columns_ * sample);
     std::copy_n(rows + 3 * columns_, 3 * columns_, out_.turn.data() + 3 * columns_ * sample);
+    const std::size_t more = states_count_ * columns_;
+    std::copy_n(rows + 6 * columns_, more, out_.d_states.data() + more * sample);
   }
 
   /// Samples within the last step.
   void put(ColumnMotion& motion, const std::vector<double>& times, const std::size_t* which, std::size_t count) {
-    times_.resize(count), states_.resize(7 * count), rows_.resize(6 * columns_ * count);
+    const std::size_t numbers = (6 + states_count_) * columns_;
+    times_.resize(count), states_.resize(7 * count), rows_.resize(numbers * count);
     for (std::size_t i = 0; i < count; ++i) times_[i] = times[which[i]];
     double *omega = states_.data(), *attitude = omega + 3 * count;
     motion.sample(times_.data(), count, omega, attitude, rows_.data());
     for (std::size_t i = 0; i < count; ++i)
-      put(which[i], omega + 3 * i, attitude + 4 * i, rows_.data() + 6 * columns_ * i);
+      put(which[i], omega + 3 * i, attitude + 4 * i, rows_.data() + numbers * i);
   }
 
  private:
   ColumnSamples& out_;
-  std::size_t columns_;
+  std::size_t states_count_, columns_;
   std::vector<double> times_, states_, rows_;
 };
 
 }  // namespace
 
 ColumnRun::ColumnRun(const Scene& scene, const std::vector<SceneParameter>& parameters, TurnSide side)
-    : scene_(scene), parameters_(parameters), side_(side), pieces_(cut(scene, find_further_ends(scene))) {
+    : scene_(scene), parameters_(parameters), side_(side), pieces_(cut(scene, find_further_ends(scene))),
+      states_(static_cast<std::size_t>(scene.count_states())) {
   const Matrix3d& R_BP = scene.inertia_B().axes();
   J_inverse_ = R_BP * Matrix3d(scene.inertia_B().moments().cwiseInverse().asDiagonal()) * R_BP.transpose();
   if (scene.inertia_B().is_diagonal())
@@ -152,10 +158,11 @@ std::vector<ColumnCause> ColumnRun::find_causes(const Piece& piece, const std::v
 
 std::vector<double> ColumnRun::start_columns() const {
   const std::size_t count = parameters_.size();
-  Moment start{scene_.start(), std::vector<double>(6 * count, 0.0)};
+  Moment start{scene_.start(), std::vector<double>((6 + states_) * count, 0.0), count};
   for (std::size_t c = 0; c < count; ++c) {
     const Vector3d unit = unit_vector(parameters_[c]);
     if (parameters_[c].of == Of::omega) start.add(0, c, unit);
+    if (parameters_[c].of == Of::state) start.at(6 + parameters_[c].index, c) = 1.0;
     if (parameters_[c].of == Of::attitude)
       start.add(3, c, side_ == TurnSide::body ? unit : rotate(conjugate(scene_.attitude()), unit));
   }
@@ -169,8 +176,31 @@ Vector3d ColumnRun::accelerate(const Moment& at, const std::vector<AnyTorque>& t
   const double attitude[4] = {q.x, q.y, q.z, q.w};
   Vector3d N = -w.cross(Vector3d(J * w + h));
   const TorqueInput in{at.state.t, w.data(), attitude, J};
-  for (const AnyTorque& torque : torques) std::visit([&](const auto& one) { one.add(in, N.data()); }, torque);
+  std::vector<AnyTorque> now = torques;
+  if (states_ > 0) set_starts(now, at.state.states);
+  for (const AnyTorque& torque : now) std::visit([&](const auto& one) { one.add(in, N.data()); }, torque);
   return divide(N);
+}
+
+std::vector<double> ColumnRun::find_state_rates(const Moment& at, const std::vector<AnyTorque>& torques) const {
+  std::vector<double> rates(states_);
+  std::vector<AnyTorque> now = torques;
+  if (states_ > 0) set_starts(now, at.state.states);
+  const Quat& q = at.state.attitude;
+  const double attitude[4] = {q.x, q.y, q.z, q.w};
+  for (const AnyTorque& torque : now) {
+    const auto* formula = std::get_if<torques::Formula>(&torque);
+    if (formula == nullptr || formula->states().empty()) continue;
+    const std::vector<double> outputs =
+        formula->compute({at.state.t, at.state.omega.data(), attitude, scene_.inertia_B().matrix()},
+                         formula::list_values(formula->states()));
+    std::size_t next = 3;
+    for (const formula::Input& state : formula->states()) {
+      const formula::Place place = formula::find_place(scene_.states(), state.name);
+      for (int i = 0; i < place.count; ++i) rates[static_cast<std::size_t>(place.first + i)] = outputs[next++];
+    }
+  }
+  return rates;
 }
 
 /// Carries a state and its columns over a time at which torques or rotors start or stop. With phi the jump of the
@@ -182,7 +212,7 @@ void ColumnRun::cross(const Piece& before, const std::vector<bool>& from, const 
     if (from[k]) h_from += momenta_[k];
     if (to[k]) h_to += momenta_[k];
   }
-  Moment after{at.state, {}};
+  Moment after{at.state, {}, 0};
   after.state.omega += compute_rate_jump(scene_.inertia_B(), h_to - h_from);
   const double sign = forward ? 1.0 : -1.0, t = at.state.t;
   for (std::size_t c = 0; c < parameters_.size(); ++c) {
@@ -201,6 +231,9 @@ void ColumnRun::cross(const Piece& before, const std::vector<bool>& from, const 
       if ((parameter.component == 0 ? window.begin : window.end) != t) continue;
       at.add(0, c, accelerate(at, before.torques, h_from) - accelerate(after, before.torques, h_to));
       at.add(3, c, at.state.omega - after.state.omega);
+      const std::vector<double> from_rates = find_state_rates(at, before.torques),
+                                to_rates = find_state_rates(after, before.torques);
+      for (std::size_t i = 0; i < states_; ++i) at.at(6 + i, c) += from_rates[i] - to_rates[i];
     }
   }
   at.state.omega = after.state.omega;
@@ -211,6 +244,7 @@ ColumnSamples ColumnRun::run(double rtol, long max_steps, std::size_t most) cons
   ColumnSamples out;
   out.omega.resize(3 * samples), out.attitude.resize(4 * samples);
   out.d_omega.resize(3 * columns * samples), out.turn.resize(3 * columns * samples);
+  out.d_states.resize(states_ * columns * samples);
   SampleOrder order(scene_.times(), scene_.t0());
   for (auto* direction : {&order.forward, &order.backward}) {
     if (most == 0 || direction->size() <= most) continue;
@@ -230,9 +264,9 @@ ColumnSamples ColumnRun::run(double rtol, long max_steps, std::size_t most) cons
 void ColumnRun::follow(const std::vector<Piece>& pieces, const std::vector<std::size_t>& order, double rtol,
                        long max_steps, ColumnSamples& out) const {
   if (order.empty()) return;
-  SampleTarget target(out, parameters_.size());
+  SampleTarget target(out, states_, parameters_.size());
   const bool forward = pieces.back().end >= scene_.t0();
-  Moment at{scene_.start(), start_columns()};
+  Moment at{scene_.start(), start_columns(), parameters_.size()};
   std::vector<bool> rotating;
   for (const Rotor& rotor : scene_.rotors()) rotating.push_back(rotor.rotates_at(scene_.t0()));
   std::size_t next = 0;
@@ -269,10 +303,7 @@ void ColumnRun::follow(const std::vector<Piece>& pieces, const std::vector<std::
       target.put(*motion, scene_.times(), order.data() + next, count);
       next += count;
     }
-    double attitude[4];
-    motion->end(at.state.omega.data(), attitude, at.columns);
-    at.state.attitude = {attitude[0], attitude[1], attitude[2], attitude[3]};
-    at.state.t = piece.end;
+    motion->end(at.state, at.columns);
     if (!last) continue;
     std::vector<bool> then;
     for (const Rotor& rotor : scene_.rotors()) then.push_back(rotor.rotates_at(at.state.t));

@@ -15,6 +15,7 @@ namespace polhode {
 struct ColumnSamples {
   std::vector<double> omega, attitude;   ///< (n, 3) and (n, 4)
   std::vector<double> d_omega, turn;     ///< (n, 3, columns) in body axes
+  std::vector<double> d_states;          ///< (n, states, columns)
   std::vector<std::size_t> samples;      ///< those that were computed
   long steps = 0;
 };
@@ -41,6 +42,7 @@ class ColumnRun {
   std::vector<ColumnCause> find_causes(const Piece& piece, const std::vector<bool>& rotating) const;
   Matrix3d find_inertia_change(const SceneParameter& parameter) const;
   Vector3d find_momentum_change(const SceneParameter& parameter, const std::vector<bool>& rotating) const;
+  std::vector<double> find_state_rates(const Moment& at, const std::vector<AnyTorque>& torques) const;
   Vector3d accelerate(const Moment& at, const std::vector<AnyTorque>& torques, const Vector3d& h) const;
   Vector3d divide(const Vector3d& L_B) const { return J_inverse_ * L_B; }
   void cross(const Piece& before, const std::vector<bool>& from, const std::vector<bool>& to, bool forward,
@@ -50,6 +52,7 @@ class ColumnRun {
   const std::vector<SceneParameter>& parameters_;
   TurnSide side_;
   Pieces pieces_;
+  std::size_t states_;                   ///< numbers of the states of formulas
   Matrix3d J_inverse_;
   std::vector<Vector3d> momenta_;        ///< of each rotor while it rotates, body axes
   std::vector<Matrix3d> inertia_change_; ///< of each parameter

@@ -21,7 +21,7 @@ class ColumnSeries {
   ColumnSeries(const Scene& piece, const std::vector<ColumnCause>& causes, const std::vector<double>& columns);
 
   const BodySeries& body() const { return body_; }
-  ColumnLanes& columns() { return columns_; }
+  ColumnLanes& columns() const { return columns_; }
 
   void compute_series(math::DD t, double unit, const double* y, const double* carry, int order, double* rows) const;
   void compute_sizes(const double* row, double* sizes) const;

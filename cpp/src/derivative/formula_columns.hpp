@@ -43,7 +43,7 @@ class FormulaColumns {
                  const std::vector<double>& columns);
 
   const FormulaSeries& body() const { return body_; }
-  ColumnLanes& columns() { return columns_; }
+  ColumnLanes& columns() const { return columns_; }
 
   int width() const { return body_.width(); }
   int count_blocks() const { return body_.count_blocks() + 1; }

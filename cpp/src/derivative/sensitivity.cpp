@@ -51,6 +51,19 @@ std::vector<double> compare(const ColumnSamples& a, const ColumnSamples& b, std:
       if (!(apart <= size * error[c])) error[c] = apart / size;
     }
   }
+  const std::size_t states = b.d_states.size() / std::max<std::size_t>(columns * b.omega.size() / 3, 1);
+  for (std::size_t k = 0; k < states; ++k) {
+    for (std::size_t c = 0; c < columns; ++c) {
+      double apart = 0.0, size = 0.0;
+      for (const std::size_t i : a.samples) {
+        const std::size_t at = (states * i + k) * columns + c;
+        const double difference = std::abs(a.d_states[at] - b.d_states[at]);
+        if (!(difference <= apart)) apart = difference;
+        size = std::max(size, std::abs(b.d_states[at]));
+      }
+      if (!(apart <= size * error[c])) error[c] = apart / size;
+    }
+  }
   return error;
 }
 
@@ -84,8 +97,7 @@ void require_formulas(const Scene& scene) {
   std::vector<AnyTorque> torques = scene.torques();
   for (AnyTorque& torque : torques) torque = to_any(drop_windows(torque));
   const Scene lasting = scene.with_torques(std::move(torques));
-  const std::string why = !lasting.states().empty() ? "a Formula with states of its own, which has no columns yet"
-                                                    : compute_series_refusal(lasting);
+  const std::string why = compute_series_refusal(lasting);
   if (!why.empty())
     throw InvalidInput("sensitivity", "left out for a torque without a formula that can be differentiated", why);
 }
@@ -149,6 +161,7 @@ MotionSensitivity compute_sensitivity(const Scene& given, const std::vector<std:
   for (const SceneParameter& parameter : parameters) found.columns.push_back(parameter.column);
   found.omega = std::move(last.omega), found.attitude = std::move(last.attitude);
   found.d_omega = std::move(last.d_omega), found.d_attitude = std::move(last.turn);
+  found.d_states = std::move(last.d_states);
   if (options.side == TurnSide::space) turn_to_space(found.attitude, parameters.size(), found.d_attitude);
   return found;
 }

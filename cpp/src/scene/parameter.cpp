@@ -68,6 +68,12 @@ void add_windows(std::span<const Window> windows, Of of, std::size_t index, cons
   }
 }
 
+/// What a number of a formula's input has after the name: nothing, "_x" of three, or "_0".
+std::string name_part(int i, int count) {
+  if (count == 1) return "";
+  return count == 3 ? std::string("_") + "xyz"[i] : "_" + std::to_string(i);
+}
+
 std::vector<SceneParameter> find_torque_parameters(const Scene& scene, std::string_view group, const GroupName& name) {
   using Kind = TorqueParameter::Kind;
   const std::size_t index = find_torque(scene, group, name);
@@ -87,7 +93,7 @@ std::vector<SceneParameter> find_torque_parameters(const Scene& scene, std::stri
       const std::size_t count = own[field].values.size();
       for (std::size_t c = 0; own[field].name == name.field && c < count; ++c)
         found.push_back({Of::torque, index, static_cast<int>(field), static_cast<int>(c),
-                         count == 1 ? prefix : prefix + "_" + (count == 3 ? std::string(1, "xyz"[c]) : std::to_string(c))});
+                         prefix + name_part(static_cast<int>(c), static_cast<int>(count))});
     }
   }
   for (std::size_t field = 0; field < record.parameters.size(); ++field) {
@@ -129,6 +135,20 @@ std::vector<SceneParameter> find_rotor_parameters(const Scene& scene, std::strin
   return found;
 }
 
+std::vector<SceneParameter> find_state(const Scene& scene, std::string_view group, const GroupName& name) {
+  const formula::Place place = formula::find_place(scene.states(), name.field);
+  if (place.first < 0) {
+    std::string known;
+    for (const formula::Input& state : scene.states()) known += (known.empty() ? "'" : ", '") + state.name + "'";
+    refuse(group, "a state of the scene's formulas, which has " + (known.empty() ? "none" : known));
+  }
+  std::vector<SceneParameter> found;
+  for (int i = 0; i < place.count; ++i)
+    found.push_back({Of::state, static_cast<std::size_t>(place.first + i), 0, 0,
+                     std::string(group) + name_part(i, place.count)});
+  return found;
+}
+
 }  // namespace
 
 std::vector<SceneParameter> find_parameters(const Scene& scene, std::string_view group) {
@@ -143,6 +163,7 @@ std::vector<SceneParameter> find_parameters(const Scene& scene, std::string_view
   }
   const GroupName name = split(group);
   if (name.what == "rotors" || name.what == "rotor") return find_rotor_parameters(scene, group, name);
+  if (name.what == "states") return find_state(scene, group, name);
   return find_torque_parameters(scene, group, name);
 }
 

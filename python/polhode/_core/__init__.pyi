@@ -1342,6 +1342,9 @@ class _FoundSensitivity:
     def d_omega(self) -> numpy.typing.NDArray[numpy.float64]:
         ...
     @property
+    def d_states(self) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @property
     def error(self) -> typing.Any:
         ...
     @property

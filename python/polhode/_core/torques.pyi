@@ -467,7 +467,7 @@ class Formula:
         ndarray, shape (3,)
             In body axes [N m].
         """
-    def with_parameters(self, **kwargs) -> Formula:
+    def with_parameters(self, **numbers: numpy.typing.ArrayLike) -> Formula:
         """
         Return the formula with other numbers of some of its parameters.
 
@@ -475,6 +475,24 @@ class Formula:
         ----------
         **parameters : float or array_like, shape (n,)
             Numbers by the names of its parameters, of the same shapes.
+
+        Returns
+        -------
+        Formula
+
+        Raises
+        ------
+        InvalidInput
+            For a name that it does not have, or another shape.
+        """
+    def with_starts(self, **numbers: numpy.typing.ArrayLike) -> Formula:
+        """
+        Return the formula with other starts of some of its states.
+
+        Parameters
+        ----------
+        **states : float or array_like, shape (n,)
+            Numbers by the names of its states, of the same shapes.
 
         Returns
         -------

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from .. import _core
 from .._attitude.arrays import is_one_of
 from .._core import InvalidInput
@@ -30,4 +32,11 @@ def differentiate(scene: Scene, names: str | Sequence[str], accuracy: float, sid
         found: Sensitivity = body.sensitivity(scene.times - scene.t0, groups, side)
         return found
     made = _core.sensitivity(scene, list(groups), accuracy, certify, side, max_steps)
-    return Sensitivity(made.omega, made.attitude, made.d_omega, made.d_attitude, tuple(made.columns), side, made.error)
+    d_states, first = {}, 0
+    for name, start in scene.states.items():
+        width = np.size(start)
+        part = made.d_states[:, first : first + width]
+        d_states[name] = part if np.ndim(start) else part[:, 0]
+        first += width
+    return Sensitivity(made.omega, made.attitude, made.d_omega, made.d_attitude, tuple(made.columns), side, made.error,
+                       d_states)

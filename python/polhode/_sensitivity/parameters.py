@@ -28,8 +28,14 @@ def _read(holder: Any, field: str) -> Any:
 
 
 def find(scene: Scene, group: str) -> tuple[str, int, str]:
-    """Return ('torques' or 'rotors', number, field) of a name such as 'torques.0.weight' or 'gravity.weight'."""
+    """Return ('torques', 'rotors' or 'states', number, field) of a name such as 'torques.0.weight'."""
     parts = group.split(".")
+    if len(parts) == 2 and parts[0] == "states":
+        owners = [k for k, torque in enumerate(scene.torques) if parts[1] in getattr(torque, "states", ())]
+        if not owners:
+            raise InvalidInput(f"fit: must be a state of the scene's formulas, {', '.join(scene.states) or 'none'}, "
+                               f"got {group!r}")
+        return "states", owners[0], parts[1]
     kinds = {"torques": scene.torques, "rotors": scene.rotors}
     if len(parts) == 3 and parts[0] in kinds and parts[1].isdigit() and int(parts[1]) < len(kinds[parts[0]]):
         what, index, field = parts[0], int(parts[1]), parts[2]
@@ -59,19 +65,26 @@ def find(scene: Scene, group: str) -> tuple[str, int, str]:
 def get(scene: Scene, group: str) -> Array:
     """Return the numbers of a group, shape (1,), (3,) or (9,)."""
     what, index, field = find(scene, group)
+    if what == "states":
+        return np.array(scene.states[field], dtype=float).reshape(-1)
     holder = _inner(getattr(scene, what)[index])
     return np.array(_read(holder, field), dtype=float).reshape(-1)
 
 
 def names_of(scene: Scene, group: str) -> list[str]:
     """Return the names of a group's numbers."""
-    stem = ".".join(map(str, find(scene, group)))
+    what, index, field = find(scene, group)
+    stem = f"{what}.{field}" if what == "states" else f"{what}.{index}.{field}"
     return [group + name.removeprefix(stem) for name in _core._parameter_names(scene, group)]
 
 
 def put(scene: Scene, group: str, value: Array) -> Scene:
     """Return the scene with other numbers of a group."""
     what, index, field = find(scene, group)
+    if what == "states":
+        start = value.reshape(np.shape(scene.states[field]))
+        return scene.replace(torques=[torque.with_starts(**{field: start}) if field in getattr(torque, "states", ())
+                                      else torque for torque in scene.torques])
     items = list(getattr(scene, what))
     holder = _inner(items[index])
     shape = np.shape(_read(holder, field))

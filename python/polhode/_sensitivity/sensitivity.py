@@ -50,11 +50,14 @@ class Sensitivity:
         The axes of the small rotations, those of the attitude at t = 0 included.
     error : ndarray, shape (n,), or None
         The estimated error of each column relative to its size, where the motion was integrated with a certificate.
+    d_states : dict of ndarray, shape (..., n) or (..., k, n)
+        Derivatives of the states of the scene's formulas, by name; empty without any.
 
     Notes
     -----
     The size of a column is the larger of abs(d omega) / abs(omega(0)) and the angle of the small rotation. Where the
-    motion was integrated, the largest abs(omega) of start and samples stands in the place of abs(omega(0)).
+    motion was integrated, the largest abs(omega) of start and samples stands in the place of abs(omega(0)). The error
+    covers the derivatives of states, relative to the largest of each in the motion.
     """
 
     omega: Array
@@ -64,6 +67,7 @@ class Sensitivity:
     columns: tuple[str, ...]
     side: str = "space"
     error: Array | None = None
+    d_states: dict[str, Array] = dataclasses.field(default_factory=dict)
 
     def column(self, name: str) -> tuple[Array, Array]:
         """Return (d omega, d attitude) of one column, each of shape (..., 3)."""

@@ -57,7 +57,7 @@ BATCH = dict(inertia=I, omega=W, attitude=Q, t=np.array(TIMES), out=None, want="
              dtype="float64", threads=None, errors="raise")
 CORNERS, SIDES = [[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
 MOTION, T30 = ph.solve(SCENE, 1e-6, dense=True, sensitivity="omega"), np.linspace(0, 10, 30)
-FORMULA = T.Formula(text="h * omega", states={"h": {"start": 1.0, "rate": "-h"}})
+FORMULA = T.Formula(text="k * h * omega", k=1.0, states={"h": {"start": 1.0, "rate": "-h"}})
 RATES = ph.measured.Rates(T30, FREE.at(T30)[0], 0.01)
 
 # A callable, and arguments that it takes; one of them at a time becomes odd. Up to a comma the name is the public one.
@@ -143,6 +143,8 @@ DOORS = {
     "torques.Formula, states": (T.Formula, dict(text="h * omega", states={"h": {"start": 1.0, "rate": "-h"}})),
     "torques.Formula, potential": (T.Formula, dict(potential="attitude.x")),
     "torques.Formula.rates": (FORMULA.rates, dict(t=0.0, omega=W, attitude=Q, states={"h": 1.0})),
+    "torques.Formula.with_parameters": (FORMULA.with_parameters, dict(k=1.0)),
+    "torques.Formula.with_starts": (FORMULA.with_starts, dict(h=1.0)),
     "torques.Formula.energy": (FORMULA.energy, dict(t=0.0, attitude=Q)),
     "torques.Formula, function": (T.Formula, dict(function=lambda t, omega, attitude, p: omega)),
     "formula.to_body": (ph.formula.to_body, dict(attitude=Q, v=W)),

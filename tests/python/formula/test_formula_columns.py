@@ -11,7 +11,7 @@ import pytest
 
 import polhode as ph
 from polhode.formula import norm, to_body
-from polhode.torques import (AngularDamping, Constant, Custom, Damping, During, Formula, Gravity, GravityGradient)
+from polhode.torques import AngularDamping, Constant, Custom, Damping, During, Formula, Gravity
 
 TRUTH = json.loads((Path(__file__).parents[2] / "reference" / "formula_columns.json").read_text())
 START, TIMES = TRUTH["start"], np.array(TRUTH["times"])
@@ -79,7 +79,7 @@ def stacked(s):
 def test_columns_have_the_error_that_they_state(case, accuracy):
     law = case["law"]
     own = tuple(f"formula.{name}" for name in LAWS[law][1])
-    groups = ("omega", "attitude", "inertia", *own, "axes")
+    groups = ("omega", "attitude", "inertia", *own, *(("states.s",) if law == "integral" else ()), "axes")
     s = ph.solve(scene([make(law)], case["inertia"]), accuracy, sensitivity=groups).sensitivity
     assert [name.removeprefix("torques.0.") for name in s.columns] == list(case["columns"])
     truth = np.moveaxis(np.array(list(case["columns"].values()), dtype=float), 0, 1)
@@ -87,6 +87,9 @@ def test_columns_have_the_error_that_they_state(case, accuracy):
     found = (sizes(stacked(s) - truth, scale) / sizes(truth, scale)).max(axis=0)
     assert (found <= s.error).all(), found / s.error
     assert (s.error <= 1.01 * accuracy + 1e-13).all()
+    for k, found in enumerate(np.moveaxis(s.d_states["s"], 1, 0) if law == "integral" else ()):
+        apart, size = np.abs(found - truth[..., 6 + k]).max(axis=0), np.abs(truth[..., 6 + k]).max(axis=0)
+        assert (apart <= s.error * size).all()
 
 
 KNOWN = {
@@ -108,7 +111,8 @@ def test_a_formula_has_the_columns_of_the_torque_that_it_is(recognise, name, win
         torque, formula = During(torque, windows), During(formula, windows)
     groups = ["omega", "attitude", "inertia", "axes", *(f"torques.0.{field}" for field in own)]
     groups += ["torques.0.windows"] if windows else []
-    rotors = [ph.Rotor((0, 0, 1), momentum=0.3, during=[(0, 2.5)]), ph.Rotor((1, 0, 0), inertia=0.2, speed=3, free=True)]
+    rotors = [ph.Rotor((0, 0, 1), momentum=0.3, during=[(0, 2.5)]),
+              ph.Rotor((1, 0, 0), inertia=0.2, speed=3, free=True)]
     for more in (dict(), dict(rotors=rotors)):
         a, b = (ph.solve(scene([one], **more), 1e-10, sensitivity=groups).sensitivity for one in (torque, formula))
         assert a.columns == b.columns
@@ -137,13 +141,15 @@ def test_potentials_sums_and_switches():
 
 
 def test_every_instruction_set_has_right_columns():
-    code = ("import polhode as ph, sys, numpy as np; sys.path.insert(0, %r); import test_formula_columns as t; "
+    code = (f"import sys; sys.path.insert(0, {str(Path(__file__).parent)!r})\n"
+            "import polhode as ph, numpy as np, test_formula_columns as t\n"
             "s = ph.solve(t.scene([t.make('spring')], [[1.2, .2, -.1], [.2, 2, .3], [-.1, .3, 1.7]]), 1e-10, "
-            "sensitivity=('omega', 'inertia', 'formula.k')).sensitivity; "
-            "sys.stdout.buffer.write(np.concatenate([s.d_omega, s.d_attitude]).tobytes())" % str(Path(__file__).parent))
+            "sensitivity=('omega', 'inertia', 'formula.k')).sensitivity\n"
+            "sys.stdout.buffer.write(np.concatenate([s.d_omega, s.d_attitude]).tobytes())")
     found = {}
     for level in ("baseline", "avx2", "avx512"):
-        done = subprocess.run([sys.executable, "-c", code], env=dict(os.environ, POLHODE_SIMD=level), capture_output=True)
+        environment = dict(os.environ, POLHODE_SIMD=level)
+        done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True)
         if done.returncode == 0:
             found[level] = np.frombuffer(done.stdout)
     for level in found:
@@ -194,3 +200,35 @@ def test_what_has_no_columns_is_refused_in_words():
         ph.solve(scene([make("pd"), Custom(lambda t, w, q: (0, 0, 0))]), 1e-6, sensitivity="omega")
     with pytest.raises(ph.InvalidInput, match="of Formula, which has kd, kp"):
         ph.fit(ph.measured.Rates(TIMES, np.ones((2, 3)), 1), scene([make("pd")]), fit=("torques.0.ki",))
+
+
+def test_states_across_a_rotor_that_stops():
+    """A column at a window's end against differences of whole motions."""
+    def solved(start=0.02, kp=0.7, end=1.25, sensitivity=None):
+        law = Formula(integral, states={"s": (start, 0, 0)}, kp=kp, ki=0.1)
+        rotor = ph.Rotor((0, 0.6, 0.8), momentum=0.3, during=[(-1, end)])
+        return ph.solve(scene([law], times=[0.5, 3.0], rotors=[rotor]), 1e-12, sensitivity=sensitivity)
+
+    s = solved(sensitivity=("states.s", "torques.0.kp", "rotors.0.during")).sensitivity
+    assert s.columns[:4] == ("states.s_x", "states.s_y", "states.s_z", "torques.0.kp")
+    assert s.d_states["s"].shape == (2, 3, len(s.columns)) and s.error.max() < 1e-9
+    for name, which in (("start", "states.s_x"), ("kp", "torques.0.kp"), ("end", "rotors.0.during_0_end")):
+        value = {"start": 0.02, "kp": 0.7, "end": 1.25}[name]
+        up, down = (solved(**{name: value + by}) for by in (1e-5, -1e-5))
+        k = s.columns.index(which)
+        np.testing.assert_allclose(s.d_omega[..., k], (up.omega - down.omega) / 2e-5, atol=2e-7)
+        np.testing.assert_allclose(s.d_states["s"][..., k], (up.states["s"] - down.states["s"]) / 2e-5, atol=2e-7)
+
+
+def test_the_start_of_a_state_is_fitted():
+    t = np.linspace(0.1, 20, 100)
+    law = Formula(integral, states={"s": (0.5, -0.3, 0.2)}, kp=0.7, ki=0.4)
+    truth = scene([law], times=t)
+    data = ph.measured.Rates(t, ph.solve(truth, 1e-10).omega, 1e-4)
+    guess = truth.replace(torques=[law.with_starts(s=(0, 0, 0))])
+    found = ph.fit(data, guess, fit=("omega", "states.s", "torques.0.ki"), seed=1)
+    assert found.success
+    np.testing.assert_allclose(found.scene.states["s"], (0.5, -0.3, 0.2), atol=1e-3)
+    np.testing.assert_allclose(found.numbers["states.s"], found.scene.states["s"])
+    with pytest.raises(ph.InvalidInput, match="state.* s"):
+        ph.fit(data, guess, fit=("states.h",))

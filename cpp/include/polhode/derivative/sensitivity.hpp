@@ -20,9 +20,11 @@ struct MotionSensitivity {
   std::vector<std::string> columns;   ///< their names
   std::vector<double> omega, attitude;        ///< (n, 3) in body axes and (n, 4)
   std::vector<double> d_omega, d_attitude;    ///< (n, 3, columns)
+  std::vector<double> d_states;               ///< (n, numbers of the states of formulas, columns)
   /// The error of each column relative to its size, the largest of all samples; empty without a certificate. It is four
   /// times the difference of the last two runs, and 4e-15 for each turn, of what both round alike.
-  /// The size of a column in a sample is the larger of |d omega| / (largest |omega|) and the angle of the rotation.
+  /// The size of a column in a sample is the larger of |d omega| / (largest |omega|) and the angle of the rotation. The
+  /// error of a state's derivative is relative to its largest size in the motion.
   std::vector<double> error;
   long steps = 0;                     ///< of all runs
   int runs = 0;

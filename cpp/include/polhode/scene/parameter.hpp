@@ -11,11 +11,11 @@ namespace polhode {
 
 /// One number of a scene by which a motion is differentiated.
 struct SceneParameter {
-  enum class Of { omega, attitude, inertia, axes, torque, torque_windows, rotor, rotor_windows };
+  enum class Of { omega, attitude, inertia, axes, torque, torque_windows, rotor, rotor_windows, state };
   enum RotorField { momentum, inertia, speed };
 
   Of of;
-  std::size_t index = 0;   ///< which torque or rotor of the scene
+  std::size_t index = 0;   ///< which torque or rotor of the scene; state: its number among those of all
   int field = 0;           ///< torque: its number in the record; rotor: a RotorField; windows: which window
   int component = 0;       ///< of a vector, or of a matrix row by row; windows: 0 is the begin, 1 the end
   std::string column;      ///< its name, as "torques.0.arm_x"
@@ -24,7 +24,7 @@ struct SceneParameter {
 /// The numbers of a group: "omega", "attitude" (a small rotation of the start), "inertia" (the principal moments: in
 /// the caller's order if the axes are principal, else ascending), "axes" (a small rotation of the principal axes in the
 /// body), "torques.0.weight" or "gravity.weight" where only one is there, "torques.0.windows" (the finite ends of its
-/// windows), "rotors.0.momentum", "rotors.0.inertia", "rotors.0.speed", "rotors.0.during".
+/// windows), "rotors.0.momentum", "rotors.0.inertia", "rotors.0.speed", "rotors.0.during", "states.h" (the start of a state).
 /// @throws InvalidInput for a name that the scene does not have
 std::vector<SceneParameter> find_parameters(const Scene& scene, std::string_view group);
 
