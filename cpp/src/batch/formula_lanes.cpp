@@ -30,7 +30,7 @@ Tape make_tape(const Scene& scene) {
   for (int i = 0; i < formula::first_extra; ++i) body.push_back(made.graph.state(i)), made.outputs.emplace_back();
   std::vector<Form> tau(3);
   for (const AnyTorque& torque : scene.torques()) {
-    const formula::Program law = make_law(torque, scene.inertia_B().matrix());
+    const formula::Program law = make_bound_law(torque, scene.inertia_B().matrix());
     const std::vector<Form> outputs = formula::embed(law, made.graph, body, nullptr);
     for (std::size_t i = 0; i < 3; ++i) tau[i] = tau[i] + outputs[i];
   }
@@ -75,7 +75,8 @@ bool are_same(const Scene& a, const Scene& b) {
     if (one.index() != other.index()) return false;
     if (const auto* formula = std::get_if<torques::Formula>(&one)) {
       if (!(*formula == std::get<torques::Formula>(other))) return false;
-    } else if (!formula::is_same(make_law(one, a.inertia_B().matrix()), make_law(other, b.inertia_B().matrix()))) {
+    } else if (!formula::is_same(make_bound_law(one, a.inertia_B().matrix()),
+                                 make_bound_law(other, b.inertia_B().matrix()))) {
       return false;
     }
   }

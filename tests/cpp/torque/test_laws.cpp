@@ -42,7 +42,7 @@ TEST_CASE("the law of each torque is its function") {
   std::normal_distribution<double> normal;
   for (const AnyTorque& torque : list_torques()) {
     CAPTURE(torque_name(torque));
-    const formula::Program law = make_law(torque, I);
+    const formula::Program law = make_bound_law(torque, I);
     REQUIRE(law.outputs.size() == 3);
     formula::Evaluator evaluate(law);
     const std::vector<double> parameters = formula::list_values(law.parameters);
