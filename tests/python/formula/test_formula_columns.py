@@ -84,7 +84,8 @@ def test_columns_have_the_error_that_they_state(case, accuracy):
     assert [name.removeprefix("torques.0.") for name in s.columns] == list(case["columns"])
     truth = np.moveaxis(np.array(list(case["columns"].values()), dtype=float), 0, 1)
     scale = max(np.linalg.norm(START["omega"]), np.linalg.norm(s.omega, axis=1).max())
-    found = (sizes(stacked(s) - truth, scale) / sizes(truth, scale)).max(axis=0)
+    body = truth[..., :6]
+    found = (sizes(stacked(s) - body, scale) / sizes(body, scale)).max(axis=0)
     assert (found <= s.error).all(), found / s.error
     assert (s.error <= 1.01 * accuracy + 1e-13).all()
     for k, found in enumerate(np.moveaxis(s.d_states["s"], 1, 0) if law == "integral" else ()):
