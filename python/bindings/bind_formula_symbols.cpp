@@ -155,6 +155,7 @@ void bind_symbols(py::module_& m) {
   bind_operator(m, "arctan2", [](const Expr& a, const Expr& b) { return formula::atan2(a, b); });
   bind_operator(m, "minimum", [](const Expr& a, const Expr& b) { return formula::min(a, b); });
   bind_operator(m, "maximum", [](const Expr& a, const Expr& b) { return formula::max(a, b); });
+  bind_operator(m, "friction", [](const Expr& load, const Expr& rate) { return formula::friction(load, rate); });
   bind_function(m, "sqrt", [](const Expr& a) { return formula::sqrt(a); });
   bind_function(m, "exp", [](const Expr& a) { return formula::exp(a); });
   bind_function(m, "log", [](const Expr& a) { return formula::log(a); });

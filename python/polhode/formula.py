@@ -10,7 +10,7 @@ from ._core import InvalidInput
 from ._core import symbols as _core
 from ._formula import symbols as _symbols
 
-__all__ = ["clip", "norm", "to_body", "to_space", "where"]
+__all__ = ["clip", "friction", "norm", "to_body", "to_space", "where"]
 
 
 def _is_traced(*values: Any) -> bool:
@@ -138,6 +138,30 @@ def where(condition: Any, a: Any, b: Any) -> Any:
         return np.where(condition, a, b)
     except Exception as error:
         raise InvalidInput(f"where: must have arrays that fit, got what numpy.where refuses: {error}") from None
+
+
+def friction(load: Any, rate: Any) -> Any:
+    """Return dry friction: minus the load times the sign of the rate.
+
+    Where the rate comes to 0, friction in a formula holds it there as long as the load is enough, and lets go then.
+    The rate must be one that the friction slows down.
+
+    Parameters
+    ----------
+    load : array_like
+        The largest friction [N m], 0 or positive.
+    rate : array_like
+        What it slows down, as a component of omega [rad/s].
+
+    Returns
+    -------
+    ndarray or symbols
+        A torque along the axis of the rate [N m]. Of numbers it is `load` where the rate is 0.
+    """
+    if _is_traced(load, rate):
+        return _symbols.friction(load, rate)
+    load, rate = _numbers(load, "load"), _numbers(rate, "rate")
+    return np.where(rate > 0, -load, load)
 
 
 def clip(a: Any, low: Any, high: Any) -> Any:

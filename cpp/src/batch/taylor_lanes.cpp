@@ -2,7 +2,7 @@
 #include "batch/formula_lanes.hpp"
 #include "batch/lanes/taylor_block.hpp"
 #include "batch/series_integrator.hpp"
-#include "method/series/formula_series.hpp"
+#include "method/series/switched_series.hpp"
 #include "polhode/core/simd.hpp"
 #include "polhode/math/detail/functions.hpp"
 
@@ -103,7 +103,10 @@ std::unique_ptr<LaneIntegrator> TaylorLaneProblem::make_integrator(const ode::To
 }  // namespace
 
 const LaneMethod taylor_lanes{
-    ode::Taylor::record, [](const Scene& scene) { return compute_series_refusal(scene).empty(); },
+    ode::Taylor::record,
+    [](const Scene& scene) {
+      return compute_series_refusal(scene).empty() && scene.states().empty() && !has_switches(scene);
+    },
     [](const Scene& scene, const LaneProblem* before) -> std::unique_ptr<LaneProblem> {
       if (needs_formula_series(scene)) return make_formula_lane(scene, before);
       return std::make_unique<TaylorLaneProblem>(scene);

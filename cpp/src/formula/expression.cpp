@@ -83,6 +83,10 @@ Expr where(const Condition& condition, const Expr& yes, const Expr& no) {
   return Expr(*graph, graph->choose(condition.guard.form(), first.form(), second.form()));
 }
 
+Expr friction(const Expr& load, const Expr& rate) {
+  return -load * apply(rate, [&](Graph& g) { return g.slip(rate.form()); });
+}
+
 Vec<Expr, 3> to_body(const Vec<Expr, 4>& attitude, const Vec<Expr, 3>& v) {
   Graph* graph = attitude[0].graph();
   for (std::size_t i = 0; i < 4; ++i) {

@@ -196,6 +196,14 @@ Form Graph::choose(const Form& guard, const Form& yes, const Form& no) {
   return Form::of(intern({.op = Op::choose, .operands = {sign, first, second}}));
 }
 
+Form Graph::slip(const Form& rate) {
+  if (rate.is_constant()) return rate.constant > 0.0 ? 1.0 : -1.0;
+  double largest = std::abs(rate.constant);
+  for (const Term& term : rate.terms) largest = std::max(largest, std::abs(term.factor));
+  const int sign = node_of(rate / power_of_two_of(largest)), first = node_of(1.0), second = node_of(-1.0);
+  return Form::of(intern({.op = Op::choose, .index = 1, .operands = {sign, first, second}}));
+}
+
 std::array<Form, 3> Graph::to_body(const std::array<Form, 3>& v) {
   if (v[0].is_zero() && v[1].is_zero() && v[2].is_zero()) return {};
   for (int i = 0; i < 4; ++i) state(first_attitude + i);   // its operands, though they are not named

@@ -47,6 +47,7 @@ Program in_mode(const Program& program, const Mode& mode, bool with_guards) {
   });
   own = &rewriter;
   for (const Form& output : whole.outputs) made.outputs.push_back(rewriter(output));
+  for (const Form& rate : whole.rates) made.rates.push_back(rewriter(rate));
   return rewrite(made);
 }
 

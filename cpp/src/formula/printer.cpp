@@ -112,7 +112,9 @@ class Printer {
       case Op::cosine: return "cos(" + operand(0) + ")";
       case Op::tanh: return "tanh(" + operand(0) + ")";
       case Op::angle: return "atan2(" + operand(0) + ", " + operand(1) + ")";
-      case Op::choose: return "where(" + operand(0) + " > 0, " + operand(1) + ", " + operand(2) + ")";
+      case Op::choose:
+        if (n.index == 1) return "friction(-1, " + operand(0) + ")";
+        return "where(" + operand(0) + " > 0, " + operand(1) + ", " + operand(2) + ")";
       case Op::to_body:
         return "to_body([" + operand(0) + ", " + operand(1) + ", " + operand(2) + "])." + "xyz"[n.index];
       default: return atom(node);

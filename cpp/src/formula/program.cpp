@@ -84,7 +84,9 @@ Form Rewriter::make(int node) {
     case Op::cosine: return to_.cosine(operand(0));
     case Op::tanh: return to_.tanh(operand(0));
     case Op::angle: return to_.angle(operand(0), operand(1));
-    case Op::choose: return to_.choose(operand(0), operand(1), operand(2));
+    case Op::choose:
+      if (n.index == 1) return to_.slip(operand(0));
+      return to_.choose(operand(0), operand(1), operand(2));
     case Op::to_body: return to_.to_body({operand(0), operand(1), operand(2)})[static_cast<std::size_t>(n.index)];
   }
   return {};

@@ -84,13 +84,14 @@ struct Function {
 };
 
 constexpr Function functions[] = {
-    {"abs", 1, 1, &each<abs<Expr>>},        {"atan2", 2, 2, &pairs<atan2>},    {"clip", 3, 3, &clip_items},
-    {"cos", 1, 1, &each<cos>},              {"cross", 2, 2, &cross_items},     {"dot", 2, 2, &dot_items},
-    {"exp", 1, 1, &each<exp>},              {"hypot", 2, 2, &pairs<hypot_of>}, {"log", 1, 1, &each<log>},
-    {"max", 2, 2, &pairs<max<Expr>>},       {"min", 2, 2, &pairs<min<Expr>>},  {"norm", 1, 2, &norm_items},
-    {"sign", 1, 1, &each<sign<Expr>>},      {"sin", 1, 1, &each<sin>},         {"sqrt", 1, 1, &each<sqrt>},
-    {"sum", 1, 1, &sum_items},              {"tan", 1, 1, &each<tan>},         {"tanh", 1, 1, &each<tanh>},
-    {"to_body", 1, 1, &to_body_items},      {"to_space", 1, 1, &to_space_items}, {"where", 3, 3, &where_items}};
+    {"abs", 1, 1, &each<abs<Expr>>},        {"atan2", 2, 2, &pairs<atan2>},      {"clip", 3, 3, &clip_items},
+    {"cos", 1, 1, &each<cos>},              {"cross", 2, 2, &cross_items},       {"dot", 2, 2, &dot_items},
+    {"exp", 1, 1, &each<exp>},              {"friction", 2, 2, &pairs<friction>}, {"hypot", 2, 2, &pairs<hypot_of>},
+    {"log", 1, 1, &each<log>},              {"max", 2, 2, &pairs<max<Expr>>},    {"min", 2, 2, &pairs<min<Expr>>},
+    {"norm", 1, 2, &norm_items},            {"sign", 1, 1, &each<sign<Expr>>},   {"sin", 1, 1, &each<sin>},
+    {"sqrt", 1, 1, &each<sqrt>},            {"sum", 1, 1, &sum_items},           {"tan", 1, 1, &each<tan>},
+    {"tanh", 1, 1, &each<tanh>},            {"to_body", 1, 1, &to_body_items},   {"to_space", 1, 1, &to_space_items},
+    {"where", 3, 3, &where_items}};
 
 const Function* find_function(std::string_view name) {
   for (const Function& function : functions)

@@ -106,16 +106,26 @@ bool jumps_with_time(const Scene& scene, const State& state) {
   return (after - before).norm() > 1e-6 * std::max(after.norm(), before.norm());
 }
 
+/// The operation of a formula that has no derivatives near a state.
+std::string explain_singular(const Scene& scene, const State& state) {
+  constexpr double near = 1e-6;
+  if (!std::isfinite(norm(state.attitude))) return "";
+  const std::string found = find_singular(scene.torques(), state, near);
+  if (found.empty()) return "";
+  return "; the formula has no derivatives there, by " + found + ", which goes to 0; for a norm write norm(v, smooth=1e-6)";
+}
+
 /// Why steps became too short, where a torque of the user's own acts.
 std::string explain_underflow(const Scene& scene, const State& state) {
   const auto is_custom = [](const AnyTorque& torque) { return std::holds_alternative<torques::Custom>(torque); };
   if (std::none_of(scene.torques().begin(), scene.torques().end(), is_custom)) return "";
   const std::string at = polhode::to_text(state.t);
   if (jumps_with_time(scene, state)) {
-    return "; your torque jumps near t = " + at + " s: give Custom this time in breaks=, or put the torque into During";
+    return "; your torque jumps near t = " + at + " s: use np.where in a Formula, During, or give Custom this time in "
+           "breaks=";
   }
-  return "; near t = " + at + " s your torque jumps with the state or grows without limit: smooth it, or end the span "
-         "there by an event and go on from its state";
+  return "; near t = " + at + " s your torque jumps with the state or grows without limit: use np.where in a Formula, "
+         "smooth it, or end the span there by an event and go on from its state";
 }
 
 struct EndingText {
@@ -135,6 +145,13 @@ EndingText describe(ode::Ending ending, double t, long max_steps) {
     case Ending::underflow:
       return {Status::failed, "the step became smaller than the spacing of the times" + when};
     case Ending::not_finite: return {Status::failed, "the derivative is not finite just beyond t = " + at};
+    case Ending::sliding:
+      return {Status::sliding,
+              "the motion slides on the surface of a switch from t = " + at + " on: both of its branches push back to it, "
+              "so the formula has no torque there; use friction(load, rate) for dry friction, or a smooth branch"};
+    case Ending::chattering:
+      return {Status::failed, "the formula switches again and again near t = " + at + ", more than 100 times in the "
+              "time of ten steps; give the switch a width"};
     case Ending::no_solution:
       return {Status::failed,
               "the implicit equations of a step have no solution near t = " + at + "; take shorter steps"};
@@ -178,9 +195,11 @@ Trajectory integrate(const Scene& scene, const RunOptions& options, const double
     if (result.ending == ode::Ending::finished) return true;
     EndingText text = describe(result.ending, result.t, options.max_steps);
     trajectory.status = text.status, trajectory.message = std::move(text.message);
+    if (result.ending == ode::Ending::underflow || result.ending == ode::Ending::not_finite)
+      trajectory.message += explain_singular(scene, to_state(unpack, extra, result.t, stepper->y()));
     if (result.ending == ode::Ending::underflow)
       trajectory.message += explain_underflow(scene, to_state(unpack, extra, result.t, stepper->y()));
-    return trajectory.status == Status::event;
+    return trajectory.status == Status::event || trajectory.status == Status::sliding;
   };
   const SampleOrder order(times, scene.t0());
   if (integrate_direction(order.backward, trajectory.dense_backward))

@@ -29,6 +29,8 @@ Ending to_ending(StepResult step) {
   switch (step) {
     case StepResult::underflow: return Ending::underflow;
     case StepResult::no_solution: return Ending::no_solution;
+    case StepResult::sliding: return Ending::sliding;
+    case StepResult::chattering: return Ending::chattering;
     default: return Ending::not_finite;
   }
 }

@@ -84,7 +84,10 @@ Motion run_divided(std::shared_ptr<const Decision> decision, const SolveOptions&
 PlannedScene::PlannedScene(const Scene& given, const SolveOptions& options) : options_(options) {
   const auto begin = Clock::now();
   std::vector<std::string> recognised;
-  const Scene scene = resolve_formulas(given, AsCustom::yes, &recognised);
+  // Series end their steps at switches; other methods step over them, as over the jumps of a Custom torque.
+  const bool by_series = options.formulation == Formulation::euler &&
+                         (options.method ? options.method == "taylor" : !is_by_tolerance(options));
+  const Scene scene = resolve_formulas(given, by_series ? AsCustom::no : AsCustom::yes, &recognised);
   check_options(scene, options);
   check_torques(scene);
   Decision decision = decide(scene, options);

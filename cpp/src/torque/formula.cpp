@@ -161,8 +161,7 @@ double Formula::compute_potential(const TorqueInput& in) const {
 
 Custom Formula::as_custom() const {
   if (!states().empty())
-    throw InvalidInput("Formula", "without states where it has switches", "states " + states()[0].name,
-                       "no method integrates both yet");
+    throw InvalidInput("Formula", "without states of its own", "states " + states()[0].name, "taylor integrates them");
   const TorqueTraits traits = this->traits();
   const Custom::Function call = [](double t, const double* omega, const double* attitude, double* torque, void* data) {
     static_cast<const Parts*>(data)->compute(t, omega, attitude, nullptr, torque);

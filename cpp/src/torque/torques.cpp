@@ -4,6 +4,7 @@
 
 #include "polhode/core/error.hpp"
 #include "polhode/formula/program.hpp"
+#include "polhode/formula/singular.hpp"
 
 namespace polhode {
 
@@ -44,6 +45,29 @@ LastingTorque drop_windows(const AnyTorque& torque) {
         }
       },
       torque);
+}
+
+const torques::Formula* find_formula(const AnyTorque& torque) {
+  const auto* during = std::get_if<torques::During>(&torque);
+  return during != nullptr ? std::get_if<torques::Formula>(&during->torque()) : std::get_if<torques::Formula>(&torque);
+}
+
+std::string find_singular(std::span<const AnyTorque> torques, const State& state, double near) {
+  const std::vector<formula::Input> all = list_states(torques);
+  for (const AnyTorque& torque : torques) {
+    const auto* formula = std::get_if<torques::Formula>(&torque);
+    if (formula == nullptr) continue;
+    const Vector3d& w = state.omega;
+    const Quat& q = state.attitude;
+    std::vector<double> y = {w[0], w[1], w[2], q.x, q.y, q.z, q.w};
+    for (const formula::Input& one : formula->states()) {
+      const formula::Place place = formula::find_place(all, one.name);
+      y.insert(y.end(), state.states.begin() + place.first, state.states.begin() + place.first + place.count);
+    }
+    std::string found = formula::find_singular(formula->program(), state.t, y.data(), near);
+    if (!found.empty()) return found;
+  }
+  return "";
 }
 
 formula::Program make_law(const AnyTorque& torque, const Matrix3d& inertia_B) {

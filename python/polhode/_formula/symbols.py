@@ -192,6 +192,11 @@ def norm(v: Any, smooth: float = 0.0) -> Symbol:
     return Symbol(_core.sqrt(_core.add(_sum(squares), float(smooth) ** 2)))
 
 
+def friction(load: Any, rate: Any) -> Symbol:
+    """Return the dry friction of symbols."""
+    return _each(_core.friction, load, rate)
+
+
 def _norm(x: Any, ord: Any = None, axis: Any = None) -> Symbol:
     if ord not in (None, 2) or axis is not None or numbers_of(x).ndim != 1:
         refuse("this form of np.linalg.norm", "write np.linalg.norm(v) of a vector")

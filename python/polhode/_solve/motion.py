@@ -61,7 +61,7 @@ class Motion:
         Unit quaternions (x, y, z, w), body to space; None if not requested.
     states : dict of ndarray, shape (n,) or (n, k)
         The states of the scene's formulas by name; empty without any.
-    status : {"finished", "event", "max_steps", "stopped", "failed"}
+    status : {"finished", "event", "max_steps", "stopped", "failed", "sliding"}
     message : str
     stats : dict
         What the solution cost: "steps", "rejected" (steps), "derivatives", "events" (calls), "runs" (two or more if the

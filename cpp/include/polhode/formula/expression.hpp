@@ -78,6 +78,10 @@ T max(const T& a, const T& b) { return where(a > b, a, b); }
 template <class T>
 T clip(const T& a, const T& low, const T& high) { return min(max(a, low), high); }
 
+/// Dry friction: -load times the sign of the rate, or what holds the rate at 0 where the load is enough.
+Expr friction(const Expr& load, const Expr& rate);
+inline double friction(double load, double rate) { return rate > 0.0 ? -load : load; }
+
 /// Components of a vector, or of an attitude.
 template <class T, std::size_t n>
 struct Vec {

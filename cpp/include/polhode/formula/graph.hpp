@@ -27,7 +27,7 @@ enum class Op : std::uint8_t {
   cosine,       ///< cos a
   tanh,         ///< tanh a
   angle,        ///< atan2(a, b)
-  choose,       ///< a > 0 ? b : c
+  choose,       ///< a > 0 ? b : c; where `index` is 1, a friction's sign of the rate a, which may hold a at 0
   to_body       ///< component `index` of R_WB^T (a, b, c)
 };
 
@@ -71,6 +71,8 @@ class Graph {
   Form angle(const Form& y, const Form& x);
   /// yes where guard > 0, else no.
   Form choose(const Form& guard, const Form& yes, const Form& no);
+  /// The sign of a rate, whose product with a load is a friction: -1 at 0, where it may hold.
+  Form slip(const Form& rate);
   /// R_WB^T v for the unit quaternion in the states.
   std::array<Form, 3> to_body(const std::array<Form, 3>& v);
 

@@ -12,7 +12,8 @@
 namespace polhode {
 
 /// How a run ended.
-enum class Status { finished, event, max_steps, stopped, failed };
+/// `sliding`: a formula's switch holds the motion on its surface, where the formula has no value.
+enum class Status { finished, event, max_steps, stopped, failed, sliding };
 std::string_view to_text(Status status);
 
 struct MotionEvent {

@@ -11,7 +11,9 @@
 
 namespace polhode::ode {
 
-enum class Ending { finished, event, max_steps, stopped, underflow, not_finite, no_solution };
+enum class Ending {
+  finished, event, max_steps, stopped, underflow, not_finite, no_solution, sliding, chattering
+};
 
 struct DriveOptions {
   long max_steps = 10'000'000;

@@ -6,7 +6,8 @@
 
 namespace polhode::ode {
 
-enum class StepResult { accepted, underflow, not_finite, no_solution };
+/// `sliding`: on a surface of jumps both sides push back. `chattering`: switches follow each other without end.
+enum class StepResult { accepted, underflow, not_finite, no_solution, sliding, chattering };
 
 /// An integration in progress, as drive() sees it. A step is one virtual call; the code of a step is compiled for its
 /// problem.

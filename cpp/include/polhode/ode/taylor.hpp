@@ -12,6 +12,7 @@
 #include "polhode/ode/problem.hpp"
 #include "polhode/ode/series.hpp"
 #include "polhode/ode/stepper.hpp"
+#include "polhode/ode/switched.hpp"
 
 namespace polhode::ode {
 
@@ -131,12 +132,25 @@ class Taylor::Stepper : public ode::Stepper {
       fraction = expand();
     }
     if (!(fraction > 0.0)) return StepResult::not_finite;
-    const bool last = fraction * unit_ * 1.01 >= std::abs(rest);
-    const double s = last ? rest / unit_ : std::copysign(fraction, rest), h = s * unit_;
-    if (!last && !(std::abs(h) > 8 * std::numeric_limits<double>::epsilon() * std::abs(time_.hi)))
-      return StepResult::underflow;
+    if constexpr (SwitchedProblem<P>) {
+      if (const StepResult result = keep_mode(std::copysign(1.0, rest), fraction); result != StepResult::accepted)
+        return result;
+    }
+    bool last = fraction * unit_ * 1.01 >= std::abs(rest);
+    double s = last ? rest / unit_ : std::copysign(fraction, rest), h = s * unit_;
+    if (!last && !(std::abs(h) > shortest())) return StepResult::underflow;
 
     const int W = width();
+    if constexpr (SwitchedProblem<P>) {
+      const double until = problem_.find_switch(time_, unit_, y_, carry_, rows_, order_, s);
+      if (std::abs(until * unit_) <= shortest()) {   // the surface is here
+        if (!problem_.has_reached()) return StepResult::underflow;
+        if (++idle_ > most_idle) return StepResult::chattering;
+        return Stepper::advance(t_end);
+      }
+      idle_ = 0;
+      if (until != s) last = false, s = until, h = s * unit_;
+    }
     std::copy_n(y_, W, y_old_);
     std::copy_n(carry_, W, carry_old_);
     alignas(64) double increment[most_numbers];
@@ -153,7 +167,7 @@ class Taylor::Stepper : public ode::Stepper {
     t_old_ = time_old_.hi;
     t_ = time_.hi;
     // A step shortened by t_end says little about the next one.
-    unit_ = power_of_two(fraction * unit_);
+    unit_ = power_of_two(SwitchedProblem<P> ? std::min(fraction * unit_, std::abs(rest)) : fraction * unit_);
     ++counts_.steps;
     counts_.derivatives += order_;
     return StepResult::accepted;
@@ -205,10 +219,44 @@ class Taylor::Stepper : public ode::Stepper {
 
   int width() const { return get_width(problem_); }
 
+ protected:
+  /// Takes the mode behind a surface that the last step has reached.
+  StepResult switch_mode(double direction) {
+    return problem_.switch_mode(time_, unit_, y_, std::min(order_, surface_order), direction,
+                                [this](const Crossing& crossing) { this->cross(crossing); });
+  }
+  /// What a jump does to the errors that a stepper carries.
+  virtual void cross(const Crossing&) {}
+  static constexpr int surface_order = 6;   ///< of the series that decide a mode
+
+ public:
   static constexpr int header = series_width;
   static constexpr double zero[most_numbers] = {};
 
  private:
+  static constexpr int most_idle = 8, most_switches = 100;
+
+  /// Changes the mode until the series stays in it for a while.
+  StepResult keep_mode(double direction, double& fraction)
+    requires SwitchedProblem<P>
+  {
+    if (std::abs(time_.hi - counted_from_) > 10 * fraction * unit_) counted_from_ = time_.hi, switches_ = 0;
+    for (int attempt = 0; problem_.leaves_mode(direction); ++attempt) {
+      if (attempt > most_idle || ++switches_ > most_switches) return StepResult::chattering;
+      if (const StepResult result = switch_mode(direction); result != StepResult::accepted) return result;
+      fraction = expand();
+      for (int shorter = 0; !(fraction > 0.25) && shorter < most_idle; ++shorter) {
+        unit_ = fraction > 0.0 ? power_of_two(fraction * unit_) : unit_ * 0x1p-16;
+        fraction = expand();
+      }
+      if (!(fraction > 0.0)) return StepResult::not_finite;
+    }
+    return StepResult::accepted;
+  }
+
+  /// Of a step that the time can tell.
+  double shortest() const { return 8 * std::numeric_limits<double>::epsilon() * std::abs(time_.hi); }
+
   static constexpr bool whole_rows = [] {
     if constexpr (WideProblem<P>) return true;
     else return P::dimension == series_width;
@@ -271,6 +319,8 @@ class Taylor::Stepper : public ode::Stepper {
   alignas(64) double rows_[most_numbers * (most_series_order + 1)] = {};
 
  private:
+  int idle_ = 0, switches_ = 0;   ///< switches without a step; those since a time
+  double counted_from_ = 0.0;
   std::array<double, header + most_numbers * (most_series_order + 2)> segment_ = {};
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "polhode/math/detail/coin.hpp"
 #include "polhode/ode/taylor.hpp"
@@ -103,6 +104,7 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   // Relative, of the vectors. Invariants hold to their second order, which a vector made smaller has no more. The next
   // correction takes that part for an error of the first order, and near-singular bodies amplify it by thousands.
   static constexpr double most_enlarged = 1e-5;
+  static constexpr double continuous = 1e-13;   // of a derivative: so small a jump at a surface is rounding
   static constexpr double join_rounding = 0x1p-51;   // of a state that one run hands to the next
   using Base = Taylor::Stepper<P>;
 
@@ -136,6 +138,7 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     const StepResult result = Base::advance(t_end);
     if (result != StepResult::accepted) return result;
     propagate_errors();
+    if constexpr (SwitchedProblem<P>) pass_surfaces(t_end);
     if (find_largest_now() > trace_.most * trace_.asked) {
       trace_.given_up = trace_.before + std::abs(this->t_ - t0_);
       return StepResult::not_finite;
@@ -252,6 +255,90 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     now_[1] = std::max(angle / trace_.scale, 0.7 * now_[1]);
     now_[2] = std::max(states / trace_.scale, 0.7 * now_[2]);
     if (!(rates + angle + states < 1e300)) now_[0] = now_[1] = std::numeric_limits<double>::infinity();
+  }
+
+  /// Samples up to the surface have the errors of either side, because a true motion may reach it sooner.
+  void pass_surfaces(double t_end) {
+    this->problem_.pass_near(this->time_old_, this->unit_old_, this->y_old_, this->carry_old_, this->rows_, this->order_,
+                             [this](math::DD t, const double* y, const Crossing& crossing) { miss(t, y, crossing); });
+    if (this->problem_.has_reached()) this->switch_mode(std::copysign(1.0, t_end - t0_));
+  }
+
+  /// What the errors change in a guard at a state: of each one, and the sum of their sizes.
+  double compare_guards(const Crossing& crossing, math::DD t, const double* y, double* parts) {
+    double sum = 0.0;
+    int i = 0;
+    for (const auto& [problem, error] : {std::pair<const P*, const double*>{&lost_, loss_}, {&perturbed_, spread_},
+                                         {&sampled_, sample_}}) {
+      alignas(64) double twin[most_numbers] = {};
+      for (int k = 0; k < this->width(); ++k) twin[k] = y[k] + error[k];
+      parts[i] = error == sample_ && !separate_ ? 0.0 : problem->compute_guard(crossing.guard, t, twin) - crossing.value;
+      sum += std::abs(parts[i++]);
+    }
+    return sum / trace_.scale;
+  }
+
+  /// The jump of the derivative at a surface; false if it is rounding.
+  bool find_jump(const Crossing& crossing, const double* y, double* jump) {
+    double sizes[4];
+    for (int i = 0; i < this->width(); ++i) jump[i] = crossing.behind[i] - crossing.before[i];
+    this->problem_.measure_error(y, jump, sizes);
+    const double jumped = std::max({sizes[1], sizes[2], sizes[3]});
+    this->problem_.measure_error(y, crossing.before, sizes);
+    return jumped > continuous * std::max({sizes[1], sizes[2], sizes[3]});
+  }
+
+  /// How long a motion that crosses at a small angle may stay behind the surface, in units of time: what speed it has
+  /// there brings it back with the bend behind the surface. Without one it stays there.
+  static double find_stay(const Crossing& crossing, double apart) {
+    const double speed = std::sqrt(crossing.slope * crossing.slope + 2 * crossing.curvature * apart);
+    const double stay = crossing.bend > 0.0 ? 2 * speed / crossing.bend : 1.0;
+    return std::min(stay, 1.0);
+  }
+
+  void add_to_spread(const double* jump, double time, const double* y) {
+    for (int i = 0; i < this->width(); ++i)
+      spread_[i] += std::copysign(trace_.scale * std::abs(jump[i]) * time, spread_[i]);
+    const double held[3] = {now_[0], now_[1], now_[2]};
+    measure(y);
+    for (int i = 0; i < 3; ++i) now_[i] = std::max(now_[i], held[i]);
+    std::copy_n(loss_, this->width(), trace_.loss);
+    std::copy_n(spread_, this->width(), trace_.spread);
+    std::copy_n(sample_, this->width(), trace_.sample);
+  }
+
+  /// A surface that the step has not reached, but that an erroneous motion may.
+  void miss(math::DD t, const double* y, const Crossing& crossing) {
+    if constexpr (SwitchedProblem<P>) {
+      constexpr double doubled = 2.0;   // the errors are those of the step's end
+      alignas(64) double jump[most_numbers], parts[3];
+      const double apart = doubled * compare_guards(crossing, t, y, parts) + crossing.rounding;
+      if (std::abs(crossing.value) > apart || !find_jump(crossing, y, jump)) return;
+      add_to_spread(jump, find_stay(crossing, apart), this->arrived_);
+    }
+  }
+
+  /// An error e of the state moves the crossing by -(e . grad g) / g', during which both sides' derivatives differ: the
+  /// errors are multiplied by the saltation matrix 1 + (f_behind - f_before) grad g^T / g' (Leine & Nijmeijer 2004,
+  /// Dynamics and Bifurcations of Non-Smooth Mechanical Systems, 7.3).
+  void cross(const Crossing& crossing) override {
+    if constexpr (SwitchedProblem<P>) {
+      alignas(64) double jump[most_numbers], parts[3];
+      if (!find_jump(crossing, this->y_, jump)) return;
+      const double slope = crossing.slope, scale = trace_.scale;
+      const double apart = compare_guards(crossing, this->time_, this->y_, parts);
+      parts[0] += scale * crossing.value;
+      const double D = apart + crossing.rounding, first = D / std::abs(slope);
+      const double turn = crossing.curvature * first / std::abs(slope);
+      // At a small angle the crossing is not certain.
+      if (!(turn < 0.5)) return add_to_spread(jump, find_stay(crossing, D), this->y_);
+      double* const errors[3] = {loss_, spread_, sample_};
+      for (int k = 0; k < (separate_ ? 3 : 2); ++k) {
+        const double late = parts[k] / slope, unsure = scale * crossing.rounding / slope;
+        for (int i = 0; i < this->width(); ++i) errors[k][i] += jump[i] * (late + std::copysign(unsure, late));
+      }
+      add_to_spread(jump, first * turn, this->y_);   // to second order
+    }
   }
 
   const P& lost_;

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
-#include "polhode/torque/during.hpp"
+#include "polhode/core/state.hpp"
 #include "polhode/formula/program.hpp"
+#include "polhode/torque/during.hpp"
 #include "polhode/torque/list.hpp"
 
 namespace polhode {
@@ -51,6 +53,13 @@ AnyTorque to_any(const LastingTorque& torque);
 
 /// The torque without its windows.
 LastingTorque drop_windows(const AnyTorque& torque);
+
+/// The formula that a torque is, or that acts in its windows; null for others.
+const torques::Formula* find_formula(const AnyTorque& torque);
+
+/// The operation of a formula that has no derivatives at a state, in words; "" if there is none. Windows are left out.
+/// @param near  how close to 0 an operand counts as 0
+std::string find_singular(std::span<const AnyTorque> torques, const State& state, double near);
 
 /// A torque of the list as a formula of its parameters, without its windows. @throws InvalidInput for a Custom
 formula::Program make_law(const AnyTorque& torque, const Matrix3d& inertia_B);

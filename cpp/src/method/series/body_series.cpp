@@ -27,9 +27,6 @@ std::string compute_series_refusal(const Scene& scene) {
   const torques::GravityGradient* first = nullptr;
   for (const AnyTorque& torque : scene.torques()) {
     const auto* custom = std::get_if<torques::Custom>(&torque);
-    const auto* formula = std::get_if<torques::Formula>(&torque);
-    if ((formula != nullptr && formula->has_switches()) || (custom != nullptr && custom->name() == "Formula"))
-      return "a Formula with switches, whose series are not used yet (dop853 and rk45 integrate it)";
     if (custom != nullptr) return "a Custom torque, which has no Taylor series (dop853 and rk45 integrate it)";
     if (const auto* gradient = std::get_if<torques::GravityGradient>(&torque)) {
       if (first != nullptr &&
@@ -39,6 +36,9 @@ std::string compute_series_refusal(const Scene& scene) {
       first = gradient;
     }
   }
+  if (const std::string singular = find_singular(scene.torques(), scene.start(), 0.0); !singular.empty())
+    return "a Formula without derivatives at the start, by " + singular + ", which is 0 (for a norm write "
+           "norm(v, smooth=1e-6)" + (scene.states().empty() ? "; dop853 and rk45 integrate it)" : ")");
   return "";
 }
 

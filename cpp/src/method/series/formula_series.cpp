@@ -37,11 +37,8 @@ double* align_to_line(std::vector<double>& numbers) {
 }
 
 bool needs_formula_series(const Scene& scene) {
-  return std::any_of(scene.torques().begin(), scene.torques().end(), [](const AnyTorque& torque) {
-    const auto* during = std::get_if<torques::During>(&torque);
-    return during != nullptr ? std::holds_alternative<torques::Formula>(during->torque())
-                             : std::holds_alternative<torques::Formula>(torque);
-  });
+  return std::any_of(scene.torques().begin(), scene.torques().end(),
+                     [](const AnyTorque& torque) { return find_formula(torque) != nullptr; });
 }
 
 FormulaSeries::FormulaSeries(const Scene& scene, bool) : FormulaSeries(scene, nullptr) {}
@@ -60,6 +57,13 @@ FormulaSeries::FormulaSeries(const Scene& scene, std::shared_ptr<const formula::
   std::copy(starts.begin(), starts.end(), start_.begin() + ode::series_width);
   largest_.assign(states_.size(), 0.0);
   workspace_.resize(table_->workspace_size(ode::most_series_order) + 8);
+}
+
+FormulaSeries FormulaSeries::with_table(std::shared_ptr<const formula::Table> table) const {
+  FormulaSeries other = *this;
+  other.table_ = std::move(table);
+  other.workspace_.resize(other.table_->workspace_size(ode::most_series_order) + 8);
+  return other;
 }
 
 formula::Program make_body_system(const Scene& scene, const BodySeries& frame,

@@ -44,6 +44,9 @@ class FormulaSeries {
   /// @param table  of make_body_system()
   FormulaSeries(const Scene& scene, std::shared_ptr<const formula::Table> table);
 
+  /// The same body with other recurrences for its rates, as those of one mode of its switches.
+  FormulaSeries with_table(std::shared_ptr<const formula::Table> table) const;
+
   const BodySeries& frame() const { return frame_; }
   int width() const { return table_->width(); }
   int count_blocks() const { return 2 + static_cast<int>(ends_.size()); }

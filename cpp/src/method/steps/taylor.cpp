@@ -6,6 +6,7 @@
 #include "method/method.hpp"
 #include "method/series/body_series.hpp"
 #include "method/series/formula_series.hpp"
+#include "method/series/switched_series.hpp"
 
 namespace polhode {
 namespace {
@@ -32,6 +33,7 @@ Trajectory integrate_series(const Scene& scene, const RunOptions& options) {
     }
   }
   const auto make = [&](const double* y, double t_end) -> std::unique_ptr<ode::Stepper> {
+    if constexpr (ode::SwitchedProblem<Series>) series->restart();
     if (trace != nullptr) {
       return std::make_unique<Tracked>(*series, *lost, *perturbed, *sampled, scene.t0(), y, t_end,
                                        options.tolerances, *trace);
@@ -48,6 +50,7 @@ Trajectory integrate_series(const Scene& scene, const RunOptions& options) {
 }
 
 Trajectory integrate_taylor(const Scene& scene, const RunOptions& options) {
+  if (has_switches(scene)) return integrate_series<SwitchedSeries>(scene, options);
   return needs_formula_series(scene) ? integrate_series<FormulaSeries>(scene, options)
                                      : integrate_series<BodySeries>(scene, options);
 }

@@ -16,7 +16,9 @@ struct Attempt {
   double error = unknown_error;          ///< bound on the error of all samples
   double holds_until = unknown_error;    ///< time from the start for which the accuracy holds [s]; infinity: to the end
 
-  bool finished() const { return motion.status == Status::finished || motion.status == Status::event; }
+  bool finished() const {
+    return motion.status == Status::finished || motion.status == Status::event || motion.status == Status::sliding;
+  }
 };
 
 /// Runs a decision's method and sums the counts of all runs.

@@ -16,11 +16,6 @@ using formula::KnownTorque;
 using torques::During;
 using torques::Formula;
 
-const Formula* find_formula(const AnyTorque& torque) {
-  const auto* during = std::get_if<During>(&torque);
-  return during != nullptr ? std::get_if<Formula>(&during->torque()) : std::get_if<Formula>(&torque);
-}
-
 LastingTorque make_torque(const KnownTorque& known) {
   using Kind = KnownTorque::Kind;
   const Vector3d& v = known.vector;
@@ -156,7 +151,8 @@ Scene resolve_formulas(const Scene& scene, AsCustom as_custom, Recognitions& rec
     if (formula == nullptr) continue;
     const auto& known = recognitions.find(*formula, scene);
     if (!known) {
-      if (as_custom == AsCustom::yes && formula->has_switches()) torques[i] = with_window(torque, formula->as_custom());
+      const bool steps_over = as_custom == AsCustom::yes && formula->has_switches() && formula->states().empty();
+      if (steps_over) torques[i] = with_window(torque, formula->as_custom());
       continue;
     }
     std::string names;

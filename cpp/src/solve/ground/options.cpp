@@ -146,7 +146,7 @@ void check_options(const Scene& scene, const SolveOptions& options) {
                        "this method integrates Euler's equations only");
   }
   if (const std::string why = compute_refusal(name, scene); !why.empty()) {
-    throw InvalidInput("method '" + name + "'", "used with " + std::string(method.record.needs), why);
+    throw InvalidInput("method '" + name + "'", "used with " + std::string(method.record.needs.empty() ? "another scene" : method.record.needs), why);
   }
 }
 

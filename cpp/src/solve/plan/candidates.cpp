@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "method/method.hpp"
+#include "method/series/switched_series.hpp"
 #include "polhode/core/error.hpp"
 #include "solve/ground/options.hpp"
 #include "solve/ground/pieces.hpp"
@@ -62,6 +63,10 @@ Candidate evaluate_method(const Scene& scene, const Facts& facts, const SolveOpt
   }
   if (options.formulation != Formulation::euler && find_body_method(record.name).of_bodies) {
     candidate.why_not = "integrates Euler's equations only";
+    return candidate;
+  }
+  if (has_switches(scene) && record.name != "taylor") {
+    candidate.why_not = "steps over the switches of a Formula";
     return candidate;
   }
   candidate.why_not = compute_refusal(record.name, scene);

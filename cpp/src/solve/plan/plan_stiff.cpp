@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "method/method.hpp"
+#include "method/series/switched_series.hpp"
 #include "polhode/math/detail/functions.hpp"
 #include "solve/plan/candidates.hpp"
 #include "solve/ground/options.hpp"
@@ -69,7 +70,7 @@ bool plan_stiff(Decision& decision, const SolveOptions& options) {
   const Scene& scene = decision.scene;
   const Facts& facts = decision.facts;
   if (!method_is_free(options) || facts.before > 0 || !(facts.stiffness >= least_stiffness)) return false;
-  if (!compute_refusal("taylor", scene).empty()) return false;
+  if (!compute_refusal("taylor", scene).empty() || has_switches(scene)) return false;
   const ode::MethodRecord &first = taylor_method.record, &second = radau_method.record;
   const ode::Forecast &explicitly = first.forecast, &implicitly = second.forecast;
   // Where accuracy limits explicit steps from the start to the end, there is nothing to choose.

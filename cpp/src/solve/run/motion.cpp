@@ -17,6 +17,7 @@ std::string_view to_text(Status status) {
     case Status::max_steps: return "max_steps";
     case Status::stopped: return "stopped";
     case Status::failed: return "failed";
+    case Status::sliding: return "sliding";
   }
   return "failed";
 }
