@@ -29,7 +29,11 @@ class Certifier {
  public:
   Certifier(const Decision& decision, const SolveOptions& options)
       : decision_(decision), options_(options), runs_(decision, options), accuracy_(decision.plan.accuracy) {
-    if (!carries_error() && (record().implicit || decision_.pieces.size() > 0)) ratio_ = 3 * pair_ratio;
+    if (carries_error()) {
+      ratio_ = find_carried_ratio(accuracy_);
+    } else if (record().implicit || decision_.pieces.size() > 0) {
+      ratio_ = 3 * pair_ratio;
+    }
     // Below these accuracies rounding matters, and the difference of two runs is a less reliable measure.
     if (accuracy_ <= 2e-12) {
       safety_ = carries_error() ? 3.0 : 5.0, ratio_ *= 3;

@@ -111,7 +111,8 @@ Attempt PairCertificate::run(double coarse, double fine) {
     const bool alike = factor == most_factor, stiff = runs_.method().record.implicit;
     if ((alike || stiff) && runs_.decision().pieces.size() == 0) {
       const BodyMethod& method = find_body_method(runs_.decision().plan.method == "dop853" ? "rk45" : "dop853");
-      const long most_steps = alike ? most_steps_of_another : motion.stats.steps / 4 + 100;
+      const long most_steps =
+          alike ? most_steps_of_another : static_cast<long>(count_third_steps(static_cast<double>(motion.stats.steps)));
       const Motion third = runs_.run_by(method, whole ? *perturbed_ : with_times(*perturbed_, motion.t),
                                         comparison_options_, fine, most_steps);
       if (third.status == Status::finished) {

@@ -8,6 +8,7 @@
 #include "method/method.hpp"
 #include "method/series/switched_series.hpp"
 #include "polhode/core/error.hpp"
+#include "polhode/math/detail/functions.hpp"
 #include "solve/ground/options.hpp"
 #include "solve/ground/pieces.hpp"
 
@@ -43,6 +44,12 @@ std::string compute_refusal(std::string_view name, const Scene& scene) {
   return "";
 }
 
+double find_carried_ratio(double accuracy) {
+  return accuracy <= 1e-9 ? pair_ratio : pair_ratio * std::clamp(math::fast_pow(accuracy / 1e-9, 0.35), 1.0, 5.0);
+}
+
+double count_third_steps(double steps) { return 100 + steps / 4; }
+
 double get_accuracy(const SolveOptions& options) { return options.accuracy.value_or(default_accuracy); }
 
 bool carries_attitude(const Scene& scene, const Facts& facts, const SolveOptions& options) {
@@ -73,32 +80,38 @@ Candidate evaluate_method(const Scene& scene, const Facts& facts, const SolveOpt
   if (!candidate.why_not.empty()) return candidate;
   const double accuracy = get_accuracy(options);
   const double coarse = forecast.find_rtol(accuracy, facts.work());
-  const double fine = options.certify ? coarse / pair_ratio : forecast.find_median_rtol(accuracy / aim, facts.work());
+  const bool carries_error = find_body_method(record.name).carries_error;
+  const double ratio = carries_error ? find_carried_ratio(accuracy) : pair_ratio;
+  const double fine = options.certify ? coarse / ratio : forecast.find_median_rtol(accuracy / aim, facts.work());
   candidate.rtol = std::max(fine, record.least_rtol);
   // The coarser run of the pair serves for comparison only.
   const double compared = std::max(coarse, pair_ratio * record.least_rtol);
-  const bool carries_error = find_body_method(record.name).carries_error;
   const double factor = find_factor(options.cost_factors, record.name);
   const double samples = static_cast<double>(scene.times().size());
   candidate.predicted_seconds = factor * solve_seconds;
-  const auto add_run = [&](double rtol, double share) {
-    const double steps = share * forecast.compute_steps(rtol, facts.work(), facts.stiffness);
-    const double repeats = options.certify && record.implicit ? implicit_pair_calls : 1.0;
-    const double calls = repeats * steps * forecast.calls_per_step;
+  const auto count = [&](double rtol) { return forecast.compute_steps(rtol, facts.work(), facts.stiffness); };
+  const auto add_run = [&](double rtol, double share, double share_of_calls) {
+    const double calls = share_of_calls * count(rtol) * forecast.calls_per_step;
     candidate.predicted_calls += calls;
-    const double own = steps * forecast.compute_step_seconds(rtol) + samples * forecast.sample_seconds;
+    const double own = share * count(rtol) * forecast.compute_step_seconds(rtol) + samples * forecast.sample_seconds;
     candidate.predicted_seconds += factor * own + calls * facts.call_seconds;
   };
-  if (options.certify && carries_error) {
-    add_run(candidate.rtol, facts.is_stiff_for_series() ? carried_cost_stiff : carried_cost);
+  if (!options.certify) {
+    add_run(candidate.rtol, 1.0, 1.0);
+  } else if (carries_error) {
+    const double share = facts.is_stiff_for_series() ? carried_cost_stiff : carried_cost;
+    add_run(candidate.rtol, share, share);
   } else {
-    const double share = options.certify && !record.implicit ? pair_cost : 1.0;
-    add_run(candidate.rtol, share);
-    if (options.certify) add_run(compared, share);
-    if (options.certify && record.implicit) {
-      // The third run of such a certificate is explicit, and stops after some steps (certify_pair.cpp).
-      const double third = 100 + forecast.compute_steps(candidate.rtol, facts.work(), facts.stiffness) / 4;
-      candidate.predicted_calls += third * find_method("dop853").forecast.calls_per_step;
+    const bool alike = count(candidate.rtol) < 1.01 * count(compared);
+    const double share = record.implicit ? implicit_pair_cost : alike ? alike_pair_cost : pair_cost;
+    const double share_of_calls = record.implicit ? implicit_pair_calls : pair_calls;
+    for (const double rtol : {candidate.rtol, compared}) add_run(rtol, share, share_of_calls);
+    if (record.implicit) {
+      const double third = count_third_steps(count(candidate.rtol));
+      const ode::Forecast& other = find_method("dop853").forecast;
+      candidate.predicted_calls += third * other.calls_per_step;
+      candidate.predicted_seconds +=
+          find_factor(options.cost_factors, "dop853") * third * other.compute_step_seconds(candidate.rtol);
     }
   }
   // The certificate will claim the error of the coarser run.

@@ -16,14 +16,21 @@ inline constexpr double solve_seconds = 7e-6;         ///< of any call of solve 
 inline constexpr double piece_seconds = 3e-6;         ///< to set up a run of one piece; the pilot run is one more
 /// The cost of a run that carries its error, as a multiple of the run without, by benchmarks/planner/fit.py.
 inline constexpr double carried_cost = 2.4, carried_cost_stiff = 3.0;
-/// The cost of a pair of explicit runs, as a multiple of what both take: the first pair often proves too little.
-inline constexpr double pair_cost = 1.6;
-/// The calls of the implicit runs of a certificate, as a multiple of what a pair takes: there may be a second round.
-inline constexpr double implicit_pair_calls = 1.2;
+/// The cost of a pair of runs, as a multiple of what both take: the first pair often proves too little. Where stability
+/// limits explicit steps, both runs take the same ones, and a third by another method is compared.
+inline constexpr double pair_cost = 3.0, alike_pair_cost = 4.5, implicit_pair_cost = 1.5;
+/// The same for calls of the user's own torque, whose pilot run makes the forecast better.
+inline constexpr double pair_calls = 1.6, implicit_pair_calls = 1.2;
 inline constexpr double pair_ratio = 5.0;             ///< ratio of the tolerances of the two runs of a certificate
 
 double get_accuracy(const SolveOptions& options);
 bool carries_attitude(const Scene& scene, const Facts& facts, const SolveOptions& options);
+
+/// The tolerance whose forecast error is the accuracy, over that of the first run that carries its error: 5 at 1e-9 and
+/// below, 25 from 1e-7 on. A run that misses a loose accuracy, and its repeat, cost more than a tighter accuracy does.
+double find_carried_ratio(double accuracy);
+/// The steps at most of the explicit run that a certificate of implicit ones takes besides (certify/pair.cpp).
+double count_third_steps(double steps);
 double find_factor(const CostFactors* factors, std::string_view name);
 
 Candidate evaluate_method(const Scene& scene, const Facts& facts, const SolveOptions& options,

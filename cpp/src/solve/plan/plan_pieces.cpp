@@ -71,7 +71,9 @@ class PiecePlanner {
       plan.predicted_error = 20 * std::numeric_limits<double>::epsilon() * (1 + decision_.turns);
     } else {
       const double compared = std::max(coarse_, pair_ratio * main_->least_rtol);
-      plan.rtol = std::max(coarse_ / pair_ratio, main_->least_rtol);
+      const bool carried = find_body_method(main_->name).carries_error;
+      const double ratio = carried ? find_carried_ratio(get_accuracy(options_)) : pair_ratio;
+      plan.rtol = std::max(coarse_ / ratio, main_->least_rtol);
       if (!options_.certify)
         plan.rtol = std::max(main_->forecast.find_median_rtol(get_accuracy(options_) / aim, turns_), main_->least_rtol);
       plan.predicted_error = main_->forecast.compute_error(options_.certify ? compared : plan.rtol, turns_);
@@ -146,7 +148,7 @@ class PiecePlanner {
     for (const PieceWork& one : work) turns += one.turns;
     const double accuracy = get_accuracy(options_);
     if (carried_rounding * (1 + turns) * (1 + turns / record.forecast.secular) > accuracy) return false;
-    const double rtol = record.forecast.find_rtol(accuracy, turns) / pair_ratio;
+    const double rtol = record.forecast.find_rtol(accuracy, turns) / find_carried_ratio(accuracy);
     const bool all_forms = std::all_of(work.begin(), work.end(), [](const PieceWork& one) { return one.form != nullptr; });
     for (const PieceWork& one : work) {
       if (!one.may_be_stepped()) continue;

@@ -116,8 +116,11 @@ bool plan_stiff(Decision& decision, const SolveOptions& options) {
   const double counted = step * run->steps * math::fast_pow(coarse * scale / switch_rtol, -implicitly.power);
   // Taylor alone carries its error, in one run.
   const double carried = options.certify ? 0.5 * carried_cost_stiff : 1.0;
-  const double taylor_alone = carried * (spent + (end - t) * stable),
-               radau_alone = std::min(all * implicit_radian + start_up, counted);
+  const double taylor_alone = carried * (spent + (end - t) * stable);
+  const ode::Forecast& third = find_method("dop853").forecast;
+  const double third_seconds = count_third_steps(run->steps) * third.compute_step_seconds(coarse * scale);
+  const double radau_once = std::min(all * implicit_radian + start_up, counted);
+  const double radau_alone = options.certify ? implicit_pair_cost * radau_once + third_seconds : radau_once;
   Plan& plan = decision.plan;
   decision.facts.turns = decision.turns = turns;
   plan = make_method_plan(scene, facts, options);
