@@ -1,5 +1,5 @@
-// Scenes in C++: a torque of the library, a torque of one's own, and many bodies by the free step. The page "C++ in ten
-// minutes" shows the three functions.
+// Scenes in C++: a torque of the library, a formula, a torque of one's own, and many bodies by the free step. The page
+// "C++ in ten minutes" shows the four functions.
 #include <cmath>
 #include <cstdio>
 #include <vector>
@@ -19,6 +19,23 @@ void follow_heavy_body() {
   const double* w = &motion.omega[3 * 9];   // (n, 3), row by row; attitude (n, 4)
   std::printf("heavy body by %s: omega %.8f %.8f %.8f at 10 s, error below %.0e\n", motion.plan.method.c_str(), w[0],
               w[1], w[2], motion.error);
+}
+
+// formula
+void follow_formula() {
+  const auto law = [](const auto& in) {   // called once, on symbols
+    const auto aim = to_body(in.attitude, in.vector(0.0, 0.0, 1.0)), axis = in.vector(0.0, 0.0, 1.0);
+    return cross(axis, aim) * in.p("stiffness") - in.omega * in.p("damping");   // N m, body axes
+  };
+  ph::SceneParts parts{.inertia_B = ph::InertiaTensor::from_moments({1.0, 2.0, 2.5}), .omega = {0.3, 0.2, 1.0}};
+  parts.torques.emplace_back(ph::torques::Formula::from(law, {{"stiffness", {0.6}}, {"damping", {0.5}}}));
+  parts.times = {5.0};
+  const ph::Scene scene(parts);
+
+  const ph::Motion motion = ph::solve(scene, {.accuracy = 1e-9});
+  const ph::MotionSensitivity by = ph::compute_sensitivity(scene, {"torques.0.damping"});
+  std::printf("formula by %s: omega_x %.8f rad/s, by the damping %.8f, error below %.0e\n", motion.plan.method.c_str(),
+              motion.omega[0], by.d_omega[0], motion.error);
 }
 
 // own torque
@@ -64,6 +81,7 @@ void step_many_bodies() {
 // main
 int main() {
   follow_heavy_body();
+  follow_formula();
   follow_own_torque();
   step_many_bodies();
 }

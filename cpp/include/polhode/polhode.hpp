@@ -16,6 +16,7 @@
 #include "polhode/core/float_state.hpp"
 #include "polhode/core/interrupt.hpp"
 #include "polhode/core/version.hpp"
+#include "polhode/derivative/sensitivity.hpp"
 #include "polhode/exact/closed_forms.hpp"
 #include "polhode/inertia/checks.hpp"
 #include "polhode/inertia/mass_properties.hpp"

@@ -76,11 +76,17 @@ def test_cpp_example_links_and_prints_what_its_twin_prints(source, request, tmp_
     run("cmake", "--build", tmp_path, *(["--target", "racket"] if source == "pip install" else []))   # one is enough
     assert run(tmp_path / "racket") == run_example(ROOT / "examples/python/racket.py")
     if source == "cmake --install":
-        heavy, own, many = run(tmp_path / "scenes").splitlines()
+        heavy, law, own, many = run(tmp_path / "scenes").splitlines()
         w = [float(x) for x in re.search(r"omega (\S+) (\S+) (\S+) at 10 s", heavy).groups()]
         same = ph.solve(ph.Scene(inertia=(1, 2, 2.5), omega=(0.3, 0.2, 3), times=10.0 ** np.arange(2),
                                  torques=[ph.torques.Gravity(2.0, (0.3, 0.2, 0.5))]), accuracy=1e-9)
         assert np.abs(np.array(w) - same.omega[-1]).max() < 1e-7 and float(heavy.split()[-1]) <= 1e-9
+        text = "cross(axis, to_body(axis)) * stiffness - damping * omega"
+        spring = ph.torques.Formula(text=text, axis=(0, 0, 1), stiffness=0.6, damping=0.5)
+        twin = ph.solve(ph.Scene(inertia=(1, 2, 2.5), omega=(0.3, 0.2, 1), times=[5.0], torques=[spring]), 1e-9,
+                        sensitivity="formula.damping")
+        for number, pattern in ((twin.omega[0, 0], "omega_x"), (twin.sensitivity.d_omega[0, 0, 0], "damping")):
+            assert float(re.search(pattern + r" (\S+?),? ", law).group(1)) == pytest.approx(number, abs=2e-8)
         found, by_hand = re.search(r"omega_z (\S+) rad/s, by hand (\S+)", own).groups()
         assert float(found) == pytest.approx(float(by_hand), rel=1e-8) and float(by_hand) == pytest.approx(3 / np.e)
         assert many == "many bodies: less than 1e-4 rad from the closed form"

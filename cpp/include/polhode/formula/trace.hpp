@@ -25,6 +25,8 @@ class TorqueArguments {
       : parameters_(parameters), states_(states), parameter_values_(std::move(parameter_values)),
         state_values_(std::move(state_values)) {}
 
+  /// A vector of numbers.
+  static Vec<T, 3> vector(double x, double y, double z) { return {{T(x), T(y), T(z)}}; }
   /// A named parameter, and a named vector of parameters.
   T p(std::string_view name) const { return get<1>(parameters_, parameter_values_, name)[0]; }
   template <std::size_t n>
