@@ -1,8 +1,13 @@
+#include "derivative/column_equations.hpp"
+
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
-#include "derivative/formula_columns.hpp"
+#include "derivative/column_lanes.hpp"
 #include "method/series/body_laws.hpp"
+#include "method/series/formula_series.hpp"
+#include "polhode/core/error.hpp"
 #include "polhode/formula/derivative.hpp"
 #include "polhode/formula/expression.hpp"
 
@@ -48,28 +53,41 @@ class EquationsBuilder {
  public:
   EquationsBuilder(const Scene& piece, const BodySeries& frame, const std::vector<formula::Input>& states)
       : piece_(piece), frame_(frame), states_(states), made_(make_body_system(piece, frame, states)),
-        rows_(made_.outputs.size()), numbers_(static_cast<int>(formula::list_values(states).size())) {
+        rows_(made_.outputs.size()), numbers_(static_cast<int>(formula::list_values(states).size())),
+        guards_(formula::list_sided_guards(made_)), count_(guards_.forms.size()) {
+    if (std::find(guards_.holds.begin(), guards_.holds.end(), true) != guards_.holds.end())
+      refuse("friction, whose motion has no columns yet");
     Graph& graph = made_.graph;
     const Vec<Expr, 3> r = formula::list_states<3>(graph, formula::first_rate);
     w_ = made_.rates.empty() ? r : take(graph, made_.rates, 0);
     q_ = formula::list_states<4>(graph, formula::first_attitude);
   }
 
-  ColumnEquations build(const std::vector<ColumnCause>& causes) {
-    ColumnEquations found{states_, frame_.terms().variables, nullptr, {}, {}, {}, {}};
+  ColumnEquations build(const std::vector<ColumnCause>& causes, const std::vector<formula::Side>& sides) {
+    ColumnEquations found{frame_.terms().variables, nullptr, {}, {}, {}, {}, {}};
     differentiate_body();
     add_terms(found);
+    add_guards(causes, found);
     for (std::size_t begin = 0; begin < causes.size(); begin += 8) {
       std::vector<std::vector<Form>> forces;
       for (std::size_t c = begin; c < std::min(begin + 8, causes.size()); ++c) forces.push_back(find_forces(causes[c]));
       add_forces(forces, found);
     }
-    Program system = formula::rewrite(made_);
-    found.table = std::make_shared<const formula::Table>(formula::Tape(system, static_cast<int>(rows_)));
+    if (count_ > 0) {
+      if (formula::list_sided_guards(made_).forms != guards_.forms) refuse("switches that cannot be told apart");
+      made_ = formula::make_mode(made_, sides).program;
+    } else {
+      made_ = formula::rewrite(made_);
+    }
+    found.table = std::make_shared<const formula::Table>(formula::Tape(made_, static_cast<int>(rows_)));
     return found;
   }
 
  private:
+  [[noreturn]] static void refuse(const char* what) {
+    throw InvalidInput("sensitivity", "left out for a formula that cannot be differentiated", what);
+  }
+
   /// The accelerations and the rates of states, and their derivatives by w, small rotations and states.
   void differentiate_body() {
     Program plain;
@@ -81,6 +99,8 @@ class EquationsBuilder {
     for (int i = 0; i < 3; ++i)
       plain.outputs.push_back((a[place(i)] + w[place((i + 1) % 3)] * w[place((i + 2) % 3)] * products[i]).form());
     plain.outputs.insert(plain.outputs.end(), rates.begin(), rates.end());
+    for (const int node : formula::list_sided_guards(plain).nodes) plain.outputs.push_back(Form::of(node));
+    if (plain.outputs.size() != 3 + place(numbers_) + count_) refuse("switches that cannot be told apart");
     std::vector<Variable> variables;
     for (int i = 0; i < 3; ++i) variables.push_back({Variable::Kind::state, formula::first_rate + i});
     for (int i = 0; i < 3; ++i) variables.push_back({Variable::Kind::rotation, i});
@@ -94,26 +114,85 @@ class EquationsBuilder {
   }
 
   void add_terms(ColumnEquations& found) {
-    const int size = 6 + numbers_, outputs = 3 + numbers_;
-    const auto slope = [&](int row, int by) { return slopes_[place(outputs * (1 + by) + row)]; };
+    const int size = 6 + numbers_;
     for (int i = 0; i < size; ++i) {
       found.first_term.push_back(static_cast<int>(found.terms.size()));
       if (i >= 3 && i < 6) {   // turn' = d - w x turn
         const int j = (i - 3 + 1) % 3, k = (i - 3 + 2) % 3;
-        add_term(i - 3, Form(1.0), found);
-        add_term(3 + k, (-w_[place(j)]).form(), found);
-        add_term(3 + j, w_[place(k)].form(), found);
+        add_term(i - 3, Form(1.0), found.terms);
+        add_term(3 + k, (-w_[place(j)]).form(), found.terms);
+        add_term(3 + j, w_[place(k)].form(), found.terms);
         continue;
       }
       const int row = i < 3 ? i : i - 3;
-      for (int from = 0; from < size; ++from) add_term(from, slope(row, from), found);
+      for (int from = 0; from < size; ++from) add_term(from, find_slope(row, from), found.terms);
     }
     found.first_term.push_back(static_cast<int>(found.terms.size()));
   }
 
-  void add_term(int from, const Form& form, ColumnEquations& found) {
+  /// The derivative of an acceleration, a state's rate or a guard by a number of a column.
+  const Form& find_slope(int row, int by) const {
+    return slopes_[place((3 + numbers_ + static_cast<int>(count_)) * (1 + by) + row)];
+  }
+
+  void add_guards(const std::vector<ColumnCause>& causes, ColumnEquations& found) {
+    found.guards.resize(count_);
+    for (std::size_t k = 0; k < count_; ++k) {
+      const int row = 3 + numbers_ + static_cast<int>(k);
+      ColumnEquations::Guard& guard = found.guards[find_guard(slopes_[place(row)])];
+      guard.series = find_series(slopes_[place(row)]);
+      for (int from = 0; from < 6 + numbers_; ++from) add_term(from, find_slope(row, from), guard.terms);
+    }
+    for (std::size_t c = 0; c < causes.size() && count_ > 0; ++c) {
+      if (!causes[c].torque) continue;
+      Program law = make_law(to_any(*causes[c].torque), piece_.inertia_B().matrix());
+      const formula::Guards own = formula::list_sided_guards(law);
+      const std::size_t outputs = law.outputs.size(), count = own.nodes.size();
+      for (const int node : own.nodes) law.outputs.push_back(Form::of(node));
+      const std::vector<Form> slopes = differentiate_law(law, causes[c]);
+      for (std::size_t i = 0; i < count; ++i) {
+        std::vector<LinearTerm> term;
+        add_term(static_cast<int>(c), slopes[2 * outputs + count + i], term);
+        if (term.empty()) continue;
+        const Form& guard = slopes[outputs + i];
+        found.guards[find_guard(guard)].forces.push_back({term[0], find_series(guard)});
+      }
+    }
+  }
+
+  /// The number of a guard. Guards are known up to a factor.
+  std::size_t find_guard(const Form& given) const {
+    const Graph& graph = made_.graph;
+    const auto expand = [&](const Form& form) {
+      const bool is_node = form.terms.size() == 1 && form.constant == 0.0;
+      const int node = is_node ? form.terms[0].node : 0;
+      return is_node && graph[node].op == formula::Op::linear ? graph.linear(node) : form;
+    };
+    const Form form = expand(given);
+    for (std::size_t g = 0; g < count_; ++g) {
+      const Form other = expand(Form::of(guards_.nodes[g]));
+      if (form.terms.size() != other.terms.size()) continue;
+      const double part = other.terms[0].factor / form.terms[0].factor;
+      const auto is_near = [&](double a, double b) { return std::abs(a * part - b) <= 1e-12 * std::abs(b); };
+      bool same = is_near(form.constant, other.constant);
+      for (std::size_t i = 0; i < form.terms.size(); ++i)
+        same = same && form.terms[i].node == other.terms[i].node &&
+               is_near(form.terms[i].factor, other.terms[i].factor);
+      if (same) return g;
+    }
+    refuse("switches that cannot be told apart");
+  }
+
+  /// The outputs of a law, and their derivatives by the number of a torque that a column changes.
+  std::vector<Form> differentiate_law(const Program& law, const ColumnCause& cause) {
+    const Variable by{Variable::Kind::parameter, find_number(law, cause, *cause.torque)};
+    return BodyLaws(made_.graph, frame_, w_, q_, states_)
+        .add(formula::bind_parameters(formula::differentiate(law, {by}), formula::list_values(law.parameters)));
+  }
+
+  void add_term(int from, const Form& form, std::vector<LinearTerm>& terms) {
     if (form.is_zero()) return;
-    found.terms.push_back(form.is_constant() ? LinearTerm{from, -1, form.constant}
+    terms.push_back(form.is_constant() ? LinearTerm{from, -1, form.constant}
                                              : LinearTerm{from, find_series(form), 0.0});
   }
 
@@ -140,7 +219,8 @@ class EquationsBuilder {
     Vec<Expr, 3> rate;
     if (!cause.inertia.isZero(0.0)) {
       const Matrix3d dJ = frame_.is_rotated() ? Matrix3d(R.transpose() * cause.inertia * R) : cause.inertia;
-      rate = rate - divide(cross(w_, formula::apply_matrix(dJ, w_)) + formula::apply_matrix(dJ, take(graph, slopes_, 0)));
+      const Vec<Expr, 3> w_dot = take(graph, slopes_, 0);
+      rate = rate - divide(cross(w_, formula::apply_matrix(dJ, w_)) + formula::apply_matrix(dJ, w_dot));
       for (const AnyTorque& torque : piece_.torques())
         if (follows_inertia(torque))
           rate = rate + laws.accelerate(take(graph, laws.add(make_bound_law(torque, cause.inertia)), 0));
@@ -151,10 +231,7 @@ class EquationsBuilder {
     }
     if (cause.torque) {
       const Program law = make_law(to_any(*cause.torque), piece_.inertia_B().matrix());
-      const Variable by{Variable::Kind::parameter, find_number(law, cause, *cause.torque)};
-      const Program slopes = formula::bind_parameters(formula::differentiate(law, {by}),
-                                                      formula::list_values(law.parameters));
-      const std::vector<Form> outputs = laws.add(slopes);
+      const std::vector<Form> outputs = differentiate_law(law, cause);
       std::size_t next = law.outputs.size();
       rate = rate + laws.accelerate(take(graph, outputs, next));
       next += 3;
@@ -178,7 +255,8 @@ class EquationsBuilder {
         const Form& form = columns[c][i];
         if (form.is_zero()) continue;
         const std::ptrdiff_t series = form.is_constant() ? -1 : find_series(form);
-        auto own = std::find_if(forces.begin() + begin, forces.end(), [&](const auto& f) { return f.series == series; });
+        auto own = std::find_if(forces.begin() + begin, forces.end(),
+                                [&](const LinearForce& force) { return force.series == series; });
         if (own == forces.end()) own = forces.insert(own, LinearForce{{}, series});
         own->parts[c] = form.is_constant() ? form.constant : 1.0;
       }
@@ -193,6 +271,8 @@ class EquationsBuilder {
   Program made_;
   std::size_t rows_;
   int numbers_;   ///< of states
+  formula::Guards guards_;
+  std::size_t count_;   ///< of guards
   Vec<Expr, 3> w_;
   Vec<Expr, 4> q_;
   std::vector<Form> slopes_;
@@ -200,11 +280,25 @@ class EquationsBuilder {
 
 }  // namespace
 
-std::shared_ptr<const ColumnEquations> make_column_equations(const Scene& piece,
-                                                             const std::vector<ColumnCause>& causes) {
+void ColumnEquations::expand(const ColumnKernels& kernels, const double* extras, int order, double unit,
+                             ColumnLanes& columns) const {
+  columns.begin(order);
+  for (std::size_t g = 0; g < columns.groups(); ++g) {
+    kernels.expand_linear({static_cast<int>(columns.size()), terms.data(), first_term.data(), forces[g].data(),
+                           first_force[g].data(), extras, table->extra_width()},
+                          order, unit, columns.rows(g));
+  }
+}
+
+std::shared_ptr<const ColumnEquations> find_equations(const Scene& piece, const std::vector<ColumnCause>& causes,
+                                                      const std::vector<formula::Side>& sides, ModeEquations& known) {
   const BodySeries frame(drop_torques(piece), true);
-  return std::make_shared<const ColumnEquations>(
-      EquationsBuilder(piece, frame, list_states(piece.torques())).build(causes));
+  std::shared_ptr<const ColumnEquations>& found = known[sides];
+  if (!found || found->variables != frame.terms().variables) {
+    found = std::make_shared<const ColumnEquations>(
+        EquationsBuilder(piece, frame, list_states(piece.torques())).build(causes, sides));
+  }
+  return found;
 }
 
 }  // namespace polhode

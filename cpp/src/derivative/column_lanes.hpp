@@ -23,6 +23,9 @@ class ColumnLanes {
   std::size_t count() const { return count_; }
   std::size_t groups() const { return (count_ + 7) / 8; }
 
+  /// A number of a column at the end of the last step, in principal axes.
+  double& at(std::size_t i, std::size_t c) { return arrived_[size_ * (c / 8) + i].of[c % 8]; }
+
   /// Puts the columns at the end of the last step into rows 0.
   void begin(int order);
   /// The series of a group, whose rows from 1 on the caller fills.

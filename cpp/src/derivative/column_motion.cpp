@@ -5,6 +5,7 @@
 
 #include "derivative/column_series.hpp"
 #include "derivative/formula_columns.hpp"
+#include "derivative/switched_columns.hpp"
 #include "polhode/ode/taylor.hpp"
 
 namespace polhode {
@@ -63,12 +64,15 @@ class SeriesMotion final : public ColumnMotion {
 std::unique_ptr<ColumnMotion> make_column_motion(const Scene& piece, const std::vector<ColumnCause>& causes,
                                                  const std::vector<double>& columns, double t_end,
                                                  const ode::Tolerances& tolerances,
-                                                 std::shared_ptr<const ColumnEquations>& equations) {
+                                                 ModeEquations& equations) {
   if (!needs_formula_series(piece))
     return std::make_unique<SeriesMotion<ColumnSeries>>(piece.t0(), t_end, tolerances, piece, causes, columns);
-  const BodySeries frame(drop_torques(piece), true);
-  if (!equations || equations->variables != frame.terms().variables) equations = make_column_equations(piece, causes);
-  return std::make_unique<SeriesMotion<FormulaColumns>>(piece.t0(), t_end, tolerances, piece, equations, causes.size(),
+  if (has_switches(piece)) {
+    return std::make_unique<SeriesMotion<SwitchedColumns>>(piece.t0(), t_end, tolerances, piece, causes, equations,
+                                                           columns);
+  }
+  return std::make_unique<SeriesMotion<FormulaColumns>>(piece.t0(), t_end, tolerances, piece,
+                                                        find_equations(piece, causes, {}, equations), causes.size(),
                                                         columns);
 }
 

@@ -1,15 +1,19 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <vector>
 
 #include "derivative/column_terms.hpp"
+#include "polhode/formula/sides.hpp"
 #include "polhode/ode/problem.hpp"
 #include "polhode/ode/stepper.hpp"
 
 namespace polhode {
 
 struct ColumnEquations;
+/// The equations of formulas, by the sides of their switches.
+using ModeEquations = std::map<std::vector<formula::Side>, std::shared_ptr<const ColumnEquations>>;
 
 /// A body's motion through one piece, step by step, with the columns of its variational equations.
 class ColumnMotion {
@@ -25,10 +29,10 @@ class ColumnMotion {
 };
 
 /// @param columns    at the start, (numbers of a column, columns)
-/// @param equations  of formulas: those of the last run through the same piece, or null; left for the next run
+/// @param equations  of formulas: those of the last run through the same piece; left for the next run
 std::unique_ptr<ColumnMotion> make_column_motion(const Scene& piece, const std::vector<ColumnCause>& causes,
                                                  const std::vector<double>& columns, double t_end,
                                                  const ode::Tolerances& tolerances,
-                                                 std::shared_ptr<const ColumnEquations>& equations);
+                                                 ModeEquations& equations);
 
 }  // namespace polhode

@@ -293,7 +293,10 @@ void ColumnRun::follow(const std::vector<Piece>& pieces, const std::vector<std::
       check_interrupt();
       if (out.steps++ >= max_steps)
         throw IntegrationFailure(motion->t(), "sensitivity: more than " + std::to_string(max_steps) + " steps");
-      if (motion->advance(piece.end) != ode::StepResult::accepted)
+      const ode::StepResult result = motion->advance(piece.end);
+      if (result == ode::StepResult::sliding || result == ode::StepResult::chattering)
+        throw IntegrationFailure(motion->t(), "sensitivity: the motion stays on the surface of a switch");
+      if (result != ode::StepResult::accepted)
         throw IntegrationFailure(motion->t(), "sensitivity: the motion or its derivatives leave the range of float64");
       // Samples at the end of the piece come after what happens there.
       std::size_t count = 0;

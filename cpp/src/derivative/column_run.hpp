@@ -1,9 +1,9 @@
 #pragma once
 
 #include <map>
-#include <memory>
 #include <vector>
 
+#include "derivative/column_motion.hpp"
 #include "derivative/column_terms.hpp"
 #include "polhode/scene/parameter.hpp"
 #include "polhode/derivative/sensitivity.hpp"
@@ -19,8 +19,6 @@ struct ColumnSamples {
   std::vector<std::size_t> samples;      ///< those that were computed
   long steps = 0;
 };
-
-struct ColumnEquations;
 
 /// Integrates the columns of a scene through its pieces.
 class ColumnRun {
@@ -56,7 +54,7 @@ class ColumnRun {
   Matrix3d J_inverse_;
   std::vector<Vector3d> momenta_;        ///< of each rotor while it rotates, body axes
   std::vector<Matrix3d> inertia_change_; ///< of each parameter
-  mutable std::map<const Piece*, std::shared_ptr<const ColumnEquations>> equations_;   ///< of formulas
+  mutable std::map<const Piece*, ModeEquations> equations_;   ///< of formulas
 };
 
 }  // namespace polhode

@@ -24,12 +24,7 @@ void FormulaColumns::compute_series(math::DD t, double unit, const double* y, co
   body_.frame().compute_rates(rows, w);
   rate_ = std::max({std::abs(w[0]), std::abs(w[1]), std::abs(w[2]), 1.0 / unit});
   columns_.begin(order);
-  for (std::size_t g = 0; g < columns_.groups(); ++g) {
-    kernels_.expand_linear({static_cast<int>(columns_.size()), equations_->terms.data(), equations_->first_term.data(),
-                            equations_->forces[g].data(), equations_->first_force[g].data(), extras,
-                            equations_->table->extra_width()},
-                           order, unit, columns_.rows(g));
-  }
+  equations_->expand(kernels_, extras, order, unit, columns_);
 }
 
 /// The columns are measured relative to their own first rows: their block begins with 1.

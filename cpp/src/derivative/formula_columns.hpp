@@ -4,27 +4,11 @@
 #include <memory>
 #include <vector>
 
+#include "derivative/column_equations.hpp"
 #include "derivative/column_lanes.hpp"
-#include "derivative/column_terms.hpp"
 #include "method/series/formula_series.hpp"
 
 namespace polhode {
-
-/// The variational equations of a body under formulas, differentiated by symbols: a table of the state, whose extras
-/// are the series that multiply columns and force them. It depends on the torques, not on the start.
-struct ColumnEquations {
-  std::vector<formula::Input> states;           ///< of the torques, after the six numbers of a column
-  RateVariables variables;                      ///< of the body's rates
-  std::shared_ptr<const formula::Table> table;
-  std::vector<LinearTerm> terms;
-  std::vector<int> first_term;
-  std::vector<std::vector<LinearForce>> forces;   ///< of each eight columns
-  std::vector<std::vector<int>> first_force;
-};
-
-/// @param piece  a scene whose torques and rotors have no windows
-std::shared_ptr<const ColumnEquations> make_column_equations(const Scene& piece,
-                                                             const std::vector<ColumnCause>& causes);
 
 /// A FormulaSeries as an ode::WideProblem, with columns beside the state. They limit the step as the state does.
 class FormulaColumns {

@@ -102,8 +102,8 @@ void require_formulas(const Scene& scene) {
     throw InvalidInput("sensitivity", "left out for a torque without a formula that can be differentiated", why);
 }
 
-/// The scene with the torques of the list that its formulas are. A formula that is differentiated by its own numbers, or
-/// while the inertia changes, stays one.
+/// The scene with the torques of the list that its formulas are. A formula that is differentiated by its own numbers
+/// stays one, and so does each while the inertia changes.
 Scene resolve(const Scene& scene, const std::vector<SceneParameter>& parameters) {
   using Of = SceneParameter::Of;
   std::vector<AnyTorque> torques = scene.torques();

@@ -123,6 +123,7 @@ Guards list_sided_guards(const Program& program) {
     if (number == guards.forms.size()) {
       guards.forms.push_back(normalise(program.graph, n.operands[0]).first);
       guards.holds.push_back(false);
+      guards.nodes.push_back(n.operands[0]);
     }
     if (n.index == 1) guards.holds[number] = true;
   }

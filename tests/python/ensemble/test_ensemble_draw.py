@@ -159,7 +159,8 @@ def test_bits_do_not_depend_on_numpys_processor(tmp_path):
 def test_parameters_and_starts_of_formulas_are_drawn_by_name():
     torque = {"kind": "formula", "torque": "-kp * attitude.xyz - kd * omega - h",
               "parameters": {"kp": {"normal": [0.7, 0.1]}, "kd": {"uniform": [[0.1, 0.2, 0.3], [0.2, 0.3, 0.4]]}},
-              "states": {"h": {"start": {"truncated_normal": [[0, 0, 1], 0.1, [-1, -1, 0], [1, 1, 2]]}, "rate": "omega"}}}
+              "states": {"h": {"start": {"truncated_normal": [[0, 0, 1], 0.1, [-1, -1, 0], [1, 1, 2]]},
+                               "rate": "omega"}}}
     given = recipe.from_content({**tomllib.loads(ensembles.FREE), "torques": [torque], "count": 40}, ".", "mine.toml")
     laws = [ph.ensemble(given, executor=0).scene(i).torques[0] for i in (3, 4, 39)]
     assert len({law.parameters["kp"] for law in laws}) == 3

@@ -233,3 +233,64 @@ def test_the_start_of_a_state_is_fitted():
     np.testing.assert_allclose(found.numbers["states.s"], found.scene.states["s"])
     with pytest.raises(ph.InvalidInput, match="state.* s"):
         ph.fit(data, guess, fit=("states.h",))
+
+
+def clipped(t, omega, attitude, p):
+    return np.clip(-p.kp * attitude[:3] * attitude[3] - p.kd * omega, -p.limit, p.limit)
+
+
+def dead_zone(t, omega, attitude, p):
+    return np.where(np.abs(omega) > p.band, -p.k * omega, 0.1 * np.sin(t))
+
+
+def bang(t, omega, attitude, p):
+    return -p.k * np.sign(omega[0] + 0.3 * attitude[0] - p.shift) * np.array((1, 0.2, 0))
+
+
+def wheels(t, omega, attitude, p, s):
+    push = clipped(t, omega, attitude, p)
+    return push - np.cross(omega, s.h), {"h": -push}
+
+
+SWITCHED = {
+    "clipped": (clipped, {"kp": 0.7, "kd": 0.5, "limit": 0.2}), "dead zone": (dead_zone, {"band": 0.37, "k": 0.3}),
+    "bang": (bang, {"k": 0.1, "shift": 0.05}), "wheels": (wheels, {"kp": 0.7, "kd": 0.5, "limit": 0.2}),
+    "two": (bang, {"k": 0.1, "shift": 0.05}),
+}
+
+
+@pytest.mark.parametrize("law", SWITCHED)
+@pytest.mark.parametrize("inertia", [(1, 2, 2.5), [[1.2, 0.2, -0.1], [0.2, 2.0, 0.3], [-0.1, 0.3, 1.7]]])
+@pytest.mark.parametrize("times", [(0.7, 2.0, 4.0), (-0.5, -1.5)])
+def test_columns_across_switches_are_differences_of_motions(law, inertia, times):
+    function, parameters = SWITCHED[law]
+
+    def solved(sensitivity=None, rate=0.4, start=0.1, **changed):
+        own = Formula(function, states={"h": (start, 0, 0)} if law == "wheels" else None, **{**parameters, **changed})
+        more = [Formula(dead_zone, band=0.2, k=-0.1)] if law == "two" else []
+        given = scene([*more, own], inertia, times=times, omega=(rate, 1.0, -0.7))
+        return ph.solve(given, 1e-12, sensitivity=sensitivity)
+
+    last = 1 if law == "two" else 0
+    columns = {"rate": "omega_x", **{name: f"torques.{last}.{name}" for name in parameters}}
+    if law == "wheels":
+        columns["start"] = "states.h_x"
+    groups = ("omega", *(f"torques.{last}.{name}" for name in parameters), *(["states.h"] if law == "wheels" else []))
+    motion = solved(groups)
+    s = motion.sensitivity
+    assert motion.success and s.error.max() < 1e-9
+    middle = {"rate": 0.4, "start": 0.1, **parameters}
+    for name, column in columns.items():
+        up, down = (solved(**{name: middle[name] + by}) for by in (1e-5, -1e-5))
+        k = s.columns.index(column)
+        np.testing.assert_allclose(s.d_omega[..., k], (up.omega - down.omega) / 2e-5, atol=3e-7)
+        for state, found in s.d_states.items():
+            np.testing.assert_allclose(found[..., k], (up.states[state] - down.states[state]) / 2e-5, atol=3e-7)
+
+
+def test_what_switches_leave_without_columns_is_said():
+    def rub(t, omega, attitude, p):
+        return -ph.formula.friction(p.load, omega[2]) * np.array((0, 0, 1)) - 0.01 * omega
+
+    with pytest.raises(ph.InvalidInput, match="friction"):
+        ph.solve(scene([Formula(rub, load=0.1)]), 1e-6, sensitivity="omega")

@@ -14,6 +14,7 @@ enum class Side : signed char { below = -1, held = 0, above = 1 };
 struct Guards {
   std::vector<Form> forms;
   std::vector<bool> holds;   ///< whether friction may hold it
+  std::vector<int> nodes;    ///< of each, that of a guard
 
   struct Place {
     std::size_t number;

@@ -54,6 +54,11 @@ class SwitchedSeries {
   /// The mode of the start.
   void restart() const;
 
+  const FormulaSeries& whole() const { return whole_; }
+  /// The mode, and a guard of it as a number among all.
+  const std::vector<formula::Side>& sides() const { return shared_->sides; }
+  int number_of(int guard) const { return mode().guards[static_cast<std::size_t>(guard)].number; }
+
  private:
   using Sides = std::vector<formula::Side>;
 
