@@ -6,13 +6,12 @@ import sys
 
 import numpy as np
 import pytest
-from test_formula_series import FULL, LAWS, START, TRUTH, find_errors, make
+from test_formula_series import CASES, FULL, LAWS, START, find_errors, make
 from test_formula_series import scene as true_scene
 
 import polhode as ph
 from polhode.torques import AngularDamping, Constant, Damping, Formula, Gravity, GravityGradient
 
-CASES = [case for case in TRUTH["cases"] if case["law"] in LAWS]   # the others have states
 RNG = np.random.default_rng(23)
 N = 21
 HALF = RNG.uniform(0.2, 1, (N, 3))
@@ -128,7 +127,12 @@ def test_a_body_that_fails_leaves_the_others_alone():
     np.testing.assert_array_equal(many.omega[0], ph.solve_many([good], rtol=1e-9, method="taylor").omega[0])
 
 
-def test_a_switch_is_solved_alone():
+def test_states_and_switches_are_solved_alone():
+    wheel = Formula(lambda t, w, q, p, s: (-0.1 * w - s.h, {"h": 0.2 * w - s.h}), states={"h": (0.1, 0.0, 0.2)})
+    bodies = [scene(wheel), scene(wheel, omega=(1, 0, 0.2))]
+    many = ph.solve_many(bodies, rtol=1e-9, method="taylor")
+    assert not many.lanes.any()
+    np.testing.assert_array_equal(many.omega[1], ph.solve(bodies[1], rtol=1e-9, method="taylor").omega)
     many = ph.solve_many([scene(Formula(text="-clip(omega, -0.5, 0.5)"))] * 2, rtol=1e-9, method="rk45")
     assert not many.lanes.any() and many.success.all()
 
