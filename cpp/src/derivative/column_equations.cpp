@@ -7,6 +7,7 @@
 #include "derivative/column_lanes.hpp"
 #include "method/series/body_laws.hpp"
 #include "method/series/formula_series.hpp"
+#include "method/series/recent_equations.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/formula/derivative.hpp"
 #include "polhode/formula/expression.hpp"
@@ -294,11 +295,20 @@ std::shared_ptr<const ColumnEquations> find_equations(const Scene& piece, const 
                                                       const std::vector<formula::Side>& sides, ModeEquations& known) {
   const BodySeries frame(drop_torques(piece), true);
   std::shared_ptr<const ColumnEquations>& found = known[sides];
-  if (!found || found->variables != frame.terms().variables) {
-    found = std::make_shared<const ColumnEquations>(
-        EquationsBuilder(piece, frame, list_states(piece.torques())).build(causes, sides));
+  if (found && found->variables == frame.terms().variables) return found;
+  thread_local RecentEquations<ColumnEquations> recent;
+  EquationsKey key(piece, frame);
+  for (const ColumnCause& cause : causes) {
+    key.add(cause.inertia.data(), 9), key.add(cause.rotor_momentum.data(), 3);
+    key.add(cause.torque ? 1.0 : 0.0), key.add(cause.field), key.add(cause.component);
+    if (cause.torque) key.add(*cause.torque);
   }
-  return found;
+  for (const formula::Side side : sides) key.add(static_cast<double>(side));
+  const auto make = [&] {
+    return std::make_shared<const ColumnEquations>(
+        EquationsBuilder(piece, frame, list_states(piece.torques())).build(causes, sides));
+  };
+  return found = recent.find(std::move(key), make, [](const ColumnEquations& made) { return is_small(*made.table); });
 }
 
 }  // namespace polhode

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "method/series/body_laws.hpp"
+#include "method/series/recent_equations.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/formula/expression.hpp"
 #include "polhode/math/detail/coin.hpp"
@@ -22,6 +23,15 @@ using formula::Vec;
 using math::DD;
 
 bool is_power_of_two(double x) { return (std::bit_cast<std::uint64_t>(x) & 0xf'ffff'ffff'ffffull) == 0; }
+
+std::shared_ptr<const formula::Table> find_table(const Scene& scene, const BodySeries& frame,
+                                                 const std::vector<formula::Input>& states) {
+  thread_local RecentEquations<formula::Table> recent;
+  return recent.find(
+      EquationsKey(scene, frame),
+      [&] { return std::make_shared<const formula::Table>(formula::Tape(make_body_system(scene, frame, states))); },
+      &is_small);
+}
 
 }  // namespace
 
@@ -51,7 +61,7 @@ FormulaSeries::FormulaSeries(const Scene& scene, std::shared_ptr<const formula::
     throw InvalidInput("torques", "formulas with at most 56 numbers of states", std::to_string(starts.size()));
   int end = ode::series_width;
   for (const formula::Input& state : states_) ends_.push_back(end += static_cast<int>(state.values.size()));
-  if (!table_) table_ = std::make_shared<const formula::Table>(formula::Tape(make_body_system(scene, frame_, states_)));
+  if (!table_) table_ = find_table(scene, frame_, states_);
   start_.assign(static_cast<std::size_t>(width()), 0.0);
   std::copy_n(frame_.start(), ode::series_width, start_.begin());
   std::copy(starts.begin(), starts.end(), start_.begin() + ode::series_width);
