@@ -1,5 +1,7 @@
 """Bounds that were false: next to an upright rest, of a heavy needle, and where rounding cancelled the loss."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 
@@ -43,6 +45,49 @@ def test_omega_alone_next_to_an_upright_rest(sign, scale):
     assert np.linalg.norm(motion.omega[0] - true) <= motion.error * true[2]
     many = ph.solve_many([scene], rtol=1e-12)
     assert np.linalg.norm(many.omega[0][0] - true) <= 1e-9 * true[2]
+
+
+def see_vertical(q):
+    """R^T e_z from a quaternion, exactly."""
+    x, y, z, w = map(Fraction, q)
+    size = x * x + y * y + z * z + w * w
+    return [2 * (x * z - w * y) / size, 2 * (y * z + w * x) / size, (z * z + w * w - x * x - y * y) / size]
+
+
+# Attitudes whose arm along x or y is vertical up to some 1e-13.
+TILTED = {"x": ((0.16829860473061573, -0.6867864148669, 0.1682986047306145, 0.6867864148668977), 0),
+          "y": ((-0.3197321344086743, 0.6306911781741099, -0.6306911781742358, 0.3197321344078833), 1)}
+
+
+@pytest.mark.parametrize("accuracy", [1e-4, 1e-9, 1e-11])
+@pytest.mark.parametrize("inertia", [(0.04, 0.11, 0.08), (0.14, 0.1, 0.05), (0.1, 0.39, 0.3), (0.05, 0.09, 0.11)])
+@pytest.mark.parametrize("axis", TILTED)
+def test_a_body_at_rest_next_to_upright_or_hanging(axis, inertia, accuracy):
+    """The rates of so small a tilt are linear: I w_i'' = +-W a w_i about each horizontal axis, from exact tilts."""
+    attitude, k = TILTED[axis]
+    times, arm = np.linspace(0.1, 2, 20), np.zeros(3)
+    arm[k] = 1.5
+    scene = ph.Scene(inertia=inertia, omega=(0, 0, 0), attitude=attitude, times=times,
+                     torques=[ph.torques.Gravity(0.5, arm)])
+    motion = ph.solve(scene, accuracy)
+    assert motion.success == (motion.error <= accuracy)   # float64 attitudes lose the tilt about some axes
+    g = see_vertical(scene.attitude)
+    true = np.zeros((20, 3))
+    for i, j, sign in (((k + 1) % 3, (k + 2) % 3, 1), ((k + 2) % 3, (k + 1) % 3, -1)):
+        grows = complex(float(g[k]) * 0.5 * 1.5 / inertia[i]) ** 0.5
+        true[:, i] = (np.sinh(grows * times) / grows).real * sign * 0.5 * 1.5 / inertia[i] * float(g[j])
+    assert np.linalg.norm(motion.omega - true, axis=1).max() <= (motion.error + 1e-13) * np.linalg.norm(true, axis=1).max()
+
+
+@pytest.mark.parametrize("accuracy", [2.5e-12, 1.4e-8, 2.6e-6])
+def test_limits_next_to_upright_count_what_rounding_became(accuracy):
+    """Enlarged errors that were made smaller vanished below the attitude's last place."""
+    scene = ph.Scene(inertia=(0.09729207248620265, 0.38870030608168954, 0.3011720549510456),
+                     omega=(-3.17e-16, 2.75e-16, 3.64e-16), times=np.linspace(-1, -44, 44),
+                     attitude=(0.3980255179292033, -0.5844447682007167, 0.3980255179292033, 0.5844447682007167),
+                     torques=[ph.torques.Gravity(0.05537624394622634, (1.7010329562811228, 0, 0))])
+    motion = ph.solve(scene, accuracy)
+    assert not motion.success and motion.error_kind == "limit" and motion.error > 0.1
 
 
 @pytest.mark.parametrize("accuracy", [8.415e-4, 8.4174e-4, 8.42e-4])

@@ -105,6 +105,7 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   // correction takes that part for an error of the first order, and near-singular bodies amplify it by thousands.
   static constexpr double most_enlarged = 1e-5;
   static constexpr double continuous = 1e-13;   // of a derivative: so small a jump at a surface is rounding
+  static constexpr double least_enlarged = 0x1p-32;   // before it is made smaller by 2^-10
   static constexpr double join_rounding = 0x1p-51;   // of a state that one run hands to the next
   using Base = Taylor::Stepper<P>;
 
@@ -174,10 +175,21 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     std::copy_n(loss_, W, trace_.loss);
     std::copy_n(spread_, W, trace_.spread);
     std::copy_n(sample_, W, trace_.sample);
-    if (find_largest_now() * trace_.scale > most_enlarged) shrink();
+    if (find_largest_now() * trace_.scale > most_enlarged && outlasts_shrinking()) shrink();
     restore(lost_, loss_);
     restore(perturbed_, spread_);
     if (separate_) restore(sampled_, sample_);
+  }
+
+  /// Whether the vectors' part of the attitude, or of the vertical, is still seen in the state when they are made
+  /// smaller. Next to rest it is tiny, while that of the rates is large beside them.
+  bool outlasts_shrinking() const {
+    double size = 0.0, largest = 0.0;
+    for (int i = 4; i < 8; ++i) {
+      size = std::max(size, std::abs(this->arrived_[i]));
+      largest = std::max(largest, std::max(std::abs(loss_[i]), std::max(std::abs(spread_[i]), std::abs(sample_[i]))));
+    }
+    return largest >= least_enlarged * size;
   }
 
   /// A vector that grows beyond the linear range is made smaller.

@@ -59,7 +59,8 @@ BodySeries::BodySeries(const Scene& scene, bool attitude) {
   if (rotated_) {
     const Quat q_BP = quat_from_matrix(R_BP_, "inertia.axes");
     q_PB_ = conjugate(q_BP);
-    q_WP = q_WB * q_BP;
+    // A body at rest next to upright turns as far as its attitude is from upright.
+    q_WP = multiply_exactly(q_WB, q_BP);
     omega_P = R_BP_.transpose() * scene.omega();
   }
   // The separatrix of a body with rotors lies elsewhere.
@@ -262,8 +263,16 @@ BodySeries BodySeries::perturbed(double part, int choice) const {
     for (const auto& column : terms.damping) largest = std::max(largest, std::abs(column[i]));
     for (auto& column : terms.damping) change(column[i], 8.0 * (rounded ? largest : column[i]));
   }
-  for (auto& vector : terms.pull)
-    for (auto& column : vector) change_column(column);
+  // So are those of a weight and its arm: next to upright such a rounding turns the body.
+  for (auto& vector : terms.pull) {
+    double largest[3] = {};
+    for (int i = 0; i < 3; ++i)
+      for (const auto& column : vector) largest[i] = std::max(largest[i], std::abs(column[i]));
+    for (auto& column : vector) {
+      if (!rounded) change_column(column);
+      else for (int i = 0; i < 3; ++i) change(column[i], (i == 1 ? unlike : 1.0) * 4.0 * largest[i]);
+    }
+  }
   for (auto& column : terms.tidal) change_column(column);
   change(terms.orbit_rate, terms.orbit_rate);
   change(other.orbit_rate_, other.orbit_rate_);

@@ -48,4 +48,12 @@ std::array<DD, 3> see_from_body(const Quat& q, const Vector3d& v_W) {
   return seen;
 }
 
+Quat multiply_exactly(const Quat& p, const Quat& q) {
+  const auto sum = [](double a, double b, double c, double d, double e, double f, double g, double h) {
+    return ExactSum().add(a, b).add(c, d).add(e, f).add(g, h).read().hi;
+  };
+  return {sum(p.w, q.x, p.x, q.w, p.y, q.z, -p.z, q.y), sum(p.w, q.y, -p.x, q.z, p.y, q.w, p.z, q.x),
+          sum(p.w, q.z, p.x, q.y, -p.y, q.x, p.z, q.w), sum(p.w, q.w, -p.x, q.x, -p.y, q.y, -p.z, q.z)};
+}
+
 }  // namespace polhode

@@ -12,4 +12,7 @@ namespace polhode {
 /// of the largest one, which acts as a torque on a body that stands upright.
 std::array<math::DD, 3> see_from_body(const Quat& q_WB, const Vector3d& v_W);
 
+/// p q, of which each component is the rounded exact one: one that vanishes is 0, and a tiny one has all its digits.
+Quat multiply_exactly(const Quat& p, const Quat& q);
+
 }  // namespace polhode

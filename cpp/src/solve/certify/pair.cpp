@@ -20,6 +20,7 @@ constexpr int stiff_order = 2;             // of an implicit method in a stiff b
 constexpr double rounding_floor = 8.0;     // units of rounding that two runs may share, and the root of their steps
 constexpr double claimed_part = 8.0;       // times the error that the numbers of steps give
 constexpr double most_factor = 30.0;       // of runs with the same steps
+constexpr double most_stiff_factor = 10.0; // of chains with an implicit piece, which no third run is compared with
 constexpr long most_steps_of_another = 20'000;
 constexpr double rounding_rtol = 1e-13;    // below it, rounding is a part of each run's error: no factor shows it
 constexpr double failed_look_rtol = 1e-4;
@@ -77,10 +78,14 @@ void PairCertificate::look_after_failure() {
 /// it is r / (1 - r) of the difference; eight times that is claimed. r follows from the numbers of steps.
 double PairCertificate::find_factor(const Motion& fine, const Motion& coarse) const {
   const ode::MethodRecord& record = runs_.method().record;
-  if (record.adaptive_order || runs_.decision().pieces.size() > 0) return safety_;
+  const std::vector<const Piece*> pieces = runs_.decision().pieces.all();
+  const bool stiff = std::any_of(pieces.begin(), pieces.end(), [](const Piece* piece) {
+    return piece->plan.method != "exact" && find_method(piece->plan.method).implicit;
+  });
+  if (!stiff && (record.adaptive_order || !pieces.empty())) return safety_;
   const double steps = static_cast<double>(coarse.stats.steps) / static_cast<double>(std::max(fine.stats.steps, 1L));
-  const double r = math::power(std::min(steps, 1.0), record.implicit ? stiff_order : record.order);
-  return std::clamp(claimed_part * r / (1 - r), safety_, most_factor);
+  const double r = math::power(std::min(steps, 1.0), stiff || record.implicit ? stiff_order : record.order);
+  return std::clamp(claimed_part * r / (1 - r), safety_, stiff ? most_stiff_factor : most_factor);
 }
 
 Attempt PairCertificate::run(double coarse, double fine) {
