@@ -57,7 +57,7 @@ def main():
         certified, rows = judge(draw(options.seed, kind, index).scene, options.accuracy)
         scenes, claims, pairs = scenes + 1, claims + certified, pairs + len(rows)
         for seconds, ratio, loose, tight, one, other in rows:
-            print(f"{seconds * 1e6:.0f} us {kind} {index}: {loose:.0e} costs {ratio:.2f} times {tight:.0e} "
+            print(f"{kind} {index}, {seconds * 1e6:.0f} us: {loose:.0e} costs {ratio:.2f} times {tight:.0e} "
                   f"({one}; {other})", flush=True)
     print(f"{scenes} scenes, {claims} certified, {pairs} pairs whose looser accuracy costs more")
 
