@@ -182,9 +182,9 @@ def truth(law, I):
     runs = []
     for step in (STEP, STEP / 2):
         rows, switches = [], []
-        for ends in ([t for t in TIMES if t < 0], [t for t in TIMES if t > 0]):
+        for side in ([t for t in TIMES if t < 0], [t for t in TIMES if t > 0]):
             state, t = (start, sides), f(0)
-            for end in ends:
+            for end in side:
                 state, t = integrate(law, I, state[0], t, f(end), step, state[1], switches), f(end)
                 rows.append(state[0])
         runs.append((rows, switches))

@@ -1,6 +1,8 @@
 #include "polhode/formula/sides.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "polhode/core/error.hpp"
@@ -13,12 +15,19 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// A guard up to a factor, so that equal surfaces have equal forms; true if the factor is negative.
-std::pair<Form, bool> normalise(const Graph& graph, int node) {
-  const Form form = graph[node].op == Op::linear ? graph.linear(node) : Form::of(node);
-  const bool negated = form.terms[0].factor < 0.0;
-  if (form.terms.size() == 1 && form.constant == 0.0) return {Form::of(form.terms[0].node), negated};
-  return {negated ? -form : form, negated};
+Form guard_of(const Graph& graph, int node) {
+  return graph[node].op == Op::linear ? graph.linear(node) : Form::of(node);
+}
+
+/// The factor from one form to another of the same surface, up to rounding; 0 for another surface.
+double find_factor(const Form& from, const Form& to) {
+  constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
+  if (from.terms.size() != to.terms.size()) return 0.0;
+  const double factor = to.terms[0].factor / from.terms[0].factor;
+  const auto fits = [&](double a, double b) { return std::abs(b - factor * a) <= rounding * std::abs(b); };
+  for (std::size_t i = 0; i < from.terms.size(); ++i)
+    if (from.terms[i].node != to.terms[i].node || !fits(from.terms[i].factor, to.terms[i].factor)) return 0.0;
+  return fits(from.constant, to.constant) ? factor : 0.0;
 }
 
 /// Solves A x = b by Gaussian elimination without a choice of pivots: inertia makes A positive definite.
@@ -111,8 +120,10 @@ Program hold(const Program& system, std::size_t states, std::size_t first, std::
 }  // namespace
 
 Guards::Place Guards::find(const Graph& graph, int node) const {
-  const auto [form, negated] = normalise(graph, node);
-  return {static_cast<std::size_t>(std::find(forms.begin(), forms.end(), form) - forms.begin()), negated};
+  const Form guard = guard_of(graph, node);
+  for (std::size_t i = 0; i < forms.size(); ++i)
+    if (const double factor = find_factor(forms[i], guard); factor != 0.0) return {i, factor < 0.0};
+  return {forms.size(), false};
 }
 
 Guards list_sided_guards(const Program& program) {
@@ -121,7 +132,7 @@ Guards list_sided_guards(const Program& program) {
     const Node& n = program.graph[node];
     const std::size_t number = guards.find(program.graph, n.operands[0]).number;
     if (number == guards.forms.size()) {
-      guards.forms.push_back(normalise(program.graph, n.operands[0]).first);
+      guards.forms.push_back(guard_of(program.graph, n.operands[0]));
       guards.holds.push_back(false);
       guards.nodes.push_back(n.operands[0]);
     }

@@ -10,15 +10,15 @@ namespace polhode::formula {
 enum class Side : signed char { below = -1, held = 0, above = 1 };
 
 /// The guards of a program's switches in the order of the nodes. Switches of the same surface share one, as those of x
-/// and of -2 x: up to a factor, which is positive unless the switch is negated.
+/// and of -2 x, up to rounding.
 struct Guards {
   std::vector<Form> forms;
   std::vector<bool> holds;   ///< whether friction may hold it
   std::vector<int> nodes;    ///< of each, that of a guard
 
   struct Place {
-    std::size_t number;
-    bool negated;
+    std::size_t number;   ///< behind the last one where there is none
+    bool negated;         ///< the switch's guard is negative where this one is positive
   };
   /// That of a switch, by the node of its guard.
   Place find(const Graph& graph, int node) const;

@@ -15,6 +15,8 @@ namespace polhode {
 bool has_switches(const Scene& scene);
 
 /// A body under formulas with switches, as an ode::SwitchedProblem: a FormulaSeries for each mode that occurs.
+///
+/// switch_search.cpp finds where a step meets a surface, switch_modes.cpp the mode behind it.
 class SwitchedSeries {
  public:
   static constexpr int most_width = FormulaSeries::most_width;
@@ -61,6 +63,7 @@ class SwitchedSeries {
 
  private:
   using Sides = std::vector<formula::Side>;
+  static constexpr int noise_order = 3;   ///< of the coefficients whose rounding is asked
 
   struct Mode {
     FormulaSeries series;
