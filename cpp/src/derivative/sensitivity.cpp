@@ -97,8 +97,7 @@ void require_formulas(const Scene& scene) {
   std::vector<AnyTorque> torques = scene.torques();
   for (AnyTorque& torque : torques) torque = to_any(drop_windows(torque));
   const Scene lasting = scene.with_torques(std::move(torques));
-  const std::string why = has_switches(scene) ? "a Formula with switches, where derivatives jump"
-                                              : compute_series_refusal(lasting);
+  const std::string why = compute_series_refusal(lasting);
   if (!why.empty())
     throw InvalidInput("sensitivity", "left out for a torque without a formula that can be differentiated", why);
 }
