@@ -16,49 +16,13 @@ import time
 import polhode as ph
 from polhode._build import processor
 
-FREE = """
-name = "free"
-count = {count}
-seed = 8
-draw = "by-body"
-[body]
-moments = [0.02, 0.03, 0.04]
-moments_relative = {{ normal = [0.0, 0.05] }}
-[start]
-omega = {{ normal = [[0.0, 0.0, 0.2], 0.05] }}
-attitude = {{ normal_deg = 3.0 }}
-[times]
-span = 1000.0
-samples = 500
-[[summary]]
-of = "angle"
-"""
+ROOT = pathlib.Path(__file__).parents[1]
+sys.path.insert(0, str(ROOT / "tests/support"))
+import ensembles  # noqa: E402
 
-HEAVY = """
-name = "heavy"
-count = {count}
-seed = 8
-draw = "by-body"
-[body]
-moments = [1.0, 2.0, 2.5]
-moments_relative = {{ normal = [0.0, 0.02] }}
-[start]
-omega = {{ normal = [[0.3, 0.2, 3.0], 0.05] }}
-euler = {{ sequence = "ZXZ", angles = [0.0, 0.5, 0.0] }}
-attitude = {{ normal_deg = 3.0 }}
-[[torques]]
-kind = "gravity"
-weight = 2.0
-arm = [0.3, 0.2, 0.5]
-[times]
-span = 10.0
-samples = 101
-[solve]
-method = "taylor"
-rtol = 1e-10
-[[summary]]
-of = "angle"
-"""
+ANGLE = '[[summary]]\nof = "angle"\n'
+FREE = ensembles.change(ensembles.FREE.partition("[store]")[0] + ANGLE, span=1000.0, samples=500)
+HEAVY = ensembles.change(ensembles.DRIVEN.partition("[[summary]]")[0] + ANGLE, seed=8, samples=101)
 
 
 def cpu():
@@ -67,11 +31,11 @@ def cpu():
 
 def measure(text, count, executor, folder, store=True):
     """Run a recipe; return wall and CPU seconds, those of the chunks, and the largest memory of a child [MB]."""
-    path, out = folder / "recipe.toml", folder / "out.zarr"
+    out = folder / "out.zarr"
     shutil.rmtree(out, ignore_errors=True)
     log = folder / "out.zarr.log"
     log.unlink(missing_ok=True)
-    path.write_text(text.format(count=count))
+    path = ensembles.write(folder, text, count=count)
     wall, start = time.perf_counter(), cpu()
     run = ph.ensemble(path, out=out if store else None, executor=executor)
     wall, total = time.perf_counter() - wall, cpu() - start

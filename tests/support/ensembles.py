@@ -59,13 +59,18 @@ chunk = 32
 """
 
 
-def write(folder, text, name="recipe.toml", **changes):
-    """Write a recipe, with some of its lines `key = value` changed."""
+def change(text, **changes):
+    """A recipe with some of its lines `key = value` changed."""
     lines = [f"{line.split(' = ')[0]} = {changes.pop(line.split(' = ')[0])}" if line.split(" = ")[0] in changes
              else line for line in text.splitlines()]
     assert not changes, changes
+    return "\n".join(lines) + "\n"
+
+
+def write(folder, text, name="recipe.toml", **changes):
+    """Write a recipe, with some of its lines changed."""
     path = pathlib.Path(folder) / name
-    path.write_text("\n".join(lines) + "\n")
+    path.write_text(change(text, **changes))
     return path
 
 

@@ -1,12 +1,10 @@
 """Batches: broadcast as in NumPy, equal to the objects, the same bits however the work is cut."""
 
 import csv
-import os
 import pathlib
-import subprocess
-import sys
 import warnings
 
+import levels
 import numpy as np
 import pytest
 
@@ -245,17 +243,8 @@ def test_the_same_bits_for_any_number_of_threads_and_any_split():
 
 
 def test_the_same_bits_on_avx2_and_avx512():
-    script = ("import sys, hashlib; sys.path.insert(0, sys.argv[1]); import test_batch, polhode as ph;"
-              "print(ph.build_info()['simd'], hashlib.sha256(b''.join(test_batch.digest(1))).hexdigest())")
-    found = {}
-    for level in ("baseline", "avx2", "avx512"):
-        run = subprocess.run([sys.executable, "-c", script, str(pathlib.Path(__file__).parent)], check=True,
-                             capture_output=True,
-                             text=True, env={**os.environ, "POLHODE_SIMD": level})
-        used, digits = run.stdout.split()
-        found[used] = digits
-    if len(found) < 3:
-        pytest.skip("this machine lacks a level")
+    found = levels.outputs("import hashlib, test_batch;"
+                           "print(hashlib.sha256(b''.join(test_batch.digest(1))).hexdigest())", levels.LEVELS)
     assert found["avx2"] == found["avx512"] != found["baseline"]
 
 

@@ -1,10 +1,8 @@
 """Draws by counter: words against NumPy's Philox, numbers against mpmath, the same bits at every level and cut."""
 
 import hashlib
-import os
-import subprocess
-import sys
 
+import levels
 import mpmath
 import numpy as np
 import pytest
@@ -162,27 +160,17 @@ def test_a_body_depends_on_nothing_but_its_number(kind):
         assert np.array_equal(draw(kind, parameters=PARAMETERS[kind][:1]), whole[:, :1])
 
 
-HASHES = """
-import hashlib, sys
-sys.path.insert(0, {folder!r})
-import test_draw
-total = hashlib.sha256()
-for kind in test_draw.PARAMETERS:
-    total.update(test_draw.draw(kind, count=5000).tobytes())
-print(total.hexdigest())
-"""
-
-
-def test_the_bits_are_the_same_at_every_level():
-    code = HASHES.format(folder=os.path.dirname(__file__))
-    found = {level: subprocess.run([sys.executable, "-c", code], env={**os.environ, "POLHODE_SIMD": level}, check=True,
-                                   capture_output=True, text=True).stdout.strip()
-             for level in ("baseline", "avx2", "avx512")}
+def hash_of_draws():
     total = hashlib.sha256()
     for kind in PARAMETERS:
         total.update(draw(kind, count=5000).tobytes())
-    assert set(found.values()) == {total.hexdigest()}
-    assert total.hexdigest().startswith("c705a84ff681056b")   # the same on every machine
+    return total.hexdigest()
+
+
+def test_the_bits_are_the_same_at_every_level():
+    found = levels.outputs("import test_draw; print(test_draw.hash_of_draws(), end='')", levels.LEVELS)
+    assert set(found.values()) == {hash_of_draws().encode()}
+    assert hash_of_draws().startswith("c705a84ff681056b")   # the same on every machine
 
 
 @pytest.mark.parametrize(("kind", "parameters", "words"), [

@@ -1,9 +1,7 @@
 """Bodies side by side in lanes: none sees its neighbours, and each is the motion that solve() finds."""
 
-import os
-import subprocess
-import sys
 
+import levels
 import numpy as np
 import pytest
 from bodies import scene
@@ -106,8 +104,7 @@ def test_many_chunks_and_threads():
 
 
 PRINT = """
-import hashlib, sys
-sys.path[:0] = {path!r}
+import hashlib
 from test_solve_many_lanes import *
 for torques in TORQUES:
     for want in (("omega",), ("omega", "attitude")):
@@ -115,21 +112,12 @@ for torques in TORQUES:
             many = ph.solve_many(common(TORQUES[torques], want=want), rtol=rtol, **STARTS)
             bits = many.omega.tobytes() + (many.attitude.tobytes() if many.attitude is not None else b"")
             print(hashlib.sha256(bits).hexdigest(), int(many.steps.sum()))
-print(ph.build_info()["simd"])
 """
 
 
 def test_avx2_and_avx512_give_the_same_bits():
-    if ph.build_info()["simd"] != "avx512":
-        pytest.skip("needs AVX-512")
-    found = {}
-    for level in ("avx2", "avx512"):
-        run = subprocess.run([sys.executable, "-c", PRINT.format(path=sys.path)],
-                             env={**os.environ, "POLHODE_SIMD": level},
-                             capture_output=True, text=True, check=True)
-        *found[level], simd = run.stdout.split("\n")[:-1]
-        assert simd == level
-    assert len(found["avx2"]) == 24 and found["avx2"] == found["avx512"]
+    found = levels.outputs(PRINT)
+    assert len(found["avx2"].splitlines()) == 24 and found["avx2"] == found["avx512"]
 
 
 def test_a_failing_body_leaves_its_neighbours_alone():

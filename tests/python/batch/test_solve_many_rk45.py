@@ -1,9 +1,7 @@
 """rk45 with eight bodies side by side: each is what solve() makes of it, bit for bit, at every instruction set."""
 
-import os
-import subprocess
-import sys
 
+import levels
 import numpy as np
 import pytest
 from bodies import scene
@@ -109,31 +107,19 @@ def test_neighbours_threads_and_order_change_no_bit(torques):
 
 
 PRINT = """
-import hashlib, sys
-sys.path[:0] = {path!r}
+import hashlib
 from test_solve_many_rk45 import *
 for torques in TORQUES.values():
     for skew, want in ((False, ("omega",)), (True, ("omega", "attitude"))):
         many = ph.solve_many(make_scenes(torques, want=want, skew=skew), method="rk45", rtol=1e-7)
         bits = many.omega.tobytes() + (many.attitude.tobytes() if many.attitude is not None else b"")
         print(hashlib.sha256(bits).hexdigest(), int(many.steps.sum()))
-print(ph.build_info()["simd"])
 """
 
 
 def test_every_level_gives_the_same_bits():
-    levels = ("baseline", "avx2", "avx512")
-    there = levels[: levels.index(ph.build_info()["simd"]) + 1]
-    if len(there) == 1:
-        pytest.skip("needs AVX2")
-    found = {}
-    for level in there:
-        run = subprocess.run([sys.executable, "-c", PRINT.format(path=sys.path)],
-                             env={**os.environ, "POLHODE_SIMD": level},
-                             capture_output=True, text=True, check=True)
-        *found[level], simd = run.stdout.split("\n")[:-1]
-        assert simd == level and len(found[level]) == 2 * len(TORQUES)
-    assert all(one == found["baseline"] for one in found.values())
+    found = levels.outputs(PRINT, levels.LEVELS)
+    assert len(set(found.values())) == 1 and len(found["avx2"].splitlines()) == 2 * len(TORQUES)
 
 
 def test_bodies_that_fail_do_so_alone_and_say_what_solve_says():

@@ -1,11 +1,9 @@
 """Sums over many bodies: against NumPy with math.fsum on the states, and the same bits for every cut and order."""
 
 import math
-import os
 import pickle
-import subprocess
-import sys
 
+import levels
 import numpy as np
 import pytest
 
@@ -206,22 +204,11 @@ def test_the_bits_depend_on_neither_threads_nor_cut_nor_order():
 
 
 def test_levels_have_the_same_sums():
-    code = f"""
-import sys
-sys.path.insert(0, {os.path.dirname(__file__)!r})
-import test_summary, hashlib
-print(hashlib.sha256(test_summary.flat(test_summary.summarise(5000).record())).hexdigest())
-"""
-    found = [subprocess.run([sys.executable, "-c", code], env={**os.environ, "POLHODE_SIMD": level}, check=True,
-                            capture_output=True, text=True).stdout for level in ("avx2", "avx512")]
-    assert found[0] == found[1]
-    last = code.splitlines()[-1]
-    code = code.replace(last, "import pickle\n"
-                        "sys.stdout.buffer.write(pickle.dumps(test_summary.summarise(5000).record()))")
-    done = subprocess.run([sys.executable, "-c", code], env={**os.environ, "POLHODE_SIMD": "baseline"}, check=True,
-                          capture_output=True)
-    wide, baseline = summarise(5000).record(), pickle.loads(done.stdout)
-    for a, b in zip(wide["quantities"], baseline["quantities"], strict=True):
+    code = ("import pickle, sys, test_summary\n"
+            "sys.stdout.buffer.write(pickle.dumps(test_summary.summarise(5000).record()))")
+    found = {level: pickle.loads(text) for level, text in levels.outputs(code, levels.LEVELS).items()}
+    assert flat(found["avx2"]) == flat(found["avx512"])
+    for a, b in zip(found["avx2"]["quantities"], found["baseline"]["quantities"], strict=True):
         for name in set(a) - {"histogram", "moments"}:
             assert np.allclose(a[name], b[name], rtol=1e-13, atol=1e-13), name
 

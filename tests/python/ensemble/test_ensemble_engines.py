@@ -22,16 +22,9 @@ pytestmark = [pytest.mark.filterwarnings("ignore::ResourceWarning"),
 
 
 @pytest.fixture(scope="module")
-def recipe(tmp_path_factory):
-    return ensembles.write(tmp_path_factory.mktemp("recipe"), ensembles.DRIVEN)
-
-
-@pytest.fixture(scope="module")
-def whole(recipe):
-    """A store of the recipe, made undisturbed by this process."""
-    out = recipe.parent / "whole.zarr"
-    ph.ensemble(recipe, out=out, executor=0)
-    return ensembles.content(out)
+def whole(whole_store):
+    """The bytes of a store of the recipe."""
+    return ensembles.content(whole_store)
 
 
 def to_hash(run):

@@ -19,16 +19,8 @@ xarray = pytest.importorskip("xarray")
 
 
 @pytest.fixture(scope="module")
-def recipe(tmp_path_factory):
-    return ensembles.write(tmp_path_factory.mktemp("recipe"), ensembles.DRIVEN)
-
-
-@pytest.fixture(scope="module")
-def whole(recipe):
-    """A store of the recipe, made undisturbed by one process."""
-    out = recipe.parent / "whole.zarr"
-    ph.ensemble(recipe, out=out, executor=0)
-    return out
+def whole(whole_store):
+    return whole_store
 
 
 @pytest.fixture

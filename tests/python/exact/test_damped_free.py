@@ -1,31 +1,24 @@
 """Damping proportional to the angular momentum: the closed form against exact answers, and its planner."""
 
-import csv
 import math
-import pathlib
 import pickle
 
 import numpy as np
 import pytest
 from bodies import BLOCK, scene
 from measures import attitude_error, rates_error
+from tables import numbers, read
 
 import polhode as ph
 
 E = 2.2e-16
 AngularDamping, Damping = ph.torques.AngularDamping, ph.torques.Damping
-TABLE = pathlib.Path(__file__).parents[2] / "reference" / "damped_free.csv"
 TIMES = np.linspace(0, 20, 41)
 
 
 @pytest.fixture(scope="module")
 def table():
-    with TABLE.open() as file:
-        return list(csv.DictReader(file))
-
-
-def numbers(row, *names):
-    return np.array([float(row[name]) for name in names])
+    return read("damped_free.csv")
 
 
 def make(row):

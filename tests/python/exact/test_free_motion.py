@@ -9,6 +9,7 @@ import subprocess
 import sys
 import threading
 
+import levels
 import numpy as np
 import pytest
 
@@ -233,12 +234,13 @@ def test_many_threads_may_share_one_motion():
         np.testing.assert_array_equal(attitude, expected[1])
 
 
-LEVELS = """
-import csv, sys
+PRINT = """
+import sys
 import numpy as np
 import polhode as ph
+from tables import read
 answers = []
-for row in csv.DictReader(open(sys.argv[1])):
+for row in read("free_motion.csv"):
     number = lambda *names: [float(row[name]) for name in names]
     inertia = ph.InertiaTensor.from_moments(number("I1", "I2", "I3"), physical=False)
     motion = ph.FreeMotion(inertia, number("w1", "w2", "w3"), number("x0", "y0", "z0", "w0"))
@@ -249,22 +251,15 @@ for row in csv.DictReader(open(sys.argv[1])):
         one = motion.at(float(times[i]))
         assert (one[0] == omega[i]).all() and (one[1] == attitude[i]).all(), "an element depends on its place"
     answers.append(np.concatenate([omega.ravel(), attitude.ravel()]))
-print(ph.build_info()["simd"])
-np.save(sys.argv[2], np.array(answers))
+sys.stdout.buffer.write(np.array(answers).tobytes())
 """
 
 
 @pytest.fixture(scope="module")
-def by_level(tmp_path_factory):
+def by_level(table):
     """{level: the answers to the whole table}, each from a process capped at that level."""
-    folder, found = tmp_path_factory.mktemp("levels"), {}
-    for level in ("baseline", "avx2", "avx512"):
-        file = folder / f"{level}.npy"
-        run = subprocess.run([sys.executable, "-c", LEVELS, str(REFERENCE / "free_motion.csv"), str(file)], check=True,
-                             capture_output=True, text=True, env={**os.environ, "POLHODE_SIMD": level})
-        if run.stdout.strip() == level:
-            found[level] = np.load(file)
-    return found
+    found = levels.outputs(PRINT, [level for level in levels.LEVELS if level in levels.there()])
+    return {level: np.frombuffer(text).reshape(len(table), -1) for level, text in found.items()}
 
 
 def test_the_same_bits_on_avx2_and_avx512(by_level):

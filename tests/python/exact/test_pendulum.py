@@ -1,19 +1,17 @@
 """The plane pendulum of any body: the closed form against exact answers, its exact conditions, and its planner."""
 
-import csv
 import math
-import pathlib
 import pickle
 
 import numpy as np
 import pytest
 from measures import attitude_error, rates_error
+from tables import numbers, read
 
 import polhode as ph
 from polhode import _core
 
 E = 2.2e-16
-TABLE = pathlib.Path(__file__).parents[2] / "reference" / "pendulum.csv"
 BODY = (0.3, 0.5, 0.6)
 HANGING = {"inertia": BODY, "weight": 2.0, "arm": (0, 0, -0.7), "omega": (1.5, 0, 0)}
 GRAVITY = ph.torques.Gravity(2.0, (0, 0, -0.7))
@@ -22,12 +20,7 @@ TIMES = np.linspace(0, 20, 41)
 
 @pytest.fixture(scope="module")
 def table():
-    with TABLE.open() as file:
-        return list(csv.DictReader(file))
-
-
-def numbers(row, *names):
-    return np.array([float(row[name]) for name in names])
+    return read("pendulum.csv")
 
 
 def start(row):

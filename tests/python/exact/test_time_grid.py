@@ -1,10 +1,8 @@
 """Uniform grids of times: the same motion as at any times, the same bits however they are cut."""
 
-import os
-import subprocess
-import sys
 from fractions import Fraction
 
+import levels
 import numpy as np
 import pytest
 
@@ -142,20 +140,15 @@ for threads in (1, 3):
 """
 
 
-def answers(level):
-    command = [sys.executable, "-W", "ignore", "-c", SCRIPT]
-    run = subprocess.run(command, capture_output=True, check=True, env={**os.environ, "POLHODE_SIMD": level})
-    return np.frombuffer(run.stdout).view(np.uint64).reshape(2, -1)
-
-
 def test_the_same_bits_for_any_threads_and_on_avx2_and_avx512():
-    levels = {level: answers(level) for level in ("avx2", "avx512")}
-    for level in levels.values():
+    found = {level: np.frombuffer(text).view(np.uint64).reshape(2, -1)
+             for level, text in levels.outputs(SCRIPT, levels.LEVELS).items()}
+    for level in found.values():
         np.testing.assert_array_equal(level[0], level[1])
-    np.testing.assert_array_equal(levels["avx2"], levels["avx512"])
-    baseline = answers("baseline").view(np.float64)
+    np.testing.assert_array_equal(found["avx2"], found["avx512"])
+    baseline = found["baseline"].view(np.float64)
     there = np.isfinite(baseline)
-    assert np.abs((baseline - levels["avx2"].view(np.float64))[there]).max() < 100 * E * 30
+    assert np.abs((baseline - found["avx2"].view(np.float64))[there]).max() < 100 * E * 30
 
 
 def test_a_batch_gives_the_bits_of_the_object():

@@ -92,6 +92,23 @@ def rewrite(path, change):
     path.write_text(json.dumps(content))
 
 
+def spoil(path, content):
+    """Put in the place of a file another content, or a pipe, an endless device, a folder, or a file of holes."""
+    path.unlink()
+    match content:
+        case "pipe":
+            os.mkfifo(path)
+        case "zero":
+            path.symlink_to("/dev/zero")
+        case "folder":
+            path.mkdir()
+        case "holes":
+            with open(path, "wb") as file:
+                file.truncate(3_000_000_000)
+        case _:
+            path.write_bytes(content.encode() if isinstance(content, str) else content)
+
+
 # ---- metadata that are none, of motions and of stores
 
 @pytest.mark.parametrize("name", ["a.zarr", "store.zarr"])
@@ -101,19 +118,8 @@ def rewrite(path, change):
     ("text", "damaged"), ("digits", "damaged"), ("list", ""), ("null", "")])
 def test_metadata_that_are_none(folder, loader, name, inner, kind, message):
     path = folder / name / inner
-    path.unlink()
-    if kind == "pipe":
-        os.mkfifo(path)
-    elif kind == "zero":
-        path.symlink_to("/dev/zero")
-    elif kind == "folder":
-        path.mkdir()
-    elif kind == "holes":
-        with open(path, "wb") as file:
-            file.truncate(3_000_000_000)
-    else:
-        path.write_text({"deep": DEEP, "text": "{", "digits": '{"shape": [' + "9" * 5000 + "]}", "list": "[]",
-                         "null": '{"attributes": null}'}[kind])
+    spoil(path, {"deep": DEEP, "text": "{", "digits": '{"shape": [' + "9" * 5000 + "]}", "list": "[]",
+                 "null": '{"attributes": null}'}.get(kind, kind))
     loader.refused(folder / name, message)
     if name == "store.zarr" and kind in ("deep", "pipe", "zero") and inner == "zarr.json":
         status, _, err = ensembles.run("status", folder / name)
@@ -160,13 +166,7 @@ def test_the_size_of_a_frame_is_read_as_the_format_says():
 @pytest.mark.parametrize("content", [frame(5_000_000_000), b"", b"x" * 100, "pipe", "zero"], ids=range(5))
 def test_a_chunk_that_inflates_or_is_none(folder, loader, name, chunk, content):
     path = folder / name / chunk
-    path.unlink()
-    if content == "pipe":
-        os.mkfifo(path)
-    elif content == "zero":
-        path.symlink_to("/dev/zero")
-    else:
-        path.write_bytes(content)
+    spoil(path, content)
     if isinstance(content, bytes) and name == "store.zarr":   # a chunk is read when its sums are wanted
         with pytest.raises(ph.InvalidInput, match="the record of chunk 0 is damaged"):
             ph.load(folder / name).summary

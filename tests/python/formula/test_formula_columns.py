@@ -1,39 +1,20 @@
 """Derivatives of motions under formulas: against central differences of 26 digits, and against torques of the list."""
 
 import json
-import os
-import subprocess
-import sys
 from pathlib import Path
 
+import levels
 import numpy as np
 import pytest
+from laws import mixture, pd, spring
 
 import polhode as ph
-from polhode.formula import norm, to_body
+from polhode.formula import to_body
 from polhode.torques import AngularDamping, Constant, Custom, Damping, During, Formula, Gravity
 
 TRUTH = json.loads((Path(__file__).parents[2] / "reference" / "formula_columns.json").read_text())
 START, TIMES = TRUTH["start"], np.array(TRUTH["times"])
 Q = np.array(START["attitude"]) / np.linalg.norm(START["attitude"])
-
-
-def pd(t, omega, attitude, p):
-    return -p.kp * attitude[:3] * attitude[3] - p.kd * omega
-
-
-def spring(t, omega, attitude, p):
-    aim = to_body(attitude, (0, 1, 0))
-    across = np.cross((0, 0, 1), aim)
-    sine = norm(across)
-    return p.k * np.arctan2(sine, aim[2]) / sine * across - p.c * omega
-
-
-def mixture(t, omega, attitude, p):
-    size = p.a + omega[0] ** 2 + omega[1] ** 2
-    return np.array([0.2 * np.exp(-p.b * t) * np.sin(omega[2]) - 0.1 * omega[0],
-                     0.1 * np.log(size) * attitude[0] - 0.05 * omega[1] ** 3,
-                     0.3 * size**-1.3 * np.cos(0.7 * t)])
 
 
 def gradient(t, omega, attitude, p):
@@ -142,21 +123,13 @@ def test_potentials_sums_and_switches():
 
 
 def test_every_instruction_set_has_right_columns():
-    code = (f"import sys; sys.path.insert(0, {str(Path(__file__).parent)!r})\n"
-            "import polhode as ph, numpy as np, test_formula_columns as t\n"
+    code = ("import sys, polhode as ph, numpy as np, test_formula_columns as t\n"
             "s = ph.solve(t.scene([t.make('spring')], [[1.2, .2, -.1], [.2, 2, .3], [-.1, .3, 1.7]]), 1e-10, "
             "sensitivity=('omega', 'inertia', 'formula.k')).sensitivity\n"
             "sys.stdout.buffer.write(np.concatenate([s.d_omega, s.d_attitude]).tobytes())")
-    found = {}
-    for level in ("baseline", "avx2", "avx512"):
-        environment = dict(os.environ, POLHODE_SIMD=level)
-        done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True)
-        if done.returncode == 0:
-            found[level] = np.frombuffer(done.stdout)
-    for level in found:
-        np.testing.assert_allclose(found[level], found["baseline"], rtol=1e-9, atol=1e-10)
-    if {"avx2", "avx512"} <= set(found):
-        np.testing.assert_array_equal(found["avx2"], found["avx512"])
+    found = {level: np.frombuffer(text) for level, text in levels.outputs(code, levels.LEVELS).items()}
+    np.testing.assert_allclose(found["avx2"], found["baseline"], rtol=1e-9, atol=1e-10)
+    np.testing.assert_array_equal(found["avx2"], found["avx512"])
 
 
 def test_parameters_of_a_formula_are_fitted():

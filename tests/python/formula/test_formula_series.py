@@ -5,9 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from laws import dipole, drag, mixture, pd, spring
 
 import polhode as ph
-from polhode.formula import norm, to_body
+from polhode.formula import to_body
 from polhode.torques import Formula, Gravity
 
 TRUTH = json.loads((Path(__file__).parents[2] / "reference" / "formula_motion.json").read_text())
@@ -26,35 +27,8 @@ def gradient(t, omega, attitude, p):
     return 3 * p.n**2 * np.cross(u, [u @ np.array(p.inertia[3 * i : 3 * i + 3]) for i in range(3)])
 
 
-def pd(t, omega, attitude, p):
-    return -p.kp * attitude[:3] * attitude[3] - p.kd * omega
-
-
 def saturated(t, omega, attitude, p):
     return p.limit * np.tanh((-p.kp * attitude[:3] * attitude[3] - p.kd * omega) / p.limit)
-
-
-def drag(t, omega, attitude, p):
-    return -p.c * norm(omega) * omega
-
-
-def spring(t, omega, attitude, p):
-    aim = to_body(attitude, (0, 1, 0))
-    across = np.cross((0, 0, 1), aim)
-    sine = norm(across)
-    return p.k * np.arctan2(sine, aim[2]) / sine * across - p.c * omega
-
-
-def dipole(t, omega, attitude, p):
-    field = (0.6 * np.cos(p.n * t), 1.1 * np.sin(p.n * t), 0.3)
-    return np.cross(p.moment, to_body(attitude, field))
-
-
-def mixture(t, omega, attitude, p):
-    size = 1.5 + omega[0] ** 2 + omega[1] ** 2
-    return np.array([0.2 * np.exp(-0.1 * t) * np.sin(omega[2]) - 0.1 * omega[0],
-                     0.1 * np.log(size) * attitude[0] - 0.05 * omega[1] ** 3,
-                     0.3 * size**-1.3 * np.cos(0.7 * t)])
 
 
 LAWS = {
@@ -65,7 +39,7 @@ LAWS = {
     "drag": (drag, dict(c=0.08)),
     "spring": (spring, dict(k=0.6, c=0.05)),
     "dipole": (dipole, dict(moment=(0.2, 0.1, -0.3), n=0.9)),
-    "mixture": (mixture, {}),
+    "mixture": (mixture, dict(a=1.5, b=0.1)),
 }
 
 

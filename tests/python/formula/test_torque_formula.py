@@ -6,6 +6,7 @@ import pickle
 
 import numpy as np
 import pytest
+from laws import pd
 from scipy.integrate import solve_ivp
 
 import polhode as ph
@@ -14,10 +15,6 @@ from polhode.torques import AngularDamping, Constant, Custom, Damping, During, F
 INERTIA, OMEGA, TIMES = (1.0, 2.0, 2.5), (0.4, -0.7, 1.1), np.linspace(0, 5, 11)
 Q = np.array([0.1, -0.7, 0.4, 0.5]) / np.linalg.norm([0.1, -0.7, 0.4, 0.5])
 PD = "-kp * attitude.xyz * attitude.w - kd * omega"
-
-
-def pd(t, omega, attitude, p):
-    return -p.kp * attitude[:3] * attitude[3] - p.kd * omega
 
 
 def drag(t, omega, attitude, p):

@@ -1,13 +1,10 @@
 """Mass properties of meshes: exact fractions, closed forms, published values and trimesh; and what is refused."""
 
-import os
-import pathlib
 import pickle
-import subprocess
-import sys
 import warnings
 from fractions import Fraction
 
+import levels
 import numpy as np
 import pytest
 from meshes import TETRAHEDRON_FACES, box, exact, globe, inward, join, soup
@@ -273,15 +270,9 @@ def test_every_instruction_set():
         "    v, f = globe(n, n // 2, lambda x, y, z: 1 + 0.3 * x * y + 0.2 * z**3)\n"
         "    b = ph.MassProperties.from_mesh(v + 5, f[:-3], density=1, check=False)\n"
         "    print(*[float(x).hex() for x in (b.mass, *b.com, *b.inertia.matrix.ravel())])\n")
-    found = {}
-    for level in ("baseline", "avx2", "avx512"):
-        environment = {**os.environ, "POLHODE_SIMD": level,
-                       "PYTHONPATH": str(pathlib.Path(__file__).parents[2] / "support")}
-        done = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True,
-                              check=True)
-        found[level] = done.stdout
+    found = levels.outputs(program, levels.LEVELS)
     assert found["avx2"] == found["avx512"]
-    values = {level: np.array([float.fromhex(x) for x in text.split()]) for level, text in found.items()}
+    values = {level: np.array([float.fromhex(x) for x in text.decode().split()]) for level, text in found.items()}
     np.testing.assert_allclose(values["baseline"], values["avx2"], rtol=0, atol=4e-16 * 5)
 
 
