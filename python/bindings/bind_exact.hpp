@@ -47,6 +47,26 @@ attitude : ndarray, shape (..., 4)
     Body to space, unit, (x, y, z, w).)" + (raises.empty() ? "" : "\n\nRaises\n------\nInvalidInput\n    " + raises);
 }
 
+/// The docstring of a curve: its title, and what stands under "Returns".
+inline std::string curve_doc(const std::string& title, const std::string& returns) {
+  return title + "\n\nParameters\n----------\nt : array_like, any shape\n    Times [s].\n\nReturns\n-------\n"
+         "ndarray, shape (..., 3)\n    " + returns;
+}
+
+inline std::string euler_angles_doc(const std::string& momentum) {
+  return curve_doc("Angles about the " + momentum + " momentum.",
+                   "(phi, theta, psi) [rad], intrinsic z-x-z of the body axes in a space frame whose z axis is the " +
+                       momentum + " momentum\n    (space z turned there the shortest way): precession, nutation and "
+                       "spin. phi and psi in [-pi, pi].");
+}
+
+/// The start in the docstring of a class.
+#define POLHODE_START_DOC                                     \
+  "omega : array_like, shape (3,)\n"                          \
+  "    Angular velocity at t = 0, in body axes [rad/s].\n"        \
+  "attitude : array_like of shape (4,), or a Rotation\n"       \
+  "    Body to space at t = 0, (x, y, z, w).\n"
+
 /// What a picture draws: the torques and rotors of the scene, its period [s] (0: none), and the longest span [s].
 struct Picture {
   py::list torques = py::list(), rotors = py::list();

@@ -32,11 +32,7 @@ inertia : InertiaTensor, or array_like of shape (3,)
     axes, in any order.
 damping : float
     The rate c [1/s]. A negative rate drives the body.
-omega : array_like, shape (3,)
-    Angular velocity at t = 0, in body axes [rad/s].
-attitude : array_like of shape (4,), or a Rotation
-    Body to space at t = 0, (x, y, z, w).
-
+)" POLHODE_START_DOC R"(
 Raises
 ------
 InvalidInput

@@ -55,11 +55,7 @@ Parameters
 inertia : InertiaTensor, or array_like of shape (3,)
     About the centre of mass (or a fixed point), in body axes [kg m^2]; three numbers are principal moments in the given
     axes, in any order.
-omega : array_like, shape (3,)
-    Angular velocity at t = 0, in body axes [rad/s].
-attitude : array_like of shape (4,), or a Rotation
-    Body to space at t = 0, (x, y, z, w).
-physical : bool
+)" POLHODE_START_DOC R"(physical : bool
     False gives up the triangle inequality for three moments, as in :class:`InertiaTensor`.
 
 Raises
@@ -77,40 +73,14 @@ Jacobi (1850), "Sur la rotation d'un corps", J. reine angew. Math. 39, in the Ca
     ``progress(times done, all times)`` is called about fifty times a second. What it raises ends the call. True writes
     a line with the time left to stderr.
 )").c_str())
-      .def("euler_angles", &along<FreeMotion, &FreeMotion::euler_angles>, py::arg("t"), R"(Angles about the angular momentum.
-
-Parameters
-----------
-t : array_like, any shape
-    Times [s].
-
-Returns
--------
-ndarray, shape (..., 3)
-    (phi, theta, psi) [rad], intrinsic z-x-z of the body axes in a space frame whose z axis is the angular momentum
-    (space z turned there the shortest way): precession, nutation and spin. phi and psi in [-pi, pi].)")
-      .def("polhode", &along<FreeMotion, &FreeMotion::polhode>, py::arg("t"), R"(Poinsot's point of contact in body axes.
-
-Parameters
-----------
-t : array_like, any shape
-    Times [s].
-
-Returns
--------
-ndarray, shape (..., 3)
-    omega / sqrt(2 T), on the inertia ellipsoid [kg^-1/2 m^-1].)")
-      .def("herpolhode", &along<FreeMotion, &FreeMotion::herpolhode>, py::arg("t"), R"(Poinsot's point of contact in space axes.
-
-Parameters
-----------
-t : array_like, any shape
-    Times [s].
-
-Returns
--------
-ndarray, shape (..., 3)
-    The polhode's point turned by the attitude; it stays in the plane L . v = sqrt(2 T) [kg^-1/2 m^-1].)")
+      .def("euler_angles", &along<FreeMotion, &FreeMotion::euler_angles>, py::arg("t"),
+           euler_angles_doc("angular").c_str())
+      .def("polhode", &along<FreeMotion, &FreeMotion::polhode>, py::arg("t"),
+           curve_doc("Poinsot's point of contact in body axes.",
+                     "omega / sqrt(2 T), on the inertia ellipsoid [kg^-1/2 m^-1].").c_str())
+      .def("herpolhode", &along<FreeMotion, &FreeMotion::herpolhode>, py::arg("t"),
+           curve_doc("Poinsot's point of contact in space axes.", "The polhode's point turned by the attitude; it stays "
+                     "in the plane L . v = sqrt(2 T) [kg^-1/2 m^-1].").c_str())
       .def(
           "flip_times",
           [](const FreeMotion& motion, py::handle begin, py::handle end) {

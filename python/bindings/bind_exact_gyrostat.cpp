@@ -76,29 +76,10 @@ docs/gyrostat.md.)");
   cls.def(py::init(&make_gyrostat), py::arg("inertia"), py::kw_only(), py::arg("rotors") = py::none(),
           py::arg("momentum") = py::none(), py::arg("omega"), py::arg("attitude") = py::make_tuple(0, 0, 0, 1))
       .def("at", &at<Gyrostat>, py::arg("t"), at_doc(", up to abs(omega t) = 1e25 rad").c_str())
-      .def("euler_angles", &along<Gyrostat, &Gyrostat::euler_angles>, py::arg("t"), R"(Angles about the total momentum.
-
-Parameters
-----------
-t : array_like, any shape
-    Times [s].
-
-Returns
--------
-ndarray, shape (..., 3)
-    (phi, theta, psi) [rad], intrinsic z-x-z of the body axes in a space frame whose z axis is the total momentum
-    (space z turned there the shortest way): precession, nutation and spin. phi and psi in [-pi, pi].)")
-      .def("polhode", &along<Gyrostat, &Gyrostat::polhode>, py::arg("t"), R"(The total momentum in body axes.
-
-Parameters
-----------
-t : array_like, any shape
-    Times [s].
-
-Returns
--------
-ndarray, shape (..., 3)
-    J omega + h [kg m^2/s]: on a sphere about 0 and on an ellipsoid of constant energy about h.)")
+      .def("euler_angles", &along<Gyrostat, &Gyrostat::euler_angles>, py::arg("t"), euler_angles_doc("total").c_str())
+      .def("polhode", &along<Gyrostat, &Gyrostat::polhode>, py::arg("t"),
+           curve_doc("The total momentum in body axes.",
+                     "J omega + h [kg m^2/s]: on a sphere about 0 and on an ellipsoid of constant energy about h.").c_str())
       .def_property_readonly(
           "kind", [](const Gyrostat& g) { return to_text(g.kind()); },
           "'rest', 'steady', 'precession', 'paired', 'single' or 'separatrix'.\n\n"

@@ -39,11 +39,7 @@ inertia : array_like of shape (3,), InertiaTensor, or array_like of shape (3, 3)
 weight_arm : float
     Mass times gravity times the distance of the centre of mass from the pivot, signed along the symmetry axis [N m].
     Gravity points along -z of space.
-omega : array_like, shape (3,)
-    Angular velocity at t = 0, in body axes [rad/s].
-attitude : array_like of shape (4,), or a Rotation
-    Body to space at t = 0, (x, y, z, w).
-rotor : float, optional
+)" POLHODE_START_DOC R"(rotor : float, optional
     Momentum of rotors about the symmetry axis, constant in the body [kg m^2/s], as of a toy gyroscope's wheel. The
     inertia is then as for Gyrostat.
 

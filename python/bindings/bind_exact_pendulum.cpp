@@ -35,11 +35,7 @@ weight : float
     m g [N]. Gravity points along -z of space.
 arm : array_like, shape (3,)
     From the pivot to the centre of mass, in body axes [m].
-omega : array_like, shape (3,)
-    Angular velocity at t = 0, in body axes [rad/s].
-attitude : array_like of shape (4,), or a Rotation
-    Body to space at t = 0, (x, y, z, w).
-
+)" POLHODE_START_DOC R"(
 Raises
 ------
 InvalidInput

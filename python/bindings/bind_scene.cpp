@@ -2,6 +2,7 @@
 
 #include <pybind11/stl.h>
 
+#include "bind_torque.hpp"
 #include "convert.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/scene/scene.hpp"
@@ -118,17 +119,8 @@ void bind_scene(py::module_& m) {
         if (!states.is_none()) set_starts(torques, to_state_numbers(scene.states(), states));
         SeveralTorques{torques}.add(TorqueInput{to_real(t, "t"), w.data(), q, I_B}, tau.data());
         return from_vector3(tau);
-      }, py::arg("t"), py::arg("omega"), py::arg("attitude"), py::arg("states") = py::none(), R"doc(Return the sum of the torques at one state.
-
-Parameters
-----------
-t : float
-    Time [s].
-omega : array_like, shape (3,)
-    Rates in body axes [rad/s].
-attitude : array_like, shape (4,)
-    Unit quaternion (x, y, z, w).
-states : dict, optional
+      }, py::arg("t"), py::arg("omega"), py::arg("attitude"), py::arg("states") = py::none(),
+           "Return the sum of the torques at one state.\n\n" POLHODE_STATE_DOC R"doc(states : dict, optional
     Numbers of the formulas' states by name; the starts if left out.
 
 Returns

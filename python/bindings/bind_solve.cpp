@@ -19,6 +19,8 @@
 namespace polhode::python {
 namespace {
 
+using namespace py::literals;
+
 /// The rows of a vector that the answer owns, as an array that keeps the answer alive.
 py::object view(const py::object& answer, const std::vector<double>& values, py::ssize_t columns, bool wanted = true) {
   if (!wanted) return py::none();
@@ -86,14 +88,8 @@ std::unique_ptr<Answer> solve_scene(const Scene& scene, const py::dict& given, p
 
 py::dict describe_stats(const Motion& motion) {
   const ode::Counts& counts = motion.stats;
-  py::dict stats;
-  stats["steps"] = counts.steps;
-  stats["rejected"] = counts.rejected;
-  stats["derivatives"] = counts.derivatives;
-  stats["events"] = counts.events;
-  stats["runs"] = motion.runs;
-  stats["seconds"] = counts.seconds;
-  return stats;
+  return py::dict("steps"_a = counts.steps, "rejected"_a = counts.rejected, "derivatives"_a = counts.derivatives,
+                  "events"_a = counts.events, "runs"_a = motion.runs, "seconds"_a = counts.seconds);
 }
 
 py::list describe_events(const Answer& answer) {

@@ -10,6 +10,8 @@
 namespace polhode::python {
 namespace {
 
+using namespace py::literals;
+
 py::dict describe_facts(const Facts& facts) {
   py::dict all;
   all["free"] = facts.is_free();
@@ -41,27 +43,16 @@ py::dict describe_facts(const Facts& facts) {
 }
 
 py::dict describe_candidate(const Candidate& candidate) {
-  py::dict all;
-  all["name"] = candidate.name;
-  all["exact"] = candidate.exact;
-  all["why_not"] = candidate.why_not;
-  all["predicted_error"] = candidate.predicted_error;
-  all["predicted_seconds"] = candidate.predicted_seconds;
-  all["rtol"] = candidate.rtol;
-  return all;
+  return py::dict("name"_a = candidate.name, "exact"_a = candidate.exact, "why_not"_a = candidate.why_not,
+                  "predicted_error"_a = candidate.predicted_error, "predicted_seconds"_a = candidate.predicted_seconds,
+                  "rtol"_a = candidate.rtol);
 }
 
 py::dict describe_piece(const PiecePlan& piece) {
-  py::dict all;
-  all["begin"] = piece.begin;
-  all["end"] = piece.end;
-  all["torques"] = py::tuple(py::cast(piece.torques));
-  all["model"] = piece.model;
-  all["method"] = piece.method;
-  all["turns"] = piece.turns;
-  all["predicted_seconds"] = piece.predicted_seconds;
-  all["ran"] = piece.ran.empty() ? py::object(py::none()) : py::object(py::str(piece.ran));
-  return all;
+  return py::dict("begin"_a = piece.begin, "end"_a = piece.end, "torques"_a = py::tuple(py::cast(piece.torques)),
+                  "model"_a = piece.model, "method"_a = piece.method, "turns"_a = piece.turns,
+                  "predicted_seconds"_a = piece.predicted_seconds,
+                  "ran"_a = piece.ran.empty() ? py::object(py::none()) : py::object(py::str(piece.ran)));
 }
 
 /// The closed form as the class that evaluates it.
@@ -87,12 +78,8 @@ py::dict make_report(const PlannedScene& planned) {
   }();
   py::list candidates;
   for (const Candidate& candidate : report.candidates) candidates.append(describe_candidate(candidate));
-  py::dict all;
-  all["facts"] = describe_facts(report.facts);
-  all["candidates"] = candidates;
-  all["reasons"] = py::cast(report.reasons);
-  all["left_out"] = py::cast(report.left_out);
-  return all;
+  return py::dict("facts"_a = describe_facts(report.facts), "candidates"_a = candidates,
+                  "reasons"_a = py::cast(report.reasons), "left_out"_a = py::cast(report.left_out));
 }
 
 }  // namespace
@@ -100,17 +87,11 @@ py::dict make_report(const PlannedScene& planned) {
 py::dict describe_plan(const Plan& plan, const std::string& state, double rtol) {
   py::list pieces;
   for (const PiecePlan& piece : plan.pieces) pieces.append(describe_piece(piece));
-  py::dict all;
-  all["model"] = plan.model;
-  all["method"] = plan.method;
-  all["pieces"] = pieces;
-  all["state"] = state;
-  all["accuracy"] = plan.accuracy;
-  all["certify"] = plan.proof ? py::object(py::str("proof")) : py::object(py::bool_(plan.certify));
-  all["rtol"] = rtol;
-  all["predicted_error"] = plan.predicted_error;
-  all["predicted_seconds"] = plan.predicted_seconds;
-  return all;
+  return py::dict("model"_a = plan.model, "method"_a = plan.method, "pieces"_a = pieces, "state"_a = state,
+                  "accuracy"_a = plan.accuracy,
+                  "certify"_a = plan.proof ? py::object(py::str("proof")) : py::object(py::bool_(plan.certify)),
+                  "rtol"_a = rtol, "predicted_error"_a = plan.predicted_error,
+                  "predicted_seconds"_a = plan.predicted_seconds);
 }
 
 void bind_solve_plan(py::module_& m) {

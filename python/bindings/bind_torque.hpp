@@ -134,17 +134,16 @@ inline Array compute_value(const AnyTorque& torque, py::handle t, py::handle ome
   return from_vector3(tau);
 }
 
-constexpr const char* value_doc = R"doc(Return the torque at one state.
+/// One state in a docstring.
+#define POLHODE_STATE_DOC                     \
+  "Parameters\n----------\n"                  \
+  "t : float\n    Time [s].\n"                \
+  "omega : array_like, shape (3,)\n"          \
+  "    Rates in body axes [rad/s].\n"         \
+  "attitude : array_like, shape (4,)\n"       \
+  "    Unit quaternion (x, y, z, w).\n"
 
-Parameters
-----------
-t : float
-    Time [s].
-omega : array_like, shape (3,)
-    Rates in body axes [rad/s].
-attitude : array_like, shape (4,)
-    Unit quaternion (x, y, z, w).
-inertia : InertiaTensor or array_like, optional
+constexpr const char* value_doc = "Return the torque at one state.\n\n" POLHODE_STATE_DOC R"doc(inertia : InertiaTensor or array_like, optional
     Of the body, for a torque that depends on it [kg m^2].
 states : dict, optional
     Numbers of the torque's own states by name, each with the shape of its start; the starts if left out.
@@ -165,7 +164,8 @@ void bind_value(py::class_<T, Options...>& type) {
     } else {
       return compute_value(torque, t, omega, attitude, inertia, states);
     }
-  }, py::arg("t"), py::arg("omega"), py::arg("attitude"), py::arg("inertia") = py::none(), py::arg("states") = py::none(), value_doc);
+  }, py::arg("t"), py::arg("omega"), py::arg("attitude"), py::arg("inertia") = py::none(),
+           py::arg("states") = py::none(), value_doc);
 }
 
 }  // namespace polhode::python

@@ -221,17 +221,7 @@ See Also
 polhode.torques.Custom : a function that cannot be traced.
 )doc";
 
-constexpr const char* rates_doc = R"doc(Return the rates of the torque's own states.
-
-Parameters
-----------
-t : float
-    Time [s].
-omega : array_like, shape (3,)
-    Rates in body axes [rad/s].
-attitude : array_like, shape (4,)
-    Unit quaternion (x, y, z, w).
-states : dict, optional
+constexpr const char* rates_doc = "Return the rates of the torque's own states.\n\n" POLHODE_STATE_DOC R"doc(states : dict, optional
     Numbers of the states by name; the starts if left out.
 
 Returns
@@ -255,22 +245,13 @@ float
     V [J].
 )doc";
 
-constexpr const char* with_parameters_doc = R"doc(Return the formula with other numbers of some of its parameters.
-
-Parameters
-----------
-**parameters : float or array_like, shape (n,)
-    Numbers by the names of its parameters, of the same shapes.
-
-Returns
--------
-Formula
-
-Raises
-------
-InvalidInput
-    For a name that it does not have, or another shape.
-)doc";
+/// The docstring of a copy with other numbers of some "parameters" or "states".
+std::string with_doc(const std::string& numbers, const std::string& what) {
+  return "Return the formula with other " + what + " of some of its " + numbers + ".\n\nParameters\n----------\n**" +
+         numbers + " : float or array_like, shape (n,)\n    Numbers by the names of its " + numbers +
+         ", of the same shapes.\n\nReturns\n-------\nFormula\n\nRaises\n------\nInvalidInput\n"
+         "    For a name that it does not have, or another shape.\n";
+}
 
 /// The numbers of inputs, some of them replaced by name.
 std::vector<double> replace(const std::vector<Input>& inputs, const py::kwargs& numbers, const std::string& prefix) {
@@ -290,23 +271,6 @@ std::vector<double> replace(const std::vector<Input>& inputs, const py::kwargs& 
   }
   return values;
 }
-
-constexpr const char* with_starts_doc = R"doc(Return the formula with other starts of some of its states.
-
-Parameters
-----------
-**states : float or array_like, shape (n,)
-    Numbers by the names of its states, of the same shapes.
-
-Returns
--------
-Formula
-
-Raises
-------
-InvalidInput
-    For a name that it does not have, or another shape.
-)doc";
 
 }  // namespace
 
@@ -328,10 +292,10 @@ void bind_torque_formula(py::module_& m) {
                              "dict: the named numbers, sorted by name.");
   type.def("with_parameters", [](const Formula& formula, const py::kwargs& numbers) {
     return formula.with_parameters(replace(formula.parameters(), numbers, "with_parameters."));
-  }, with_parameters_doc);
+  }, with_doc("parameters", "numbers").c_str());
   type.def("with_starts", [](const Formula& formula, const py::kwargs& numbers) {
     return formula.with_starts(replace(formula.states(), numbers, "with_starts."));
-  }, with_starts_doc);
+  }, with_doc("states", "starts").c_str());
   type.def_property_readonly("recognise", &Formula::recognise, "bool: whether it may be replaced.");
   bind_traits(type);
   bind_value(type);
