@@ -31,6 +31,11 @@ def _pair(m: npt.ArrayLike, m1: npt.ArrayLike | None) -> tuple[npt.ArrayLike, np
     return (m, 1.0 - to_numbers(m, "m")) if m1 is None else (m, m1)
 
 
+def _of_parameter(function: Any, m: npt.ArrayLike, m1: npt.ArrayLike | None) -> Any:
+    shape, flat = _flat(("m", "m1"), _pair(m, m1))
+    return function(*flat).reshape(shape)[()]
+
+
 def jacobi(u: npt.ArrayLike, m: npt.ArrayLike, m1: npt.ArrayLike | None = None) -> tuple[Any, Any, Any]:
     """Return Jacobi's elliptic functions sn, cn and dn.
 
@@ -75,8 +80,7 @@ def K(m: npt.ArrayLike, m1: npt.ArrayLike | None = None) -> Any:
     ndarray
         K(m), rounded once.
     """
-    shape, flat = _flat(("m", "m1"), _pair(m, m1))
-    return _core._complete_K(*flat).reshape(shape)[()]
+    return _of_parameter(_core._complete_K, m, m1)
 
 
 def nome(m: npt.ArrayLike, m1: npt.ArrayLike | None = None) -> Any:
@@ -84,7 +88,7 @@ def nome(m: npt.ArrayLike, m1: npt.ArrayLike | None = None) -> Any:
 
     Parameters
     ----------
-    m, m1 : array_like
+    m, m1
         As for `jacobi`.
 
     Returns
@@ -92,5 +96,4 @@ def nome(m: npt.ArrayLike, m1: npt.ArrayLike | None = None) -> Any:
     ndarray
         q in [0, 1]; it keeps its relative accuracy down to m of 1e-300.
     """
-    shape, flat = _flat(("m", "m1"), _pair(m, m1))
-    return _core._nome(*flat).reshape(shape)[()]
+    return _of_parameter(_core._nome, m, m1)

@@ -77,10 +77,8 @@ def to_space(attitude: Any, v: Any) -> Any:
 
     Parameters
     ----------
-    attitude : array_like, shape (4,)
-        Unit quaternion (x, y, z, w), or its symbols.
-    v : array_like, shape (3,)
-        In body axes.
+    attitude, v
+        As for `to_body`; v is in body axes.
 
     Returns
     -------

@@ -38,17 +38,21 @@ def _evaluate(
     function: Callable[..., int],
     inertia: InertiaTensor | npt.ArrayLike,
     parameters: list[tuple[Array, int]],
-    times: Array,
+    start: tuple[npt.ArrayLike, Any],
+    t: npt.ArrayLike,
     out: Any,
     want: str | Sequence[str],
     axis: npt.ArrayLike | None,
     frame: str,
     dtype: Any,
-    workers: int,
-    refuse: bool,
-    report: Report | None,
+    threads: int | None,
+    errors: str,
+    progress: bool | Report | None,
 ) -> Any:
-    """Evaluate a closed form, whose C++ function gets the inertia, the parameters, and what is wanted."""
+    """Evaluate a closed form, whose C++ function gets the inertia, the parameters, the start, and what is wanted."""
+    workers, refuse, report = check_threads(threads), check_errors(errors), reporter(progress)
+    rows = [(to_rows(start[0], "omega", 3), 1), (to_attitudes(start[1], 3), 1)]
+    times = to_rows(t, "t", None)
     common, own = _split(inertia)
     if not is_one_of(frame, ("body", "space")):
         raise InvalidInput(f"frame: must be 'body' or 'space', got {frame!r}")
@@ -58,11 +62,11 @@ def _evaluate(
     vectors = [(to_rows(axis, "axis", 3), 1)] if follows else []
 
     def kernel(*arguments: Any) -> int:
-        *flat, t, results = arguments
+        *flat, times, results = arguments
         vector = flat.pop() if follows else None
-        return function(*common, *flat, t, results, vector, frame == "space", workers, refuse, report)
+        return function(*common, *flat, times, results, vector, frame == "space", workers, refuse, report)
 
-    return evaluate([*own, *parameters, *vectors], times, out, want, kernel, refuse, check_dtype(dtype))
+    return evaluate([*own, *parameters, *rows, *vectors], times, out, want, kernel, refuse, check_dtype(dtype))
 
 
 def free_motion(
@@ -139,16 +143,13 @@ def free_motion(
     -----
     The formulas of :class:`FreeMotion`; see docs/exact.md.
     """
-    workers, refuse, report = check_threads(threads), check_errors(errors), reporter(progress)
     plain = want is BOTH and axis is None and dtype is DOUBLE and (out is None or getattr(t, "size", 0) <= FEW)
-    if plain and refuse and report is None:
+    if plain and check_errors(errors) and progress is None and check_threads(threads) >= 0:
         motion = _core._free_motion_of_one(inertia, omega, attitude, t)
         if motion is not None:
             return motion if out is None else copy_out(motion, out, BOTH)
-    speeds, attitudes = to_rows(omega, "omega", 3), to_attitudes(attitude, 3)
-    times = to_rows(t, "t", None)
-    return _evaluate(_core._free_motion, inertia, [(speeds, 1), (attitudes, 1)], times, out, want, axis,
-                     frame, dtype, workers, refuse, report)
+    return _evaluate(_core._free_motion, inertia, [], (omega, attitude), t, out, want, axis, frame, dtype, threads,
+                     errors, progress)
 
 
 def gyrostat(
@@ -175,47 +176,33 @@ def gyrostat(
         Principal moments in the body axes with the rotors locked, in any order [kg m^2]; or one tensor for all.
     momentum : array_like, shape (..., 3)
         The rotors' momentum in body axes [kg m^2/s].
-    omega : array_like, shape (..., 3)
-        Angular velocity at t = 0, in body axes [rad/s].
-    attitude : array_like, shape (..., 4), or Rotation
-        Attitude at t = 0, body to space, unit, (x, y, z, w).
-    t : array_like, shape (...)
-        Times [s]. Bodies (B, 1) and times (T,) give the full grid (B, T), each body set up once.
-    out, want, axis, frame, dtype, threads, errors, progress
+    omega, attitude, t, out, want, axis, frame, dtype, threads, errors, progress
         As for :func:`free_motion`.
 
     Returns
     -------
-    omega : ndarray, shape (..., 3)
-        In body axes [rad/s].
-    attitude : ndarray, shape (..., 4)
-        Body to space, unit, (x, y, z, w).
-    direction : ndarray, shape (..., 3)
-        The axis in the other frame, if it is wanted.
+    omega, attitude, direction : ndarray
+        As :func:`free_motion`.
 
     Raises
     ------
     InvalidInput
         Shapes that do not broadcast, and what :class:`Gyrostat` refuses, with the number of the body.
     MemoryError
-        The result would not fit into this machine: before anything is computed, with the number of bytes.
+        As :func:`free_motion`.
 
     Warns
     -----
     RuntimeWarning
-        Once, with their count, when rows came out NaN because their input is not finite, or with errors="nan" because
-        the motion is refused.
+        As :func:`free_motion`.
 
     Notes
     -----
     The formulas of :class:`Gyrostat`; see docs/gyrostat.md.
     """
-    workers, refuse, report = check_threads(threads), check_errors(errors), reporter(progress)
-    speeds, attitudes = to_rows(omega, "omega", 3), to_attitudes(attitude, 3)
-    times = to_rows(t, "t", None)
-    rotors = to_rows(momentum, "momentum", 3)
-    return _evaluate(_core._gyrostat, inertia, [(rotors, 1), (speeds, 1), (attitudes, 1)], times, out, want, axis,
-                     frame, dtype, workers, refuse, report)
+    own = [(to_rows(momentum, "momentum", 3), 1)]
+    return _evaluate(_core._gyrostat, inertia, own, (omega, attitude), t, out, want, axis, frame, dtype, threads,
+                     errors, progress)
 
 
 def heavy_top(
@@ -243,44 +230,30 @@ def heavy_top(
         body's z whenever the first two are equal.
     weight_arm : array_like, shape (...)
         Weight times the distance of the centre of mass from the pivot, signed along the axis [N m].
-    omega : array_like, shape (..., 3)
-        Angular velocity at t = 0, in body axes [rad/s].
-    attitude : array_like, shape (..., 4), or Rotation
-        Attitude at t = 0, body to space, unit, (x, y, z, w).
-    t : array_like, shape (...)
-        Times [s]. Tops (B, 1) and times (T,) give the full grid (B, T), each top set up once.
-    out, want, axis, frame, dtype, threads, errors, progress
+    omega, attitude, t, out, want, axis, frame, dtype, threads, errors, progress
         As for :func:`free_motion`.
 
     Returns
     -------
-    omega : ndarray, shape (..., 3)
-        In body axes [rad/s].
-    attitude : ndarray, shape (..., 4)
-        Body to space, unit, (x, y, z, w).
-    direction : ndarray, shape (..., 3)
-        The axis in the other frame, if it is wanted.
+    omega, attitude, direction : ndarray
+        As :func:`free_motion`.
 
     Raises
     ------
     InvalidInput
         Shapes that do not broadcast, and what :class:`HeavyTop` refuses, with the number of the body.
     MemoryError
-        The result would not fit into this machine: before anything is computed, with the number of bytes.
+        As :func:`free_motion`.
 
     Warns
     -----
     RuntimeWarning
-        Once, with their count, when rows came out NaN because their input is not finite, or with errors="nan" because
-        the motion is refused.
+        As :func:`free_motion`.
 
     Notes
     -----
     The formulas of :class:`HeavyTop`; see docs/heavy_top.md.
     """
-    workers, refuse, report = check_threads(threads), check_errors(errors), reporter(progress)
-    speeds, attitudes = to_rows(omega, "omega", 3), to_attitudes(attitude, 3)
-    times = to_rows(t, "t", None)
-    arms = to_rows(weight_arm, "weight_arm", None)
-    return _evaluate(_core._heavy_top, inertia, [(arms, 0), (speeds, 1), (attitudes, 1)], times, out, want, axis,
-                     frame, dtype, workers, refuse, report)
+    own = [(to_rows(weight_arm, "weight_arm", None), 0)]
+    return _evaluate(_core._heavy_top, inertia, own, (omega, attitude), t, out, want, axis, frame, dtype, threads,
+                     errors, progress)

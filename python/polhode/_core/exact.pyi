@@ -34,12 +34,7 @@ class _ClosedForm:
         Returns
         -------
         Film
-            A notebook plays it; ``.save(path)`` writes .html, .gif or .mp4.
-
-        Raises
-        ------
-        InvalidInput
-            As :meth:`Motion.animate`.
+            As :meth:`Motion.animate`, with what that raises.
         """
     def plot(self, t: typing.Any = None, *parts: str, ax: matplotlib.axes.Axes | None = None, marks: typing.Any = None, dark: bool = False) -> matplotlib.figure.Figure:
         """
@@ -56,10 +51,5 @@ class _ClosedForm:
         Returns
         -------
         matplotlib.figure.Figure
-            A notebook shows it.
-
-        Raises
-        ------
-        InvalidInput
-            As :meth:`Motion.plot`.
+            A notebook shows it. It raises what :meth:`Motion.plot` raises.
         """

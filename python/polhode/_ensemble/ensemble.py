@@ -184,10 +184,8 @@ class Ensemble:
 
         Parameters
         ----------
-        numbers : iterable of int
-            Such as ``range(17, 40)``.
-        point : int
-            Of a sweep.
+        numbers, point
+            As for `bodies`.
 
         Returns
         -------

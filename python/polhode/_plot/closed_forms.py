@@ -72,12 +72,7 @@ def plot(self: Any, t: Any = None, *parts: str, ax: matplotlib.axes.Axes | None 
     Returns
     -------
     matplotlib.figure.Figure
-        A notebook shows it.
-
-    Raises
-    ------
-    InvalidInput
-        As :meth:`Motion.plot`.
+        A notebook shows it. It raises what :meth:`Motion.plot` raises.
     """
     from .motion import draw
     from .style import need_matplotlib
@@ -101,12 +96,7 @@ def animate(self: Any, t: Any = None, *, body: Any = "box", axis: Any = None) ->
     Returns
     -------
     Film
-        A notebook plays it; ``.save(path)`` writes .html, .gif or .mp4.
-
-    Raises
-    ------
-    InvalidInput
-        As :meth:`Motion.animate`.
+        As :meth:`Motion.animate`, with what that raises.
     """
     from .motion import make_film
 

@@ -46,20 +46,12 @@ def free_sensitivity(
 
     Parameters
     ----------
-    inertia : array_like, shape (..., 3), or InertiaTensor
-        Principal moments in the body axes, in any order [kg m^2]; or one tensor for all bodies.
-    omega : array_like, shape (..., 3)
-        Angular velocity at t = 0, in body axes [rad/s].
-    attitude : array_like, shape (..., 4), or Rotation
-        Attitude at t = 0, body to space, unit, (x, y, z, w).
-    t : array_like, shape (...)
-        Times [s]. Bodies (B, 1) and times (T,) give the full grid (B, T), each body set up once.
+    inertia, omega, attitude, t, threads
+        As for :func:`free_motion`.
     wrt, side
         As for :meth:`FreeMotion.sensitivity`.
     out : tuple of ndarray, optional
         Where to write omega, attitude, d_omega and d_attitude, float64.
-    threads : int, optional
-        At most this many; by default as many as the machine has. The bits of the result do not depend on it.
 
     Returns
     -------

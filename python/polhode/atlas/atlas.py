@@ -11,6 +11,7 @@ from typing import Any
 
 from .. import _files
 from .._core import InvalidInput
+from .._harness.folder import make_folder
 from . import pictures
 from .claims import find_broken
 from .families import FAMILIES
@@ -21,17 +22,6 @@ from .results import FamilyResult, document, read_family, write_family
 from .work import work
 
 LIMIT = {True: 2.0, False: 60.0}   # seconds of CPU a point: quick, whole
-
-
-def _folder(folder: str | os.PathLike[str]) -> pathlib.Path:
-    output = pathlib.Path(folder)
-    try:
-        output.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InvalidInput(f"output: {output} cannot be made: {error.strerror}") from None
-    if not os.access(output, os.W_OK):
-        raise InvalidInput(f"output: {output} cannot be written to")
-    return output
 
 
 def atlas(
@@ -89,7 +79,7 @@ def atlas(
     seconds = LIMIT[quick] if limit is None else limit
     if not seconds > 0:
         raise InvalidInput(f"limit: must be positive, got {seconds:g}")
-    output = _folder(folder)
+    output = make_folder(folder)
     results: dict[str, FamilyResult] = {}
     files: list[str] = []
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import functools
 import json
 import os
-import pathlib
 import time
 from collections.abc import Callable, Iterable
 from typing import Any
 
 from .. import _files
 from .._core import InvalidInput
+from .._harness.folder import make_folder
 from .._scene.files import find_scene, read_toml
 from .._scene.scene import Scene
 from . import choice, pictures
@@ -32,15 +32,6 @@ def _title(source: Any) -> str:
 
 def _report(progress: Callable[[int, str], object], index: int, label: str, text: str) -> None:
     progress(index, f"{label}: {text}")
-
-
-def _check_folder(folder: pathlib.Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InvalidInput(f"output: {folder} cannot be made: {error.strerror}") from None
-    if not os.access(folder, os.W_OK):
-        raise InvalidInput(f"output: {folder} cannot be written to")
 
 
 def chart(
@@ -100,8 +91,7 @@ def chart(
     if len(set(names)) < len(names):
         twice = max(names, key=names.count)
         raise InvalidInput(f"scenes: {twice!r} is given twice; each needs a name of its own for its picture")
-    output = pathlib.Path(folder)
-    _check_folder(output)
+    output = make_folder(folder)
 
     taking_part = candidates(peers)
     mine = read_entrants(entrants, taking_part)
