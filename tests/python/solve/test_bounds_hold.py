@@ -80,6 +80,20 @@ def test_a_body_at_rest_next_to_upright_or_hanging(axis, inertia, accuracy):
     assert found <= motion.error + 1e-13
 
 
+@pytest.mark.parametrize("accuracy", [5.4e-6, 1e-7, 1e-8, 1.7e-9, 3e-10, 1e-10])
+@pytest.mark.parametrize("want", [("omega",), ("omega", "attitude")])
+def test_errors_of_a_slow_swing_between_the_ends_of_steps(want, accuracy):
+    """It hangs: w_i = w_i(0) cos(nu_i t) about both horizontal axes. A step is longer than half a period."""
+    inertia, rates, torque = np.array((0.092, 0.139, 0.166)), np.array((-1.3e-14, -1.4e-14, 0)), 1.1e-3
+    times = -np.linspace(0, 55, 92)
+    scene = ph.Scene(inertia=inertia, omega=rates, attitude=(0, 1, 0, 0), times=times, want=want,
+                     torques=[ph.torques.Gravity(torque, (0, 0, 1))])
+    motion = ph.solve(scene, accuracy)
+    true = rates * np.cos(np.sqrt(torque / inertia) * times[:, None])
+    found = np.linalg.norm(motion.omega - true, axis=1).max() / np.linalg.norm(true, axis=1).max()
+    assert motion.success and found <= motion.error + 1e-13
+
+
 @pytest.mark.parametrize("accuracy", [2.5e-12, 1.4e-8, 2.6e-6])
 def test_limits_next_to_upright_count_what_rounding_became(accuracy):
     """Enlarged errors that were made smaller vanished below the attitude's last place."""

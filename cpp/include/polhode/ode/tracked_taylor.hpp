@@ -106,6 +106,7 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   static constexpr double most_enlarged = 1e-5;
   static constexpr double continuous = 1e-13;   // of a derivative: so small a jump at a surface is rounding
   static constexpr double least_enlarged = 0x1p-32;   // before it is made smaller by 2^-10
+  static constexpr double least_turn = 0.25;     // of a step [rad]
   static constexpr double join_rounding = 0x1p-51;   // of a state that one run hands to the next
   using Base = Taylor::Stepper<P>;
 
@@ -158,9 +159,13 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   void propagate_errors() {
     const int W = this->width();
     const double s = ((this->time_.hi - this->time_old_.hi) + (this->time_.lo - this->time_old_.lo)) / this->unit_old_;
-    propagate(lost_, signed_terms, s, loss_);
-    propagate(perturbed_, error_terms, s, spread_);
-    if (separate_) propagate(sampled_, error_terms, s, sample_);
+    // A body next to rest swings while it hardly turns: errors of its rates may be small at both ends of a long step.
+    double start[4], middle[3] = {};
+    this->problem_.measure_error(this->y_old_, loss_, start);
+    double* between = start[0] * std::abs(s * this->unit_old_) < least_turn ? middle : nullptr;
+    propagate(lost_, signed_terms, s, loss_, between);
+    propagate(perturbed_, error_terms, s, spread_, between);
+    if (separate_) propagate(sampled_, error_terms, s, sample_, between);
     alignas(64) double loss[most_numbers];
     double sizes[4];
     compute_loss(s, loss);
@@ -172,6 +177,7 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     // Samples, and a run that continues this one, have the state before its correction.
     std::copy_n(now_, 3, old_);
     measure(this->arrived_);
+    for (int k = 0; k < 3; ++k) now_[k] = std::max(now_[k], middle[k] / trace_.scale);
     std::copy_n(loss_, W, trace_.loss);
     std::copy_n(spread_, W, trace_.spread);
     std::copy_n(sample_, W, trace_.sample);
@@ -201,12 +207,20 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   }
 
   /// A small error over the step, by the difference of two series.
-  void propagate(const P& problem, int most_terms, double s, double* error) {
+  /// @param between  gets the sizes in the middle of the step added, or null
+  void propagate(const P& problem, int most_terms, double s, double* error, double* between) {
     const int W = this->width(), terms = trace_.all_terms ? this->order_ : std::min(this->order_, most_terms);
     alignas(64) double twin[most_numbers] = {}, propagated[most_numbers];
     for (int i = 0; i < W; ++i) twin[i] = this->y_old_[i] + error[i];
     problem.compute_series(this->time_old_, this->unit_old_, twin, twin, terms, twin_rows_);
     for (int k = W; k < W * (terms + 1); ++k) twin_rows_[k] -= this->rows_[k];
+    if (between != nullptr) {
+      const double half = 0.5 * s;
+      double sizes[4];
+      evaluate_series(twin_rows_, terms, W, Base::zero, error, &half, 1, propagated);
+      this->problem_.measure_error(this->arrived_, propagated, sizes);
+      for (int k = 0; k < 3; ++k) between[k] += sizes[k + 1];
+    }
     evaluate_series(twin_rows_, terms, W, Base::zero, error, &s, 1, propagated);
     std::copy_n(propagated, W, error);
   }
