@@ -20,7 +20,7 @@ from .distributions import Floats
 from .draw import Bodies
 from .recipe import EnsembleRecipe, Point
 
-STATUS = ("finished", "event", "max_steps", "stopped", "failed", "sliding", "impossible")
+STATUS = ("finished", "event", "max_steps", "stopped", "failed", "impossible", "sliding")
 IMPOSSIBLE = STATUS.index("impossible")
 
 
