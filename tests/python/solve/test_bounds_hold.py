@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import polhode as ph
+from polhode._core import reference
 
 # The needle's and the last truth: heyoka's series with 113 bits.
 NEEDLE = ph.Scene(
@@ -92,6 +93,18 @@ def test_errors_of_a_slow_swing_between_the_ends_of_steps(want, accuracy):
     true = rates * np.cos(np.sqrt(torque / inertia) * times[:, None])
     found = np.linalg.norm(motion.omega - true, axis=1).max() / np.linalg.norm(true, axis=1).max()
     assert motion.success and found <= motion.error + 1e-13
+
+
+@pytest.mark.parametrize("accuracy", [1e-9, 6.6e-11, 1e-12])
+def test_rounding_of_separatrix_variables_of_a_sleeping_top(accuracy):
+    """Equal errors of u and v leave w1 as it is: a sample of rounding must have unlike ones. Truth: long doubles."""
+    scene = ph.Scene(inertia=(0.3680306743398652, 0.36393493490331885, 0.4984513184614062), times=[90, 120, 179.3],
+                     omega=(-3.19926484e-09, 1.63723871e-08, 0.252644834),
+                     torques=[ph.torques.Gravity(0.0222341, (0, 0, 1))],
+                     attitude=(-1.80415171e-08, -2.2034778e-08, 0.32791834, 0.944706072))
+    motion, true = ph.solve(scene, accuracy), reference(scene, 28, 1e-20, 100_000)[0]
+    found = np.linalg.norm(motion.omega - true, axis=1).max() / motion.omega_scale
+    assert 1e-10 < found <= motion.error
 
 
 @pytest.mark.parametrize("accuracy", [2.5e-12, 1.4e-8, 2.6e-6])

@@ -48,10 +48,16 @@ struct ErrorTrace {
     before = good_until = 0.0;
     scale = first_scale();
     std::fill_n(loss, width, 0.0);
-    for (double* error : {spread, separates_rounding() ? sample : loss}) {
-      for (int i = 0; i < width; ++i) error[i] = (coin.toss() ? 0x1p-53 : -0x1p-53) * scale * y0[i];
+    double* other = separates_rounding() ? sample : loss;
+    for (int i = 0; i < width; ++i) {
+      spread[i] = (coin.toss() ? 0x1p-53 : -0x1p-53) * scale * y0[i];
+      other[i] = unlike(i) * spread[i];
     }
   }
+
+  /// The signs of a second sample beside the first. Two neighbours move alike in one of them, apart in the other: equal
+  /// changes of separatrix variables leave a rate as it is.
+  static double unlike(int i) { return i % 2 == 0 ? 1.0 : -1.0; }
 
   /// Takes the errors of samples up to a span from the start.
   void add(double rates, double attitude, double until, double states = 0.0) {
@@ -172,8 +178,7 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     for (int i = 0; i < W; ++i) loss_[i] += loss[i];
     this->problem_.measure_error(this->arrived_, loss, sizes);
     grow_spread(this->arrived_, trace_.scale * rounding + unsigned_part * find_relative_error(sizes));
-    add_kick(this->arrived_, kick, spread_);
-    add_kick(this->arrived_, sample_kick, separate_ ? sample_ : loss_);
+    add_kicks(this->arrived_, separate_ ? sample_ : loss_);
     // Samples, and a run that continues this one, have the state before its correction.
     std::copy_n(now_, 3, old_);
     measure(this->arrived_);
@@ -263,9 +268,12 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     for (int i = 0; i < this->width(); ++i) spread_[i] *= 1 + growth / relative;
   }
 
-  /// Changes each component of an error by rounding, up or down at random, so that it gets parts in every direction.
-  void add_kick(const double* y, double size, double* error) {
-    for (int i = 0; i < this->width(); ++i) error[i] += (coin_.toss() ? size : -size) * trace_.scale * y[i];
+  /// Changes each component of both samples by rounding, up or down at random, so that they get parts in every direction.
+  void add_kicks(const double* y, double* other) {
+    for (int i = 0; i < this->width(); ++i) {
+      const double size = (coin_.toss() ? trace_.scale : -trace_.scale) * y[i];
+      spread_[i] += kick * size, other[i] += ErrorTrace::unlike(i) * sample_kick * size;
+    }
   }
 
   void measure(const double* y) {
