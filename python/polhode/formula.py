@@ -158,8 +158,7 @@ def friction(load: Any, rate: Any) -> Any:
     """
     if _is_traced(load, rate):
         return _symbols.friction(load, rate)
-    load, rate = _numbers(load, "load"), _numbers(rate, "rate")
-    return np.where(rate > 0, -load, load)
+    return where(_numbers(rate, "rate") > 0, -_numbers(load, "load"), load)
 
 
 def clip(a: Any, low: Any, high: Any) -> Any:

@@ -107,9 +107,11 @@ double find_lowest(const double* a, int degree, double limit) {
 double polish_root(const std::function<double(double)>& value, const double* a, int degree, double root) {
   constexpr int most = 60;
   double u = root, low = 0.0, high = 2.0, reach = 0x1p-50;
+  const double least = a[0] == 0.0 ? 0.5 * root : 0.0;   // behind a zero at 0 the function may be rounding alone
   for (int i = 0; i < most && high - low > 2 * epsilon * low; ++i) {
     const double now = value(u);
     (now > 0.0 ? low : high) = u;
+    if (high <= least) return root;
     if (low >= 1.0) return 2.0;
     double slope = 0.0;
     for (int k = degree; k > 0; --k) slope = slope * u + k * a[k];
@@ -118,7 +120,7 @@ double polish_root(const std::function<double(double)>& value, const double* a, 
     double next = u + step;
     // Next to the zero it stepsilon over it, so that both ends of the bracket close in.
     if (high > 1.0) next = std::min(u + std::max(step, reach), 1.0);
-    else if (low == 0.0) next = std::max(u - std::max(-step, reach), 0.0);
+    else if (low == 0.0) next = std::max(u - std::max(-step, reach), least);
     else if (std::abs(step) < 2 * epsilon * u) next = now > 0.0 ? u + 2 * epsilon * u : u - 2 * epsilon * u;
     if (!(next > low && next < high)) next = high > 1.0 ? 1.0 : 0.5 * (low + high);
     u = next;

@@ -43,7 +43,8 @@ void describe_breaks(std::vector<double> breaks, Motion& motion) {
   }
   if (motion.found_breaks.size() > shown_breaks)
     text += " and " + std::to_string(motion.found_breaks.size() - shown_breaks) + " more times, in";
-  text += " s, where the span was divided; give these times as breaks= of Custom";
+  text += " s, where the span was divided; give these times as breaks= of Custom, or use np.where in a Formula, "
+          "or During";
   motion.message += (motion.message.empty() ? "" : "; ") + text;
 }
 

@@ -149,6 +149,7 @@ DOORS = {
     "torques.Formula, function": (T.Formula, dict(function=lambda t, omega, attitude, p: omega)),
     "formula.to_body": (ph.formula.to_body, dict(attitude=Q, v=W)),
     "formula.to_space": (ph.formula.to_space, dict(attitude=Q, v=W)),
+    "formula.friction": (ph.formula.friction, dict(load=0.1, rate=W)),
     "formula.norm": (ph.formula.norm, dict(v=W, smooth=0.0)),
     "formula.where": (ph.formula.where, dict(condition=True, a=W, b=W)),
     "formula.clip": (ph.formula.clip, dict(a=W, low=0.0, high=1.0)),

@@ -13,9 +13,14 @@ struct Crossing {
   int guard = 0;             ///< among those that act before the crossing
   double value = 0.0;        ///< of the guard at the state: what rounding left of 0
   double slope = 0.0;        ///< of the guard before the crossing
+  double outward = 0.0;          ///< the speed towards the surface
+  double outward_behind = 0.0;   ///< the speed away from it, behind it
   double curvature = 0.0;    ///< the largest second derivative of the guard, before or behind it
-  double bend = 0.0;         ///< the second derivative behind it that brings the solution back; 0 if nothing does
+  double bend = 0.0;         ///< the second derivative behind it, where it brings the solution back; else 0
   double rounding = 0.0;     ///< of the guard's value
+  /// By how much the jump would differ had the surface before been crossed after this one; null if there was none.
+  const double* swapped = nullptr;
+  double since = 0.0;               ///< time since the surface before
   const double* before = nullptr;   ///< y' before the surface and behind it
   const double* behind = nullptr;
 };

@@ -143,10 +143,11 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   }
 
   StepResult advance(double t_end) override {
+    t_end_ = t_end;
     const StepResult result = Base::advance(t_end);
     if (result != StepResult::accepted) return result;
     propagate_errors();
-    if constexpr (SwitchedProblem<P>) pass_surfaces(t_end);
+    if constexpr (SwitchedProblem<P>) pass_surfaces();
     if (find_largest_now() > trace_.most * trace_.asked) {
       trace_.given_up = trace_.before + std::abs(this->t_ - t0_);
       return StepResult::not_finite;
@@ -292,10 +293,10 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   }
 
   /// Samples up to the surface have the errors of either side, because a true motion may reach it sooner.
-  void pass_surfaces(double t_end) {
+  void pass_surfaces() {
     this->problem_.pass_near(this->time_old_, this->unit_old_, this->y_old_, this->carry_old_, this->rows_, this->order_,
                              [this](math::DD t, const double* y, const Crossing& crossing) { miss(t, y, crossing); });
-    if (this->problem_.has_reached()) this->switch_mode(std::copysign(1.0, t_end - t0_));
+    if (this->problem_.has_reached()) this->switch_mode(std::copysign(1.0, t_end_ - t0_));
   }
 
   /// What the errors change in a guard at a state: of each one, and the sum of their sizes.
@@ -322,12 +323,15 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     return jumped > continuous * std::max({sizes[1], sizes[2], sizes[3]});
   }
 
-  /// How long a motion that crosses at a small angle may stay behind the surface, in units of time: what speed it has
-  /// there brings it back with the bend behind the surface. Without one it stays there.
-  static double find_stay(const Crossing& crossing, double apart) {
-    const double speed = std::sqrt(crossing.slope * crossing.slope + 2 * crossing.curvature * apart);
-    const double stay = crossing.bend > 0.0 ? 2 * speed / crossing.bend : 1.0;
-    return std::min(stay, 1.0);
+  /// How long a motion that comes as far as `depth` behind a surface may stay there, in units of time. It has the speed
+  /// that depth allows, changed by the jump, and the bend behind the surface brings it back. Else it stays to the end.
+  double find_stay(const Crossing& crossing, double depth) const {
+    const double towards = std::max(crossing.outward, 0.0);
+    const double speed = std::sqrt(towards * towards + 2 * crossing.curvature * depth) - towards + crossing.outward_behind;
+    const double root = std::sqrt(speed * speed + 2 * crossing.bend * depth);
+    const double end = std::abs(t_end_ - this->time_old_.hi) / this->unit_;
+    const double stay = speed < 0.0 ? 2 * depth / (root - speed) : (speed + root) / crossing.bend;
+    return stay < end ? stay : end;
   }
 
   void add_to_spread(const double* jump, double time, const double* y) {
@@ -347,7 +351,9 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
       constexpr double doubled = 2.0;   // the errors are those of the step's end
       alignas(64) double jump[most_numbers], parts[3];
       const double apart = doubled * compare_guards(crossing, t, y, parts) + crossing.rounding;
-      if (std::abs(crossing.value) > apart || !find_jump(crossing, y, jump)) return;
+      // The lowest point of the guard's parabola, next to which the state is.
+      const double above = 0.5 * crossing.slope * crossing.slope / crossing.curvature;
+      if (std::abs(crossing.value) - above > apart || !(apart > 0.0) || !find_jump(crossing, y, jump)) return;
       add_to_spread(jump, find_stay(crossing, apart), this->arrived_);
     }
   }
@@ -358,11 +364,16 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   void cross(const Crossing& crossing) override {
     if constexpr (SwitchedProblem<P>) {
       alignas(64) double jump[most_numbers], parts[3];
-      if (!find_jump(crossing, this->y_, jump)) return;
       const double slope = crossing.slope, scale = trace_.scale;
       const double apart = compare_guards(crossing, this->time_, this->y_, parts);
       parts[0] += scale * crossing.value;
       const double D = apart + crossing.rounding, first = D / std::abs(slope);
+      // Next to another crossing their order is in doubt, and the sides between them.
+      const double end = std::abs(t_end_ - this->time_.hi) / this->unit_;
+      const double late_now = first < end ? first : end, doubt = late_now + late_ / this->unit_;
+      if (crossing.swapped != nullptr && crossing.since <= doubt) add_to_spread(crossing.swapped, doubt, this->y_);
+      late_ = late_now * this->unit_;
+      if (!find_jump(crossing, this->y_, jump)) return;
       const double turn = crossing.curvature * first / std::abs(slope);
       // At a small angle the crossing is not certain.
       if (!(turn < 0.5)) return add_to_spread(jump, find_stay(crossing, D), this->y_);
@@ -380,7 +391,8 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   const P& sampled_;
   ErrorTrace& trace_;
   const bool separate_;
-  double t0_;
+  double t0_, t_end_ = 0.0;
+  double late_ = 0.0;   ///< the doubt in the time of the last crossing
   double now_[3] = {}, old_[3] = {};
   math::Coin coin_;
   alignas(64) double loss_[most_numbers], spread_[most_numbers], sample_[most_numbers];

@@ -72,25 +72,44 @@ SwitchedSeries::Sides SwitchedSeries::choose_mode(math::DD t, double unit, const
   return {};
 }
 
-ode::Crossing SwitchedSeries::measure(math::DD t, double unit, const double* y, int order, Mode& mode, int guard, Mode& other,
-                                      double* before, double* behind) const {
+ode::Crossing SwitchedSeries::measure(math::DD t, double unit, const double* y, int order, double direction, Mode& mode,
+                                      int guard, Mode& other, double* before, double* behind) const {
   expand(mode, t, unit, y, order, before);
   const double* rows = mode.rows() + guard;
   double a[ode::most_series_order + 1];
   ode::Crossing crossing{.guard = guard, .value = rows[0], .slope = rows[mode.guard_width],
                          .curvature = 2 * std::abs(rows[2 * mode.guard_width])};
   crossing.rounding = std::max(list_coefficients(mode, guard, order, 1.0, a), find_noise(mode)[guard]);
-  const double side = mode.directions[static_cast<std::size_t>(guard)];
+  const double side = mode.directions[static_cast<std::size_t>(guard)] * direction;
+  crossing.outward = -side * crossing.slope;
   expand(other, t, unit, y, order, behind);
   for (std::size_t k = 0; k < other.guards.size(); ++k) {
     const formula::ActiveGuard& one = other.guards[k];
     if (one.number != mode.guards[static_cast<std::size_t>(guard)].number || one.edge != formula::Side::held) continue;
-    const double bend = 2 * side * other.rows()[2 * other.guard_width + static_cast<int>(k)];
+    const double* other_rows = other.rows() + k;
+    const double bend = 2 * side * direction * other_rows[2 * other.guard_width];
+    crossing.outward_behind = -side * other_rows[other.guard_width];
     crossing.curvature = std::max(crossing.curvature, std::abs(bend));
     crossing.bend = std::max(bend, 0.0);
   }
   crossing.before = before + width(), crossing.behind = behind + width();
   return crossing;
+}
+
+bool SwitchedSeries::compare_order(math::DD t, double unit, const double* y, const Sides& from, const Sides& to,
+                                   std::size_t number, const ode::Crossing& crossing, double* change) const {
+  const Sides& older = shared_->last;
+  const auto holds = [](const Sides& sides) { return std::count(sides.begin(), sides.end(), formula::Side::held) > 0; };
+  if (older.empty() || older == from || holds(older) || holds(to)) return false;
+  Sides corner = older;
+  corner[number] = to[number];
+  if (corner == to || corner == older) return false;
+  alignas(64) double rows[2 * most_width], others[2 * most_width];
+  find_mode(corner).series.expand(t, unit, y, 1, rows, nullptr);
+  find_mode(older).series.expand(t, unit, y, 1, others, nullptr);
+  for (int i = 0; i < width(); ++i)
+    change[i] = (crossing.behind[i] - crossing.before[i]) - (rows[width() + i] - others[width() + i]);
+  return true;
 }
 
 ode::StepResult SwitchedSeries::switch_mode(math::DD t, double unit, const double* y, int order, double direction,
@@ -143,7 +162,14 @@ ode::StepResult SwitchedSeries::switch_mode(math::DD t, double unit, const doubl
     if (i < 0) continue;
     const Sides next = change_one(i, mode);
     shared_->sides = now, ++shared_->version;
-    sink(measure(t, unit, y, order, mode, i, find_mode(next), before, behind));
+    ode::Crossing crossing = measure(t, unit, y, order, direction, mode, i, find_mode(next), before, behind);
+    alignas(64) double swapped[most_width];
+    if (compare_order(t, unit, y, now, next, static_cast<std::size_t>(number), crossing, swapped)) {
+      crossing.swapped = swapped;
+      crossing.since = std::abs((t.hi - shared_->last_time.hi) + (t.lo - shared_->last_time.lo)) / unit;
+    }
+    sink(crossing);
+    shared_->last = now, shared_->last_time = t;
     now = next;
   }
   shared_->sides = slides ? from : to, ++shared_->version;

@@ -21,6 +21,7 @@ double SwitchedSeries::find_switch(math::DD t, double unit, const double* y, con
   double first = 2.0, a[ode::most_series_order + 1];
   shared_->reached = -1;
   shared_->near.clear();
+  shared_->direction = std::copysign(1.0, s);
   const int guards = static_cast<int>(now.guards.size());
   double part = 1.0;   // of the step, in which the series of all guards are accurate
   for (int i = 0; i < guards; ++i) {
@@ -36,6 +37,9 @@ double SwitchedSeries::find_switch(math::DD t, double unit, const double* y, con
     double size = 0.0;
     for (int k = 0; k <= order; ++k) size = std::max(size, std::abs(a[k]));
     if (!(size > rounding)) continue;
+    // The step begins on a surface by chance.
+    const formula::ActiveGuard& guard = now.guards[static_cast<std::size_t>(i)];
+    if (a[0] == 0.0 && guard.edge == formula::Side::held && count_zeros(guard) == 0) shared_->near.push_back({i, 0.0});
     const double tail = std::abs(a[order]) + std::abs(a[order - 1]);
     // The guard of the state itself decides, because its series may be less accurate than the state.
     const auto value = [&](double u) {
@@ -44,17 +48,17 @@ double SwitchedSeries::find_switch(math::DD t, double unit, const double* y, con
       ode::evaluate_series(rows, order, width(), y, carry, &at, 1, state);
       return now.directions[static_cast<std::size_t>(i)] * compute_guard(i, t + at * unit, state);
     };
-    double root = ode::find_first_root(a, order);
-    if (root > 1.0) {
+    const double root = ode::find_first_root(a, order);
+    double u = root > 1.0 ? 2.0 : ode::polish_root(value, a, order, root);
+    if (u > 1.0) {
       const double lowest = ode::find_lowest(a, order, std::max(near_surface * size, 4 * tail));
       if (lowest > 1.0) continue;
       if (!(value(lowest) <= 0.0)) {
         if (lowest < 1.0) shared_->near.push_back({i, lowest * s});
         continue;
       }
-      root = lowest;
+      u = ode::polish_root(value, a, order, lowest);
     }
-    const double u = ode::polish_root(value, a, order, root);
     if (u < first) first = u, shared_->reached = i;
   }
   if (shared_->reached < 0) return s;
@@ -72,7 +76,7 @@ void SwitchedSeries::pass_near(math::DD t, double unit, const double* y, const d
     Mode& now = mode();
     Mode& other = find_mode(flip(shared_->sides, now, {one.guard}));
     const math::DD at = t + one.s * unit;
-    sink(at, state, measure(at, unit, state, noise_order, now, one.guard, other, before, behind));
+    sink(at, state, measure(at, unit, state, noise_order, shared_->direction, now, one.guard, other, before, behind));
   }
 }
 

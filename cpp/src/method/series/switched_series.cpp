@@ -56,7 +56,7 @@ SwitchedSeries::SwitchedSeries(const Scene& scene, bool)
 void SwitchedSeries::restart() const {
   shared_->sides = first_;
   shared_->reached = -1;
-  shared_->near.clear(), shared_->on.clear();
+  shared_->near.clear(), shared_->on.clear(), shared_->last.clear();
   ++shared_->version;
 }
 

@@ -90,7 +90,10 @@ class SwitchedSeries {
     int reached = -1;   ///< the guard whose surface the last step has reached
     std::vector<On> on;
     math::DD on_time = {};   ///< of `on`
-    std::vector<Near> near;   ///< of the last step
+    std::vector<formula::Side> last;   ///< sides before the last surface that was crossed
+    math::DD last_time = {};
+    std::vector<Near> near;   ///< of the last step, and its direction
+    double direction = 1.0;
   };
 
   Mode& mode() const;
@@ -107,8 +110,11 @@ class SwitchedSeries {
   const double* find_noise(const Mode& mode) const;
   int count_zeros(const formula::ActiveGuard& guard) const;
   /// Both sides of a surface at a state; both rows stay in use.
-  ode::Crossing measure(math::DD t, double unit, const double* y, int order, Mode& mode, int guard, Mode& other,
-                        double* before, double* behind) const;
+  ode::Crossing measure(math::DD t, double unit, const double* y, int order, double direction, Mode& mode, int guard,
+                        Mode& other, double* before, double* behind) const;
+  /// Of the jump at a surface, what differs had the one before been crossed after it; false if none was.
+  bool compare_order(math::DD t, double unit, const double* y, const Sides& from, const Sides& to, std::size_t number,
+                     const ode::Crossing& crossing, double* change) const;
   Sides flip(const Sides& sides, const Mode& mode, const std::vector<int>& guards) const;
   /// A mode that the motion keeps behind a surface; empty if there is none.
   Sides choose_mode(math::DD t, double unit, const double* y, int order, double direction, const Mode& before,

@@ -222,7 +222,8 @@ class Certifier {
   }
 
   std::string describe_jump() const {
-    const std::string end = ": a coarser run estimates the error, and no step ends at a jump";
+    const std::string end = ": a coarser run estimates the error, and no step ends at a jump; it would "
+                            "with np.where in a Formula, or with During";
     if (std::isnan(looks_.state_jump)) return "your torque jumps or kinks at many times" + end;
     return "your torque jumps with the state, as near t = " + to_text(looks_.state_jump) + " s" + end;
   }
