@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 
@@ -46,17 +48,28 @@ struct Formula::Parts {
         evaluator(program) {}
 
   void compute(double t, const double* omega, const double* attitude, const double* states, double* outputs) const {
+    evaluate(program, evaluator, t, omega, attitude, states, outputs);
+  }
+
+  void compute_rate_slopes(double t, const double* omega, const double* attitude, const double* states,
+                           double* outputs) const {
+    std::call_once(differentiated, [this] { rate_slopes = std::make_unique<const Slopes>(program); });
+    evaluate(rate_slopes->program, rate_slopes->evaluator, t, omega, attitude, states, outputs);
+  }
+
+  void evaluate(const formula::Program& of, const formula::Evaluator& by, double t, const double* omega,
+                const double* attitude, const double* states, double* outputs) const {
     std::array<double, formula::first_extra + most_states> y;
     std::copy_n(omega, 3, y.begin());
     std::copy_n(attitude, 4, y.begin() + formula::first_attitude);
     std::copy_n(states, program.outputs.size() - 3, y.begin() + formula::first_extra);
     constexpr int few = 256;
-    if (program.graph.size() <= few) {
+    if (of.graph.size() <= few) {
       std::array<double, few> values;
-      evaluator.evaluate(t, y.data(), nullptr, values.data(), outputs);
+      by.evaluate(t, y.data(), nullptr, values.data(), outputs);
     } else {
-      std::vector<double> values(static_cast<std::size_t>(program.graph.size()));
-      evaluator.evaluate(t, y.data(), nullptr, values.data(), outputs);
+      std::vector<double> values(static_cast<std::size_t>(of.graph.size()));
+      by.evaluate(t, y.data(), nullptr, values.data(), outputs);
     }
   }
 
@@ -65,12 +78,34 @@ struct Formula::Parts {
     return formula::rewrite(formula::bind_parameters(given, formula::list_values(given.parameters)));
   }
 
+  /// The derivatives of tau_B by the first rate, then by the others.
+  struct Slopes {
+    explicit Slopes(const formula::Program& torque) : program(differentiate(torque)), evaluator(program) {}
+
+    static formula::Program differentiate(const formula::Program& torque) {
+      using formula::Variable;
+      std::vector<Variable> rates;
+      for (int i = 0; i < 3; ++i) rates.push_back({Variable::Kind::state, formula::first_rate + i});
+      formula::Program made = formula::differentiate(torque, rates);
+      std::vector<formula::Form> wanted;
+      for (std::size_t i = 1; i <= 3; ++i)
+        for (std::size_t k = 0; k < 3; ++k) wanted.push_back(made.outputs[torque.outputs.size() * i + k]);
+      made.outputs = std::move(wanted);
+      return formula::rewrite(made);
+    }
+
+    formula::Program program;
+    formula::Evaluator evaluator;
+  };
+
   formula::Text text;
   std::optional<formula::Program> potential;
   formula::Program program;
   std::optional<formula::Evaluator> potential_evaluator;   // of the potential above
   formula::Facts facts;
   formula::Evaluator evaluator;   // of the program above
+  mutable std::once_flag differentiated;
+  mutable std::unique_ptr<const Slopes> rate_slopes;
 };
 
 Formula::Formula(const formula::Text& text, bool recognise) : Formula(formula::parse(text), recognise) {}
@@ -146,6 +181,14 @@ void Formula::add(const TorqueInput& in, double* tau_B) const {
   const std::vector<double> starts = formula::list_values(states());
   parts_->compute(in.t, in.omega, d == 1.0 ? q : unit, starts.data(), outputs.data());
   for (std::size_t i = 0; i < 3; ++i) tau_B[i] += outputs[i];
+}
+
+void Formula::add_rate_slopes(const TorqueInput& in, Matrix3d& slopes) const {
+  const Quat unit = normalized({in.attitude[0], in.attitude[1], in.attitude[2], in.attitude[3]});
+  const double q[4] = {unit.x, unit.y, unit.z, unit.w};
+  Matrix3d found;
+  parts_->compute_rate_slopes(in.t, in.omega, q, formula::list_values(states()).data(), found.data());
+  slopes += found;
 }
 
 double Formula::compute_potential(const TorqueInput& in) const {

@@ -55,6 +55,8 @@ class Formula {
   std::vector<double> compute(const TorqueInput& in, const std::vector<double>& states) const;
   /// A result that is not finite is passed on and ends the run. The states are those of the start.
   void add(const TorqueInput& in, double* tau_B) const;
+  /// Adds d tau_B / d w_B, from the differentiated formula, which is made at the first call.
+  void add_rate_slopes(const TorqueInput& in, Matrix3d& slopes) const;
   double compute_potential(const TorqueInput& in) const;   ///< [J]; 0 where none was given: see traits()
 
   /// The same torque as a compiled function with these dependencies, which steppers without series integrate.

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <variant>
+#include <vector>
 
 #include "method/series/separatrix.hpp"
 #include "polhode/attitude/matrix.hpp"
@@ -23,6 +25,10 @@ class Body {
       : I_B_(scene.inertia_B().matrix()), diagonal_(scene.inertia_B().is_diagonal()), all_(scene.all_torques()),
         plain_(scene.inertia_B(), all_) {
     Plain::pack(scene.start(), start_);
+    for (const AnyTorque& torque : scene.torques()) add_slopes_of(torque);
+    const Vector3d& h = scene.rotor_momentum();
+    const Matrix3d C_h = make_cross(-h);   // h x w is linear in w, like damping
+    if (!h.isZero(0.0)) C_B_ += C_h;
     const InertiaTensor& inertia = scene.inertia_B();
     const Vector3d& I = inertia.moments();
     for (int i = 0; i < 3; ++i) I_[i] = I[i];
@@ -48,14 +54,10 @@ class Body {
       } else if (const auto* angular = std::get_if<torques::AngularDamping>(&torque)) {
         add_damping(angular->compute_matrix(I.asDiagonal()));
       } else {
-        linear_ = linear_ && !std::visit([](const auto& acting) { return acting.traits().uses_rates; }, torque);
+        linear_ = linear_ && (std::holds_alternative<torques::Formula>(torque) || !traits(torque).uses_rates);
       }
     }
-    if (const Vector3d& h = scene.rotor_momentum(); !h.isZero(0.0)) {   // h x w is linear in w, like damping
-      Matrix3d C;
-      C << 0, h[2], -h[1], -h[2], 0, h[0], h[1], -h[0], 0;
-      add_damping(R_BP.transpose() * C * R_BP);
-    }
+    if (!h.isZero(0.0)) add_damping(R_BP.transpose() * C_h * R_BP);
   }
 
   const double* start() const { return start_; }
@@ -108,6 +110,15 @@ class Body {
           {rate * y[2], 0, rate * y[0]}, {0, -rate * y[2], -rate * y[1]}, {-twice * y[0], twice * y[1], 0}};
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) J[i][j] = free[i][j] + damping_[i][j];
+      if (!formulas_.empty()) add_linear(-(R_BP_.transpose() * compute_slopes(t, y) * R_BP_), J);
+      return 0;
+    }
+    if (!separatrix_ && differentiable_ && !formulas_.empty()) {   // J w' = tau - w x (J w)
+      const Vector3d w(y[0], y[1], y[2]);
+      const Matrix3d all = compute_slopes(t, y) - C_B_ + make_cross(I_B_ * w) - make_cross(w) * I_B_;
+      const Matrix3d found = I_B_.inverse() * all;
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) J[i][j] = found(i, j);
       return 0;
     }
     for (int j = 0; j < 3; ++j) {
@@ -146,8 +157,39 @@ class Body {
     for (int i = 0; i < 3; ++i) w_B[i] = R_BP_(i, 0) * w[0] + R_BP_(i, 1) * w[1] + R_BP_(i, 2) * w[2];
   }
 
+  static Matrix3d make_cross(const Vector3d& v) {
+    Matrix3d matrix;
+    matrix << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;
+    return matrix;
+  }
+
+  /// What the torque's derivative by w_B is, or that it is unknown.
+  void add_slopes_of(const AnyTorque& torque) {
+    if (!traits(torque).uses_rates) return;
+    if (const auto* formula = std::get_if<torques::Formula>(&torque)) {
+      formulas_.push_back(*formula);
+    } else if (const auto* damping = std::get_if<torques::Damping>(&torque)) {
+      C_B_ += damping->matrix();
+    } else if (const auto* angular = std::get_if<torques::AngularDamping>(&torque)) {
+      C_B_ += angular->compute_matrix(I_B_);
+    } else {
+      differentiable_ = false;
+    }
+  }
+
+  /// d tau_B / d w_B of the formulas.
+  Matrix3d compute_slopes(double t, const double* y) const {
+    Matrix3d slopes = Matrix3d::Zero();
+    const Seen seen = see(y);
+    for (const torques::Formula& formula : formulas_)
+      formula.add_rate_slopes({t, seen.w_B, seen.q_WB, I_B_, diagonal_}, slopes);
+    return slopes;
+  }
+
+  void add_damping(const Matrix3d& C_P) { add_linear(C_P, damping_); }
+
   /// w' = -C_P w / I, converted from the rates to (u, v, w2).
-  void add_damping(const Matrix3d& C_P) {
+  void add_linear(const Matrix3d& C_P, double (&J)[3][3]) const {
     double column[3][3];
     for (int j = 0; j < 3; ++j) {
       const double a[3] = {-C_P(0, j) / I_[0], -C_P(1, j) / I_[1], -C_P(2, j) / I_[2]};
@@ -155,21 +197,32 @@ class Body {
     }
     for (int i = 0; i < 3; ++i) {
       const double across = column[0][i] * separatrix_->half_over_k().hi, along = 0.5 * column[2][i];
-      damping_[i][0] += along - across, damping_[i][1] += along + across, damping_[i][2] += column[1][i];
+      J[i][0] += along - across, J[i][1] += along + across, J[i][2] += column[1][i];
     }
   }
 
-  void add_torques(double t, const double* y, double* f) const {
-    double w[3], w_B[3], q_WB[4], tau_B[3] = {0, 0, 0}, a[3], change[3];
+  struct Seen {
+    double w_B[3], q_WB[4];
+  };
+  /// What torques see of a state.
+  Seen see(const double* y) const {
+    Seen seen;
+    std::copy_n(y, 3, seen.w_B), std::copy_n(y + 3, 4, seen.q_WB);
+    if (!separatrix_) return seen;
+    double w[3];
     separatrix_->to_rates(y, w);
-    to_body(w, w_B);
-    std::copy_n(y + 3, 4, q_WB);
+    to_body(w, seen.w_B);
     if (rotated_) {
       const Quat q = Quat{y[3], y[4], y[5], y[6]} * q_PB_;
-      q_WB[0] = q.x, q_WB[1] = q.y, q_WB[2] = q.z, q_WB[3] = q.w;
+      seen.q_WB[0] = q.x, seen.q_WB[1] = q.y, seen.q_WB[2] = q.z, seen.q_WB[3] = q.w;
     }
-    const TorqueInput in{t, w_B, q_WB, I_B_, diagonal_};
-    all_.add(in, tau_B);
+    return seen;
+  }
+
+  void add_torques(double t, const double* y, double* f) const {
+    double tau_B[3] = {0, 0, 0}, a[3], change[3];
+    const Seen seen = see(y);
+    all_.add({t, seen.w_B, seen.q_WB, I_B_, diagonal_}, tau_B);
     for (int i = 0; i < 3; ++i) {
       const double tau = rotated_ ? R_BP_(0, i) * tau_B[0] + R_BP_(1, i) * tau_B[1] + R_BP_(2, i) * tau_B[2] : tau_B[i];
       a[i] = tau / I_[i];
@@ -180,7 +233,10 @@ class Body {
 
   Matrix3d I_B_, R_BP_ = Matrix3d::Identity();
   bool diagonal_, rotated_ = false;
-  bool linear_ = true;          ///< in the rates, apart from the free motion
+  bool linear_ = true;          ///< in the rates, apart from the free motion and formulas
+  bool differentiable_ = true;  ///< no torque's derivative by the rates is unknown
+  Matrix3d C_B_ = Matrix3d::Zero();          ///< of what is linear in the rates: tau_B = -C_B w_B
+  std::vector<torques::Formula> formulas_;   ///< that depend on the rates
   double I_[3];
   Quat q_PB_ = {};
   std::optional<Separatrix> separatrix_;
