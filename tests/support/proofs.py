@@ -35,3 +35,15 @@ def find_outside(motion, truth):
     below = (high < lower) | ((high == lower) & (low < 0))
     above = (high > upper) | ((high == upper) & (low > 0))
     return int((below | above).sum())
+
+
+def make_formula_scene(numbers):
+    """A scene with a formula from plain numbers; every constant of its text is a parameter."""
+    parameters = {f"k{i}": x for i, x in enumerate(numbers["numbers"])}
+    formula = torques.Formula(text=numbers["text"], recognise=False, **parameters)
+    acting = [torques.During(formula, numbers["windows"]) if numbers["windows"] else formula]
+    if numbers["gravity"]:
+        acting.append(torques.Gravity(1.0, numbers["gravity"]))
+    rotors = [ph.Rotor(axis=(0, 0, 1), momentum=numbers["rotor"])] if numbers["rotor"] else []
+    return ph.Scene(inertia=np.array(numbers["inertia"]), omega=numbers["omega"], attitude=numbers["attitude"],
+                    torques=acting, rotors=rotors, times=numbers["times"], t0=numbers["t0"])

@@ -112,15 +112,7 @@ Scene resolve(const Scene& scene, const std::vector<SceneParameter>& parameters)
       return parameter.of == Of::inertia || parameter.of == Of::axes || parameter.of == Of::rotor ||
              (parameter.of == Of::torque && parameter.index == i);
     });
-    AnyTorque& torque = torques[i];
-    const LastingTorque lasting = drop_windows(torque);
-    const auto* formula = std::get_if<torques::Formula>(&lasting);
-    if (!stays || formula == nullptr) continue;
-    if (const auto* during = std::get_if<torques::During>(&torque)) {
-      torque = torques::During(formula->as_given(), during->windows());
-    } else {
-      torque = formula->as_given();
-    }
+    if (stays) torques[i] = as_given(torques[i]);
   }
   return resolve_formulas(scene.with_torques(std::move(torques)), AsCustom::no);
 }

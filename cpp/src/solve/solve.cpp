@@ -88,7 +88,11 @@ PlannedScene::PlannedScene(const Scene& given, const SolveOptions& options) : op
   // Series end their steps at switches; other methods step over them, as over the jumps of a Custom torque.
   const bool by_series = options.formulation == Formulation::euler &&
                          (options.method ? options.method == "taylor" : !is_by_tolerance(options));
-  const Scene scene = resolve_formulas(given, by_series ? AsCustom::no : AsCustom::yes, &recognised);
+  std::vector<AnyTorque> torques = given.torques();
+  // A recognised torque may differ from its formula by rounding, and a proof is about exactly the formula's numbers.
+  if (options.proof) std::transform(torques.begin(), torques.end(), torques.begin(), as_given);
+  const Scene scene = resolve_formulas(options.proof ? given.with_torques(std::move(torques)) : given,
+                                       by_series ? AsCustom::no : AsCustom::yes, &recognised);
   check_options(scene, options);
   check_torques(scene);
   Decision decision = decide(scene, options);

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "polhode/math/detail/interval.hpp"
+#include "polhode/math/detail/interval_functions.hpp"
 
 using namespace polhode::math;
 
@@ -90,4 +90,36 @@ TEST_CASE("sine and cosine hold known values at any angle") {
   }
   CHECK(sincos(Interval(1e300)).sin.upper() >= 1.0);
   CHECK(sincos(Interval(DD(0.0), 2.0)).cos.lower() <= -0.4);
+}
+
+TEST_CASE("functions hold known values, and each other") {
+  // To 40 digits by mpmath, as double-doubles.
+  CHECK((exp(Interval(1.0)) - Interval(DD(2.718281828459045, 1.4456468917292502e-16), 2e-32)).contains(0.0));
+  CHECK((log(Interval(3.0)) - Interval(DD(1.0986122886681098, -9.07129723500153e-17), 1e-32)).contains(0.0));
+  CHECK((tanh(Interval(0.5)) - Interval(DD(0.46211715726000974, 2.1916603238260928e-17), 1e-32)).contains(0.0));
+  CHECK((atan2(Interval(1.0), Interval(-2.0)) - Interval(DD(2.677945044588987, 1.5527705369303147e-16), 2e-32)).contains(0.0));
+  for (double x = -30.0; x < 30.0; x += 0.37) {
+    const Interval power = exp(Interval(x));
+    CHECK(relative_radius(power) < 1e-26);
+    CHECK((log(power) - Interval(x)).contains(0.0));
+    CHECK((power * exp(Interval(-x)) - Interval(1.0)).contains(0.0));
+    CHECK((tanh(Interval(x)) * (sqr(power) + Interval(1.0)) - (sqr(power) - Interval(1.0))).contains(0.0));
+    const IntervalSinCos trig = sincos(Interval(0.1 * x));
+    CHECK((atan2(trig.sin, trig.cos) - Interval(0.1 * x)).contains(0.0));
+  }
+  // Wide sets hold the values at their ends, and unbounded ones are told.
+  const Interval wide(DD(0.7), 0.25);
+  for (const double end : {0.45, 0.95}) {
+    CHECK(exp(wide).contains(std::exp(end)));
+    CHECK(log(wide).contains(std::log(end)));
+    CHECK(tanh(wide).contains(std::tanh(end)));
+    CHECK(atan2(wide, Interval(-1.0)).contains(std::atan2(end, -1.0)));
+  }
+  CHECK_FALSE(log(Interval(DD(1.0), 1.0)).is_bounded());
+  CHECK_FALSE(log(Interval(-1.0)).is_bounded());
+  CHECK_FALSE(atan2(Interval(0.0), Interval(0.0)).is_bounded());
+  CHECK_FALSE(atan2(Interval(DD(0.0), 1.0), Interval(DD(0.0), 1.0)).is_bounded());
+  CHECK_FALSE(exp(Interval(1000.0)).is_bounded());
+  CHECK(exp(Interval(-1000.0)).contains(0.0));
+  CHECK(tanh(Interval::all()).upper() >= 1.0);
 }

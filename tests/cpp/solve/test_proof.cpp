@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "polhode/formula/parser.hpp"
 #include "polhode/reference/reference.hpp"
 #include "solve/proof/enclose.hpp"
 #include "solve/proof/error_set.hpp"
@@ -76,6 +77,37 @@ TEST_CASE("enclosures hold the series in long double, and a wrong remainder is c
   for (const double factor : {0.0, 1e-3}) {
     options.step = {.tolerance = 1e-6, .remainder_factor = factor};
     CHECK(count_outside(scene, options, widest) > 10);
+  }
+}
+
+TEST_CASE("of every operation of a formula a wrong remainder is caught") {
+  const char* laws[] = {"-cross([0.6, 0.4, 1], to_body([0, 0, 1]))", "0.4 * omega / (1.1 + attitude.x * attitude.x)",
+                        "-0.3 * sqrt(0.2 + attitude.xyz * attitude.xyz)", "0.3 * exp(-attitude.xyz - 0.1 * t)",
+                        "0.5 * log(1.2 + attitude.xyz)", "0.4 * sin(2 * attitude.xyz + t)",
+                        "-0.4 * tanh(3 * attitude.xyz)", "0.5 * atan2(attitude.xyz, 1.3 + attitude.w)",
+                        "0.3 * (1.2 + attitude.xyz) ^ -0.7"};
+  for (const char* law : laws) {
+    CAPTURE(law);
+    SceneParts parts = make_heavy_body().parts();
+    parts.omega = {0.3, 0.2, 1.5};
+    formula::Text text;
+    text.torque = law;
+    parts.torques = {torques::Formula(text)};
+    const Scene scene(parts);
+    const Enclosure truth = enclose(scene, cut(scene), {});
+    REQUIRE(truth.status == Status::finished);
+    EncloseOptions options;
+    const auto count = [&](double tolerance, double factor) {
+      options.step = {.tolerance = tolerance, .remainder_factor = factor};
+      const Enclosure found = enclose(scene, cut(scene), options);
+      int outside = 0;
+      for (std::size_t i = 0; i < truth.omega.size(); ++i)   // two sets of one motion meet
+        outside += !(found.omega[i] - truth.omega[i]).contains(0.0);
+      return outside;
+    };
+    CHECK(truth.omega.back().radius < 1e-15);
+    for (const double tolerance : {1e-6, 1e-9, 1e-12, 1e-17}) CHECK(count(tolerance, 1.0) == 0);
+    CHECK(count(1e-6, 0.0) > 10);
   }
 }
 

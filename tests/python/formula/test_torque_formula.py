@@ -217,11 +217,6 @@ def test_refused_arguments(arguments, words):
         Formula(**arguments)
 
 
-def test_what_is_not_there_yet_is_refused_in_a_sentence():
-    with pytest.raises(ph.InvalidInput, match="Formula|formula"):
-        ph.solve(scene(Formula(pd, kp=0.2, kd=0.5)), accuracy=1e-6, certify="proof")
-
-
 def test_formulas_in_motions_windows_rotors_and_many(tmp_path):
     torque = Formula(pd, kp=0.2, kd=(0.5, 0.5, 0.4))
     rotor = ph.Rotor(axis=(0, 0, 1), momentum=0.3)

@@ -134,6 +134,11 @@ const std::optional<std::vector<KnownTorque>>& Recognitions::find(const Formula&
   return entries_.back().parts;
 }
 
+AnyTorque as_given(const AnyTorque& torque) {
+  const Formula* formula = find_formula(torque);
+  return formula == nullptr ? torque : with_window(torque, formula->as_given());
+}
+
 Scene resolve_formulas(const Scene& scene, AsCustom as_custom, std::vector<std::string>* recognised) {
   Recognitions known;
   return resolve_formulas(scene, as_custom, known, recognised);

@@ -29,6 +29,9 @@ class Recognitions {
 /// Whether a formula that is no torque of the list becomes a compiled function, which is integrated as the user's own.
 enum class AsCustom { no, yes };
 
+/// A torque whose formula, if it is one, is not replaced.
+AnyTorque as_given(const AnyTorque& torque);
+
 /// The scene without the formulas that are torques of the list: each is replaced by them, if its user allows it. Other
 /// torques keep their numbers in the list.
 /// @param recognised  gets one sentence for each such formula, or null

@@ -70,9 +70,19 @@ void require_provable(const Scene& scene, const SolveOptions& options) {
     throw InvalidInput("certify='proof'", "used where the processor rounds to nearest", "another rounding mode",
                        "the bounds on rounding hold for that mode alone: a library or fesetround() changed it");
   }
-  if (calls_custom(scene) || needs_formula_series(scene)) {
-    throw InvalidInput("certify='proof'", "left out with torques of the user's own", "a Custom torque or a Formula",
-                       "its function gives numbers, and a proof needs bounds on them at every state nearby");
+  if (calls_custom(scene)) {
+    throw InvalidInput("certify='proof'", "left out with torques of the user's own", "a Custom torque",
+                       "its function gives numbers, and a proof needs bounds on them at every state nearby: write it as "
+                       "a Formula");
+  }
+  for (const AnyTorque& torque : scene.torques()) {
+    const torques::Formula* formula = find_formula(torque);
+    if (formula == nullptr) continue;
+    if (formula->has_switches())
+      refuse_with_proof("certify", "a Formula with switches", "a proof needs a torque that is analytic: no abs, sign, "
+                        "min, max, clip, where or comparison");
+    if (!formula->states().empty())
+      refuse_with_proof("certify", "a Formula with states of its own", "a proof encloses the body's state alone");
   }
 }
 

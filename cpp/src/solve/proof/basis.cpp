@@ -32,6 +32,15 @@ bool make_orthonormal(const std::vector<std::vector<double>>& list, std::vector<
 
 }  // namespace
 
+double exp_above(double x) {
+  double sum = 1.0, term = 1.0;
+  for (int k = 1; k <= 200; ++k) {
+    term *= x / k;
+    sum += term;
+  }
+  return raised(sum * (1.0 + 0x1p-40));   // what is left out: 60^200 / 200! is far below a part in 2^40
+}
+
 std::vector<double> invert(std::vector<double> A, std::size_t n) {
   std::vector<double> V(n * n, 0.0);
   for (std::size_t i = 0; i < n; ++i) V[i * n + i] = 1.0;

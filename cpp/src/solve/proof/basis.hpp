@@ -9,6 +9,9 @@ namespace polhode::proof {
 /// products and quotients of them are wrong by less than this in all, underflow included while all are below 2^60.
 inline double raised(double x) { return x * (1.0 + 0x1p-30) + 0x1p-900; }
 
+/// At least e^x, 0 <= x <= 60.
+double exp_above(double x);
+
 /// An approximate inverse of the (n, n) matrix A; empty where elimination breaks down.
 std::vector<double> invert(std::vector<double> A, std::size_t n);
 

@@ -4,84 +4,15 @@
 #include <array>
 #include <cmath>
 
+#include "polhode/formula/facts.hpp"
+#include "polhode/formula/parser.hpp"
 #include "polhode/math/detail/number.hpp"
+#include "solve/proof/body_constants.hpp"
+#include "solve/proof/formula_step.hpp"
+#include "solve/proof/quadratic_step.hpp"
 
 namespace polhode::proof {
 namespace {
-
-using Vector = std::array<Interval, 3>;
-using Matrix = std::array<Vector, 3>;   // by rows
-
-Matrix make_matrix(const Matrix3d& m, double scale) {
-  Matrix result;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      result[to_index(i)][to_index(j)] = Interval(m(i, j)) * Interval(scale);
-  return result;
-}
-
-/// The axis of a rotor. Its direction may have been rounded to length 1, which moves it by less than 2^-51.
-Vector enclose_axis(const Rotor& rotor) {
-  Vector a;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double component = rotor.axis()[static_cast<int>(i)];
-    const bool exact = component == 0.0 || std::abs(component) == 1.0;
-    a[i] = exact ? Interval(component) : Interval(math::DD(component), 0x1p-51 * std::abs(component));
-  }
-  return a;
-}
-
-/// h_B of a rotor: relative to the body, or absolute if it is free.
-Vector enclose_momentum(const Rotor& rotor, const Vector3d& w_B) {
-  const Vector a = enclose_axis(rotor);
-  Interval size;
-  if (rotor.momentum()) {
-    size = Interval(*rotor.momentum());
-  } else {
-    Interval speed(*rotor.speed());
-    for (std::size_t i = 0; i < 3 && rotor.free(); ++i) speed = speed + a[i] * Interval(w_B[static_cast<int>(i)]);
-    size = Interval(*rotor.inertia()) * speed;
-  }
-  return {size * a[0], size * a[1], size * a[2]};
-}
-
-/// The inertia that moves with omega: without the axial moments of free rotors. All is divided by a power of two.
-Matrix enclose_inertia(const Scene& scene, double part) {
-  Matrix J = make_matrix(scene.given_inertia_B().matrix(), part);
-  for (const Rotor& rotor : scene.rotors()) {
-    if (!rotor.free() || !rotor.inertia()) continue;
-    const Vector a = enclose_axis(rotor);
-    for (std::size_t i = 0; i < 3; ++i)
-      for (std::size_t j = 0; j < 3; ++j)
-        J[i][j] = J[i][j] - Interval(*rotor.inertia()) * Interval(part) * a[i] * a[j];
-  }
-  return J;
-}
-
-Matrix invert(const Matrix& m) {
-  Matrix inverse;
-  if (m[0][1].is_zero() && m[0][2].is_zero() && m[1][2].is_zero()) {
-    for (std::size_t i = 0; i < 3; ++i) inverse[i][i] = Interval(1.0) / m[i][i];
-    return inverse;
-  }
-  const auto minor = [&](std::size_t i, std::size_t j) {   // of row j and column i, signed
-    const std::size_t a = (j + 1) % 3, b = (j + 2) % 3, c = (i + 1) % 3, d = (i + 2) % 3;
-    return m[a][c] * m[b][d] - m[a][d] * m[b][c];
-  };
-  const Interval determinant = m[0][0] * minor(0, 0) + m[0][1] * minor(1, 0) + m[0][2] * minor(2, 0);
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j) inverse[i][j] = minor(i, j) / determinant;
-  return inverse;
-}
-
-/// Calls use(i, j, k, sign) for the six entries of the permutation symbol.
-template <class Use>
-void for_permutations(Use use) {
-  for (int i = 0; i < 3; ++i) {
-    use(i, (i + 1) % 3, (i + 2) % 3, 1.0);
-    use(i, (i + 2) % 3, (i + 1) % 3, -1.0);
-  }
-}
 
 AnyTorque drop_window(const AnyTorque& torque) {
   const auto* during = std::get_if<torques::During>(&torque);
@@ -103,6 +34,14 @@ double find_unit(const Vector3d& v) {
 /// A power of two near x, between 2^-1000 and 2^1000.
 double nearest_power(double x) { return std::ldexp(1.0, std::clamp(std::ilogb(x), -1000, 1000)); }
 
+/// Whether the attitude stands in a torque's formula, be it multiplied by a number that is 0.
+bool names_attitude(const AnyTorque& torque) {
+  const auto* formula = std::get_if<torques::Formula>(&torque);
+  if (formula == nullptr) return traits(torque).uses_attitude;
+  const formula::Program given = formula::parse(formula->text());
+  return given.outputs.size() == 1 || formula::find_facts(given).uses_attitude;
+}
+
 /// R_WB^T v_W of a unit quaternion.
 Vector to_body(const std::array<Interval, 4>& q, const Vector& v) {
   const Interval two(2.0), one(1.0);
@@ -119,7 +58,9 @@ Vector to_body(const std::array<Interval, 4>& q, const Vector& v) {
 
 BodyEquations::BodyEquations(const Scene& scene) : scene_(scene), has_attitude_(scene.want().attitude) {
   for (const AnyTorque& torque : scene.torques()) torques_.push_back(drop_window(torque));
-  choose_vectors();
+  by_formulas_ = needs_formula_system(torques_);
+  if (by_formulas_) has_attitude_ = has_attitude_ || std::any_of(torques_.begin(), torques_.end(), names_attitude);
+  else choose_vectors();
   choose_units();
   attitude_ = orbit_index(orbits_.size());
 }
@@ -151,6 +92,13 @@ void BodyEquations::choose_units() {
       fastest = std::max(fastest, std::abs(gradient->mean_motion()));
     if (const auto* brake = std::get_if<torques::Damping>(&torque))
       damping = std::max(damping, brake->matrix().cwiseAbs().maxCoeff() / least);
+    if (const auto* formula = std::get_if<torques::Formula>(&torque)) {
+      const Quat& q = scene_.attitude();
+      const double attitude[4] = {q.x, q.y, q.z, q.w};
+      Vector3d tau = Vector3d::Zero();
+      formula->add({scene_.t0(), scene_.omega().data(), attitude, scene_.inertia_B().matrix()}, tau.data());
+      if (tau.allFinite()) take(tau.norm());
+    }
     if (const auto* angular = std::get_if<torques::AngularDamping>(&torque))
       damping = std::max(damping, std::abs(angular->rate()));
   }
@@ -163,6 +111,8 @@ void BodyEquations::choose_units() {
   }
   if (fastest > 0.0 && std::isfinite(fastest)) rate_ = nearest_power(fastest);
   pace_ = damping > rate_ && std::isfinite(damping) ? nearest_power(damping) : rate_;
+  if (by_formulas_)   // units are factors of forms there, whose products must not leave float64's range
+    for (double* one : {&rate_, &pace_}) *one = std::clamp(*one, 0x1p-100, 0x1p100);
 }
 
 std::vector<Interval> BodyEquations::start() const {
@@ -230,14 +180,7 @@ class BodyEquations::Maker {
 
   /// I^-1 (strength v x I v) for the variables v from `first`; w' of a free body with v = w and strength -1.
   void add_gyroscopic(int first, const Interval& strength) {
-    std::array<Matrix, 3> cross = {};   // of the products v_j v_l, j <= l, collected before they are multiplied
-    for_permutations([&](int i, int j, int k, double s) {
-      for (int l = 0; l < 3; ++l) {
-        auto& sum = cross[to_index(i)][to_index(std::min(j, l))]
-                         [to_index(std::max(j, l))];
-        sum = sum + Interval(s) * I_[to_index(k)][to_index(l)];
-      }
-    });
+    const std::array<Matrix, 3> cross = enclose_products(I_);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
         for (int l = j; l < 3; ++l) {
@@ -307,7 +250,7 @@ class BodyEquations::Maker {
   }
 
   void add(const torques::Custom&) {}    // calls_custom() finds it
-  void add(const torques::Formula&) {}   // nor of it
+  void add(const torques::Formula&) {}   // it needs a FormulaSystem
   void add(const torques::During&) {}    // pieces have no windows
 
   /// v' = v x w of a vector fixed in space, as seen from the body
@@ -354,6 +297,14 @@ QuadraticSystem BodyEquations::make_system(const std::vector<AnyTorque>& torques
   QuadraticSystem system = Maker(*this).make(torques, rotating);
   system.scale(sign * (rate_ / pace_));
   return system;
+}
+
+std::unique_ptr<TaylorStep> BodyEquations::make_step(const std::vector<AnyTorque>& torques,
+                                                     const std::vector<bool>& rotating, double sign,
+                                                     const StepSettings& settings) const {
+  if (!by_formulas_) return std::make_unique<QuadraticStep>(make_system(torques, rotating, sign), settings);
+  const FormulaSystem system = make_formula_system(scene_, torques, rotating, {rate_, pace_, sign}, has_attitude_);
+  return std::make_unique<FormulaStep>(system, settings);
 }
 
 std::array<Interval, 3> BodyEquations::compute_jump(const std::vector<bool>& before,

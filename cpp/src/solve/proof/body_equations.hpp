@@ -1,16 +1,19 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "polhode/scene/scene.hpp"
 #include "solve/proof/quadratic_system.hpp"
+#include "solve/proof/taylor_step.hpp"
 
-// A body's motion as a quadratic system. Time runs in units of 1 / pace().
+// A body's motion as a quadratic system, or as formulas where a torque is one. Time runs in units of 1 / pace().
 namespace polhode::proof {
 
 /// The variables of a scene: w_B / rate, vectors fixed in space and the radial and tangential vectors of orbits as seen
-/// from the body, and the quaternion where it is wanted. They are the same in every piece of the span.
+/// from the body, and the quaternion where it is wanted. They are the same in every piece of the span. Formulas see the
+/// attitude alone: it then stands for the vectors.
 class BodyEquations {
  public:
   /// @param scene  one without calls_custom()
@@ -27,9 +30,9 @@ class BodyEquations {
   /// Which rotors rotate from one time to a later one without a break, or at a time.
   std::vector<bool> find_rotating(double begin, double end) const;
 
-  /// The equations under these torques, none of them with windows, and rotors; `sign` is -1 backwards in time.
-  QuadraticSystem make_system(const std::vector<AnyTorque>& torques, const std::vector<bool>& rotating,
-                              double sign) const;
+  /// Steps of the equations under these torques, none of them with windows, and rotors; `sign` is -1 backwards in time.
+  std::unique_ptr<TaylorStep> make_step(const std::vector<AnyTorque>& torques, const std::vector<bool>& rotating,
+                                        double sign, const StepSettings& settings) const;
 
   /// The change of w_B / rate where some rotors stop and others start: J w + h is continuous.
   std::array<Interval, 3> compute_jump(const std::vector<bool>& before, const std::vector<bool>& after) const;
@@ -41,6 +44,8 @@ class BodyEquations {
   };
   class Maker;
 
+  QuadraticSystem make_system(const std::vector<AnyTorque>& torques, const std::vector<bool>& rotating,
+                              double sign) const;
   void choose_vectors();
   void choose_units();
   int fixed_index(std::size_t vector) const { return 3 + 3 * static_cast<int>(vector); }
@@ -53,6 +58,7 @@ class BodyEquations {
   double rate_ = 1.0, pace_ = 1.0;
   int attitude_ = 3;
   bool has_attitude_ = false;
+  bool by_formulas_ = false;
 };
 
 }  // namespace polhode::proof

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 
 #include "method/samples.hpp"
 
@@ -59,12 +60,12 @@ class Run {
   }
 
   bool follow(const Piece& piece, const std::vector<bool>& rotating) {
-    const QuadraticSystem system = body_.make_system(piece.torques, rotating, sign_);
-    TaylorStep step(system, options_.step);
+    const std::unique_ptr<TaylorStep> made = body_.make_step(piece.torques, rotating, sign_, options_.step);
+    TaylorStep& step = *made;
     step.expect_rate(largest_rate_);
     const Interval end = distance(piece.end);
     if (end.is_zero()) {   // a sample at the start itself
-      step.expand(state_);
+      step.expand(state_, now_);
       if (!step.bound(0x1p-60, errors_)) return end_here(Status::failed, "the start cannot be enclosed");
       take_samples(step, 0x1p-60);
       return true;
@@ -77,7 +78,7 @@ class Run {
       if (result_.steps % 64 == 0 && options_.go_on && !options_.go_on(reached())) {
         return end_here(Status::stopped, "it was stopped");
       }
-      double length = step.expand(state_);
+      double length = step.expand(state_, now_);
       const double proposed = length;
       const bool last = !(length < left.lower());
       if (last) length = left.upper();

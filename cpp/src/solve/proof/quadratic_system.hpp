@@ -3,16 +3,12 @@
 #include <vector>
 
 #include "polhode/math/detail/interval.hpp"
+#include "solve/proof/index.hpp"
 
 // Equations y' = c + L y + Q(y, y) with constants that are intervals.
 namespace polhode::proof {
 
 using math::Interval;
-
-template <class Integer>
-constexpr std::size_t to_index(Integer i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// A term of one component of y': a constant times 1, a variable, or a product of two variables.
 struct Term {

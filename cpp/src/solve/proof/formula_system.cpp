@@ -1,0 +1,141 @@
+#include "solve/proof/formula_system.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "polhode/formula/derivative.hpp"
+#include "polhode/formula/parser.hpp"
+#include "solve/proof/exact_graph.hpp"
+#include "solve/proof/index.hpp"
+
+namespace polhode::proof {
+namespace {
+
+using formula::Expr;
+using formula::Program;
+using formula::Vec;
+
+class Builder {
+ public:
+  Builder(const Scene& scene, const Units& units, bool has_attitude)
+      : scene_(scene), units_(units), has_attitude_(has_attitude),
+        part_(math::Interval(std::ldexp(1.0, -std::ilogb(scene.inertia_B().matrix().cwiseAbs().maxCoeff())))),
+        I_(enclose_inertia(scene, part_.middle.hi)), inverse_(invert(I_)),
+        per_pace_(Interval(1.0) / Interval(units.pace)), products_(enclose_products(I_)) {
+    Graph& graph = exact_.graph();
+    w_ = formula::list_states<3>(graph, formula::first_rate);
+    q_ = formula::list_states<4>(graph, formula::first_attitude);
+    for (const Expr& rate : w_.components) body_.push_back(rate * units.rate);
+    for (const Expr& part : q_.components) body_.push_back(part);
+  }
+
+  FormulaSystem build(const std::vector<AnyTorque>& torques, const std::vector<bool>& rotating) {
+    const Interval rate(units_.rate);
+    add_products(w_, -rate * per_pace_);
+    for (std::size_t i = 0; i < rotating.size(); ++i)
+      if (rotating[i]) add_rotor(scene_.rotors()[i]);
+    for (const AnyTorque& torque : torques) std::visit([this](const auto& acting) { add(acting); }, torque);
+
+    Program program;
+    std::vector<formula::Variable> variables;
+    for (int i = 0; i < 3; ++i) variables.push_back({formula::Variable::Kind::state, formula::first_rate + i});
+    for (const Expr& change : change_.components) program.outputs.push_back((change * units_.sign).form());
+    if (has_attitude_) {
+      const Vec<Expr, 4> turn = formula::multiply_pure(q_, w_);
+      for (int i = 0; i < 4; ++i) {
+        variables.push_back({formula::Variable::Kind::state, formula::first_attitude + i});
+        const double half = 0.5 * units_.sign * (units_.rate / units_.pace);
+        program.outputs.push_back((turn[to_index(i)] * half).form());
+      }
+    }
+    program.graph = exact_.take();
+    return {static_cast<int>(variables.size()), formula::differentiate(program, variables), exact_.values(),
+            scene_.t0(), units_.sign / units_.pace};
+  }
+
+ private:
+  using Graph = formula::Graph;
+
+  /// What a torque about one axis gives to each component of w', times a factor.
+  void accelerate(int axis, const Expr& torque, const Interval& factor) {
+    for (int i = 0; i < 3; ++i) {
+      const Interval part = inverse_[to_index(i)][to_index(axis)] * factor;
+      change_[to_index(i)] = change_[to_index(i)] + exact_.number(part) * torque;
+    }
+  }
+
+  /// I^-1 (strength v x I v)
+  void add_products(const Vec<Expr, 3>& v, const Interval& strength) {
+    for (int axis = 0; axis < 3; ++axis)
+      for (int j = 0; j < 3; ++j)
+        for (int l = j; l < 3; ++l) {
+          const Interval& sum = products_[to_index(axis)][to_index(j)][to_index(l)];
+          if (!sum.is_zero()) accelerate(axis, v[to_index(j)] * v[to_index(l)], sum * strength);
+        }
+  }
+
+  void add_rotor(const Rotor& rotor) {   // h x w
+    const Vector h = enclose_momentum(rotor, scene_.omega());
+    for_permutations([&](int i, int j, int k, double s) {
+      accelerate(i, w_[to_index(k)], Interval(s) * h[to_index(j)] * part_ * per_pace_);
+    });
+  }
+
+  /// From N m to the units of w', for a body of inertia 1 / part_.
+  Interval torque_unit() const { return part_ * per_pace_ / Interval(units_.rate); }
+
+  void add_torque(const std::vector<Expr>& tau_B) {
+    for (int axis = 0; axis < 3; ++axis) accelerate(axis, tau_B[to_index(axis)], torque_unit());
+  }
+
+  template <class Torque>
+  void add(const Torque& torque) {
+    const Program law = torque.law(scene_.inertia_B().matrix());
+    add_torque(exact_.add(law, body_));
+  }
+  void add(const torques::Formula& formula) {
+    const Program given = formula::parse(formula.text());
+    const bool is_potential = given.outputs.size() == 1 && given.states.empty();
+    add_torque(is_potential ? exact_.add_potential(given, body_) : exact_.add(given, body_));
+  }
+  // The laws of these two hold the inertia, whose differences they would round.
+  void add(const torques::AngularDamping& damping) {
+    const Interval part = -Interval(damping.rate()) * per_pace_;
+    for (std::size_t i = 0; i < 3; ++i) change_[i] = change_[i] + exact_.number(part) * w_[i];
+  }
+  void add(const torques::GravityGradient& gradient) {
+    const Interval n(gradient.mean_motion());
+    const Expr time(exact_.graph(), exact_.graph().time());
+    const Expr angle = exact_.number(n) * time + exact_.number(Interval(gradient.phase()));
+    add_products(formula::rotate_to_body(q_, Vec<Expr, 3>{{cos(angle), sin(angle), 0.0}}),
+                 Interval(3.0) * n * n * per_pace_ / Interval(units_.rate));
+  }
+  void add(const torques::Custom&) {}    // it is refused before
+  void add(const torques::During&) {}    // pieces have no windows
+
+  const Scene& scene_;
+  const Units units_;
+  const bool has_attitude_;
+  const Interval part_;
+  const Matrix I_, inverse_;
+  const Interval per_pace_;
+  const std::array<Matrix, 3> products_;
+  ExactGraph exact_;
+  Vec<Expr, 3> w_, change_;
+  Vec<Expr, 4> q_;
+  std::vector<Expr> body_;
+};
+
+}  // namespace
+
+bool needs_formula_system(const std::vector<AnyTorque>& torques) {
+  return std::any_of(torques.begin(), torques.end(),
+                     [](const AnyTorque& torque) { return find_formula(torque) != nullptr; });
+}
+
+FormulaSystem make_formula_system(const Scene& scene, const std::vector<AnyTorque>& torques,
+                                  const std::vector<bool>& rotating, const Units& units, bool has_attitude) {
+  return Builder(scene, units, has_attitude).build(torques, rotating);
+}
+
+}  // namespace polhode::proof

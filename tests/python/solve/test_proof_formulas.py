@@ -1,0 +1,119 @@
+"""Proofs of formulas: drawn laws against 113 bits, other torques beside them, and what has no proof."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from proofs import find_outside, make_formula_scene
+
+import polhode as ph
+from polhode.torques import AngularDamping, Constant, Damping, During, Formula, Gravity, GravityGradient
+
+REFERENCE = Path(__file__).parents[2] / "reference"
+DRAWN = json.loads((REFERENCE / "formula_proof.json").read_text())
+
+
+def prove(torques, accuracy=1e-10, **changes):
+    scene = ph.Scene(**{"inertia": [1.0, 2.0, 2.5], "omega": [0.3, 1.0, -0.2], "times": np.linspace(-1.0, 3.0, 9),
+                        "torques": torques, **changes})
+    return ph.solve(scene, accuracy, certify="proof")
+
+
+def find_width(motion):
+    return max((motion.omega_upper - motion.omega_lower).max(), (motion.attitude_upper - motion.attitude_lower).max())
+
+
+def overlap(one, other):
+    """Whether all bounds of two proofs meet, as those of one motion must."""
+    return all((a <= b).all() for a, b in ((one.omega_lower, other.omega_upper), (other.omega_lower, one.omega_upper),
+                                           (one.attitude_lower, other.attitude_upper),
+                                           (other.attitude_lower, one.attitude_upper)))
+
+
+@pytest.mark.parametrize("number", range(len(DRAWN)))
+@pytest.mark.parametrize("accuracy", [1e-5, 1e-11])
+def test_drawn_laws_judged_by_113_bits(number, accuracy):
+    motion = ph.solve(make_formula_scene(DRAWN[number]), accuracy, certify="proof")
+    assert motion.error_kind == "proved" and motion.error <= accuracy
+    assert find_outside(motion, np.array(DRAWN[number]["truth"])) == 0
+
+
+def test_a_number_changed_in_its_last_digits_lies_outside():
+    # Bounds are narrow enough to tell 1e-12 apart, so that the test above can fail.
+    numbers = dict(DRAWN[0], numbers=[x * (1 + 1e-12) for x in DRAWN[0]["numbers"]])
+    motion = ph.solve(make_formula_scene(numbers), 1e-13, certify="proof")
+    assert find_outside(motion, np.array(DRAWN[0]["truth"])) > 100
+
+
+def test_gravity_as_a_formula_has_the_bounds_of_gravity():
+    scene = ph.Scene.load("S5")
+    gravity = scene.torques[0]
+    as_formula = Formula(text="-weight * cross(arm, to_body([0, 0, 1]))", weight=gravity.weight, arm=tuple(gravity.arm))
+    for accuracy in (1e-6, 1e-9):
+        one = ph.solve(scene, accuracy, certify="proof")
+        # It is recognised elsewhere. A proof is about exactly its own numbers.
+        other = ph.solve(scene.replace(torques=[as_formula]), accuracy, certify="proof")
+        assert other.error_kind == "proved" and overlap(one, other)
+        assert find_width(other) < 2 * find_width(one) + 4e-16
+
+
+def test_a_potential_has_the_bounds_of_its_torque():
+    well = Formula(potential=lambda t, attitude, p: p.k * np.exp(p.c * ph.formula.to_body(attitude, (0, 0, 1))[0]),
+                   k=0.7, c=0.3)
+
+    def torque(t, omega, attitude, p):
+        up = ph.formula.to_body(attitude, (0, 0, 1))
+        slope = p.k * p.c * np.exp(p.c * up[0])
+        return np.array([0 * slope, slope * up[2], -slope * up[1]])
+
+    one, other = prove([well]), prove([Formula(torque, k=0.7, c=0.3)])
+    assert one.error_kind == other.error_kind == "proved" and overlap(one, other)
+
+
+def test_other_torques_and_rotors_beside_a_formula():
+    drag = Formula(text="-c * omega", c=0.125, recognise=False)
+    others = [Gravity(0.5, [0.1, -0.2, 0.3]), AngularDamping(0.25), Constant([0.1, 0.0, -0.2], "space"),
+              During(Constant([0.3, 0, 0], "body"), [(0.5, 1.5)])]
+    free = ph.Rotor(axis=(0.6, 0, 0.8), speed=3.0, inertia=0.1, free=True)
+    locked = ph.Rotor(axis=(0.6, 0, 0.8), momentum=0.3)
+    full = np.array([[1.2, 0.2, -0.1], [0.2, 2.0, 0.3], [-0.1, 0.3, 1.7]])
+    for inertia in (np.diag([1.0, 2.0, 2.5]), full):
+        for rotor, more in ((free, []), (locked, [GravityGradient(0.4, 0.3)])):
+            one = prove([drag, *others, *more], rotors=[rotor], inertia=inertia)
+            other = prove([Damping(0.125 * np.eye(3)), *others, *more], rotors=[rotor], inertia=inertia)
+            assert one.error_kind == other.error_kind == "proved" and overlap(one, other)
+            assert max(find_width(one), find_width(other)) < 1e-10
+
+
+def test_rates_alone_and_a_factor_of_0():
+    drag = "-c * norm(omega) * omega"
+    plain = prove([Formula(text=drag, c=0.125)], want=["omega"])
+    with_attitude = prove([Formula(text=drag + " + k * attitude.xyz", c=0.125, k=0.0)], want=["omega"])
+    assert plain.error_kind == with_attitude.error_kind == "proved" and plain.attitude is None
+    assert (plain.omega_lower <= with_attitude.omega_upper).all()
+    assert (with_attitude.omega_lower <= plain.omega_upper).all()
+
+
+@pytest.mark.parametrize("text", ["[1 / omega.x, 0, 0]", "[0.1 * log(omega.x - 0.2), 0, 0]", "[-0.2 / omega.x, 0, 0]",
+                                  "[-0.6 * sqrt(omega.x), 0, 0]", "0.3 * [-1, 0, atan2(omega.x, -1)]"])
+def test_a_proof_ends_before_a_point_where_the_formula_is_not_analytic(text):
+    motion = prove([Formula(text=text)], omega=[0.3, 0.0, 0.0], times=np.linspace(0.0, 4.0, 41))
+    begin, end = motion.proved_span
+    if text == "[1 / omega.x, 0, 0]":   # it grows away from 0
+        assert motion.error_kind == "proved"
+        exact = np.sqrt(0.09 + 2 * motion.t)
+        assert (motion.omega_lower[:, 0] <= exact + 1e-15).all() and (exact - 1e-15 <= motion.omega_upper[:, 0]).all()
+    else:
+        assert motion.error_kind == "limit" and begin == 0.0 and end < 3.0
+
+
+def test_what_has_no_proof_is_refused_in_a_sentence():
+    for text, word in (("-0.1 * abs(omega)", "switches"), ("clip(-omega, -0.1, 0.1)", "switches")):
+        with pytest.raises(ph.InvalidInput, match=word):
+            prove([Formula(text=text)])
+        with pytest.raises(ph.InvalidInput, match=word):
+            prove([During(Formula(text=text), [(0.0, 1.0)])])
+    wheel = Formula(lambda t, omega, attitude, p, s: (-s.h, {"h": omega}), states={"h": (0.0, 0.0, 0.0)})
+    with pytest.raises(ph.InvalidInput, match="states of its own"):
+        prove([wheel])
