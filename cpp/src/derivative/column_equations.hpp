@@ -3,9 +3,9 @@
 #include <memory>
 #include <vector>
 
-#include "derivative/column_motion.hpp"
 #include "derivative/column_rows.hpp"
 #include "derivative/column_terms.hpp"
+#include "derivative/mode_equations.hpp"
 #include "method/series/series_terms.hpp"
 #include "polhode/formula/sides.hpp"
 #include "polhode/formula/table.hpp"

@@ -1,19 +1,14 @@
 #pragma once
 
-#include <map>
 #include <memory>
 #include <vector>
 
 #include "derivative/column_terms.hpp"
-#include "polhode/formula/sides.hpp"
+#include "derivative/mode_equations.hpp"
 #include "polhode/ode/problem.hpp"
 #include "polhode/ode/stepper.hpp"
 
 namespace polhode {
-
-struct ColumnEquations;
-/// The equations of formulas, by the sides of their switches.
-using ModeEquations = std::map<std::vector<formula::Side>, std::shared_ptr<const ColumnEquations>>;
 
 /// A body's motion through one piece, step by step, with the columns of its variational equations.
 class ColumnMotion {

@@ -7,7 +7,7 @@
 namespace polhode::formula {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+std::size_t place(int i) { return static_cast<std::size_t>(i); }
 
 /// An operand as text.
 std::string show(const Program& program, int node) {
@@ -26,18 +26,18 @@ std::string find_singular(const Program& program, double t, const double* y, dou
   evaluator(t, y, nullptr, outputs.data());
   const Graph& graph = program.graph;
   // Of switches only the branches that are taken.
-  std::vector<bool> live(at(graph.size()));
+  std::vector<bool> live(place(graph.size()));
   const auto mark = [&](const Form& form) {
-    for (const Term& term : form.terms) live[at(term.node)] = true;
+    for (const Term& term : form.terms) live[place(term.node)] = true;
   };
   for (const Form& output : program.outputs) mark(output);
   for (int i = graph.size() - 1; i >= 0; --i) {
-    if (!live[at(i)]) continue;
+    if (!live[place(i)]) continue;
     const Node& n = graph[i];
     if (n.op == Op::linear) mark(graph.linear(i));
     const bool skips_first = n.op == Op::choose && !(evaluator.value(n.operands[0]) > 0.0);
     for (std::size_t k = 0; k < 3; ++k)
-      if (n.operands[k] >= 0 && !(n.op == Op::choose && k == (skips_first ? 1U : 2U))) live[at(n.operands[k])] = true;
+      if (n.operands[k] >= 0 && !(n.op == Op::choose && k == (skips_first ? 1U : 2U))) live[place(n.operands[k])] = true;
     const bool has_b = n.op == Op::divide || n.op == Op::angle;
     const double a = n.operands[0] >= 0 ? evaluator.value(n.operands[0]) : 1.0;
     const double b = has_b ? evaluator.value(n.operands[1]) : 0.0;

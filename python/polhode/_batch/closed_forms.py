@@ -51,7 +51,7 @@ def _evaluate(
 ) -> Any:
     """Evaluate a closed form, whose C++ function gets the inertia, the parameters, the start, and what is wanted."""
     workers, refuse, report = check_threads(threads), check_errors(errors), reporter(progress)
-    rows = [(to_rows(start[0], "omega", 3), 1), (to_attitudes(start[1], 3), 1)]
+    rows = [(to_rows(start[0], "omega", 3), 1), (to_attitudes(start[1], 4), 1)]
     times = to_rows(t, "t", None)
     common, own = _split(inertia)
     if not is_one_of(frame, ("body", "space")):

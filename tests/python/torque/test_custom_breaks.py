@@ -90,9 +90,10 @@ def test_a_switch_by_the_state_is_estimated():
 
 
 def test_a_run_that_a_jump_ends_names_it_and_keeps_its_samples():
-    for function, reason in ((lambda t, w, q: (0.0, 0.0, 1e5 if t > 13.7 else 0.0),
-                              r"your torque jumps near t = 13\.(7|6999).* np.where in a Formula, During.* breaks="),
-                             (lambda t, w, q: (0.0, 0.0, 1e5 if w[0] > 1.5 else 0.0), "your torque jumps with .* np.where in a")):
+    by_time = r"your torque jumps near t = 13\.(7|6999).* np.where in a Formula, During.* breaks="
+    for function, reason in ((lambda t, w, q: (0.0, 0.0, 1e5 if t > 13.7 else 0.0), by_time),
+                             (lambda t, w, q: (0.0, 0.0, 1e5 if w[0] > 1.5 else 0.0),
+                              "your torque jumps with .* np.where in a")):
         motion = ph.solve(make(function), method="dop853", rtol=1e-13, max_steps=20_000)
         assert motion.status == "failed"
         assert re.search(reason, motion.message), motion.message

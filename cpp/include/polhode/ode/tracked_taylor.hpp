@@ -386,9 +386,7 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     }
   }
 
-  const P& lost_;
-  const P& perturbed_;
-  const P& sampled_;
+  const P &lost_, &perturbed_, &sampled_;
   ErrorTrace& trace_;
   const bool separate_;
   double t0_, t_end_ = 0.0;
