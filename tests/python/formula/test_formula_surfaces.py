@@ -164,7 +164,7 @@ def test_a_motion_that_slides_still_has_its_other_direction():
     assert motion.status == "sliding" and list(motion.t) == [0.25] and "t = 0.5 s" in motion.message
 
 
-def test_what_takes_no_switches_says_so():
+def test_many_bodies_under_switches():
     given = ph.Scene(inertia=BALL, omega=(0.1, 0.2, 0.3), torques=[Formula(text="-abs(omega)")], times=[1.0])
     many = ph.solve_many([given] * 3, rtol=1e-10, method="taylor")
     np.testing.assert_allclose(many.omega[:, 0], [ph.solve(given, 1e-10).omega[0]] * 3, rtol=0, atol=1e-9)
