@@ -141,6 +141,9 @@ EndingText describe(ode::Ending ending, double t, long max_steps) {
     case Ending::event: return {Status::event, "ended by a terminal event" + when};
     case Ending::max_steps:
       return {Status::max_steps, "gave up after max_steps = " + std::to_string(max_steps) + " steps" + when};
+    case Ending::stalled:
+      return {Status::max_steps, "gave up" + when + ": the steps there are a thousand times shorter than before, or too "
+              "short for max_steps = " + std::to_string(max_steps) + ", and many are rejected"};
     case Ending::stopped: return {Status::stopped, "stopped by the progress callback" + when};
     case Ending::underflow:
       return {Status::failed, "the step became smaller than the spacing of the times" + when};
@@ -197,7 +200,7 @@ Trajectory integrate(const Scene& scene, const RunOptions& options, const double
     trajectory.status = text.status, trajectory.message = std::move(text.message);
     if (result.ending == ode::Ending::underflow || result.ending == ode::Ending::not_finite)
       trajectory.message += explain_singular(scene, to_state(unpack, extra, result.t, stepper->y()));
-    if (result.ending == ode::Ending::underflow)
+    if (result.ending == ode::Ending::underflow || result.ending == ode::Ending::stalled)
       trajectory.message += explain_underflow(scene, to_state(unpack, extra, result.t, stepper->y()));
     return trajectory.status == Status::event || trajectory.status == Status::sliding;
   };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 namespace polhode::ode {
 namespace {
@@ -23,6 +24,42 @@ class Heartbeat {
   const std::function<bool(double, double)>& progress_;
   unsigned calls_ = 0;
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+/// Sees in blocks of steps that a run makes no progress. Next to jumps of the rates steps become short, and many are
+/// rejected. A smooth motion that needs many steps has few rejected ones, and a table with kinks has longer ones too.
+class Pace {
+ public:
+  Pace(const Stepper& stepper, double last, long max_steps)
+      : stepper_(stepper), last_(last), end_(stepper.counts().steps + max_steps), t_(stepper.t()) {
+    start_block();
+  }
+
+  bool stalled() {
+    longest_ = std::max(longest_, std::abs(stepper_.t() - stepper_.t_old()));
+    const Counts& now = stepper_.counts();
+    if (now.steps - steps_ < block) return false;
+    const double step = std::abs(stepper_.t() - t_) / block, rest = std::abs(last_ - stepper_.t());
+    const bool stalled = now.rejected - rejected_ > block / 3 &&
+                         (step < longest_ / 1000 || rest > step * static_cast<double>(end_ - now.steps));
+    start_block();
+    return stalled;
+  }
+
+ private:
+  static constexpr long block = 8192;
+
+  void start_block() {
+    t_ = stepper_.t();
+    steps_ = stepper_.counts().steps;
+    rejected_ = stepper_.counts().rejected;
+  }
+
+  const Stepper& stepper_;
+  const double last_;
+  const long end_;
+  double t_, longest_ = 0.0;
+  long steps_ = 0, rejected_ = 0;
 };
 
 Ending to_ending(StepResult step) {
@@ -59,9 +96,14 @@ DriveResult drive(Stepper& stepper, std::span<const double> times, const Sink& s
   const auto at = [&](double t, double* out) { stepper.interpolate(t, out); };
 
   const long first_step = stepper.counts().steps;
+  Pace pace(stepper, last, options.max_steps);
   while (stepper.t() != last) {
     if (stepper.counts().steps - first_step >= options.max_steps) {
       result.ending = Ending::max_steps;
+      break;
+    }
+    if (pace.stalled()) {
+      result.ending = Ending::stalled;
       break;
     }
     const StepResult step = stepper.advance(last);

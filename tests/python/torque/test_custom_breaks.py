@@ -155,3 +155,36 @@ def test_datasets_of_own_torques_exist():
     pytest.importorskip("xarray")
     motion = ph.solve(make(brake), 1e-6)
     assert np.array_equal(motion.to_xarray().omega, motion.omega)
+
+
+@pytest.mark.parametrize("method", ["dop853", "rk45", "radau"])
+@pytest.mark.parametrize("times", [[-10.0], [-14.0, -10.0], [-10.0, 10.0]])
+def test_a_jump_before_the_start(method, times):
+    """The comparison has a sample at the start, whose piece has no length and was not planned."""
+    def step(t, omega, attitude):
+        return (0.0, 0.0, 0.5 if t < -3.3 else -0.5)
+
+    scene = make(step).replace(times=times)
+    motion = ph.solve(scene, 1e-6, method=method)
+    truth = ph.solve(make(step, breaks=[-3.3]).replace(times=times), 1e-11)
+    assert motion.success and apart(motion, truth) <= motion.error + truth.error
+
+
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-6, 1e-9])
+@pytest.mark.parametrize("span", [3.0, 10.0])
+def test_a_motion_along_a_jump_ends_soon(accuracy, span):
+    """Dry friction by the sign of the rates: at rest each step crosses the jump, and most are rejected."""
+    calls = 0
+
+    def dry(t, omega, attitude):
+        nonlocal calls
+        calls += 1
+        return -0.3 * np.sign(omega)
+
+    motion = ph.solve(ph.Scene(inertia=INERTIA, omega=(1, 0.5, -1.2), torques=[ph.torques.Custom(dry)],
+                               times=np.linspace(0, span, 11)), accuracy)
+    assert calls < 2_000_000
+    if not motion.success:
+        assert motion.status == "max_steps" and len(motion.t) and "jumps with the state" in motion.message
+    assert not motion.success or motion.error_kind == "estimated"
+    assert motion.success == (accuracy == 1e-3 and span == 3.0)

@@ -11,8 +11,10 @@
 
 namespace polhode::ode {
 
+/// `stalled`: many steps are rejected, and those that are taken stay a thousand times shorter than earlier ones, or the
+/// rest would take more than `max_steps` of them.
 enum class Ending {
-  finished, event, max_steps, stopped, underflow, not_finite, no_solution, sliding, chattering
+  finished, event, max_steps, stalled, stopped, underflow, not_finite, no_solution, sliding, chattering
 };
 
 struct DriveOptions {

@@ -36,9 +36,11 @@ void add_jump(const Scene& part, const Vector3d& dh, ode::ErrorTrace& trace) {
   for (int i = 0; i < 3; ++i) trace.spread[i] += std::copysign(size, trace.spread[i]);
 }
 
-void copy_plans(const std::vector<Piece>& from, std::vector<Piece>& to) {
-  for (std::size_t i = 0; i < to.size() && !from.empty(); ++i) {
-    const Piece& planned = from[std::min(i, from.size() - 1)];
+/// A comparison may have a time at the start itself, so a piece in a direction that was not planned. It has no length,
+/// and takes the plan of the first piece in the other direction.
+void copy_plans(const std::vector<Piece>& from, const std::vector<Piece>& other, std::vector<Piece>& to) {
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    const Piece& planned = from.empty() ? other.front() : from[std::min(i, from.size() - 1)];
     to[i].plan = planned.plan, to[i].form = planned.form;
   }
 }
@@ -54,8 +56,8 @@ std::shared_ptr<const ClosedForm> make_form(const Scene& part, const Facts& fact
 Motion run_planned(const Decision& decision, const Scene& scene, const SolveOptions& options, double rtol,
                    bool perturb_joins, ode::ErrorTrace* trace) {
   Pieces pieces = cut(scene, decision.pieces.method_switches);
-  copy_plans(decision.pieces.backward, pieces.backward);
-  copy_plans(decision.pieces.forward, pieces.forward);
+  copy_plans(decision.pieces.backward, decision.pieces.forward, pieces.backward);
+  copy_plans(decision.pieces.forward, decision.pieces.backward, pieces.forward);
   std::vector<std::string> runs;
   const auto run_one = [&](const Scene& part, const Piece& piece, const SolveOptions& piece_options) -> Motion {
     std::string name = piece.plan.method;
