@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "method/series/switched_series.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/solve/invariants.hpp"
 #include "polhode/solve/plan.hpp"
@@ -97,6 +98,7 @@ PlannedScene::PlannedScene(const Scene& given, const SolveOptions& options) : op
   check_torques(scene);
   Decision decision = decide(scene, options);
   decision.recognised = std::move(recognised);
+  decision.crosses_switches = !by_series && has_switches(given);
   decision_ = std::make_shared<const Decision>(std::move(decision));
   options_.events.clear();
   options_.progress = {};

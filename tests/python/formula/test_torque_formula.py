@@ -91,10 +91,12 @@ def test_values_are_those_of_the_function(function, parameters):
 @pytest.mark.parametrize(("function", "parameters"), SMOOTH, ids=lambda x: getattr(x, "__name__", ""))
 @pytest.mark.parametrize("method", [None, "rk45", "dop853", "radau"])
 def test_motions_against_scipy(function, parameters, method):
-    accuracy = 1e-10 if method in (None, "dop853") else 1e-6
+    jumps = function is mixed and method is not None   # sign, which only the series' steps end at
+    accuracy = 1e-10 if method in (None, "dop853") and not jumps else 1e-6
     motion = ph.solve(scene(Formula(function, **parameters)), accuracy=accuracy, method=method)
     want = integrate(function, parameters)
-    assert motion.success and motion.error_kind == "bounded"
+    assert motion.success and motion.error_kind == ("estimated" if jumps else "bounded")
+    assert ("steps over the switches" in motion.message) == jumps
     size = np.abs(OMEGA).max()
     worst = max(np.abs(motion.omega - want[:, :3]).max() / size, np.abs(motion.attitude - want[:, 3:]).max())
     assert worst <= accuracy and worst <= 4 * motion.error + 1e-12

@@ -257,3 +257,14 @@ def test_costs_are_of_solutions_with_a_certificate():
     assert 1e-6 < seconds < 10 and method in ("rk45", "dop853", "taylor", "radau")
     assert ratios.measure(scene, 1e-6, "taylor")[1] == "taylor"
     assert ratios.measure(scene, 1e-17) is None and ratios.measure(scene, 1e-6, "leapfrog") is None
+
+
+def test_two_runs_that_agree_by_chance():
+    """A damped, driven disc whose bound was 2.5 times too small: the two runs differed by 1e-3 of their tolerance."""
+    scene = family.draw(20261218, "disc", 25).scene
+    truth = ph.solve(scene, 1e-12)   # 3e-15 off, by 113 bits
+    for accuracy in (3.6551011489649616e-07, *np.logspace(-9, -4, 11)):
+        motion = ph.solve(scene, accuracy)
+        found = family.compute_error(motion, SimpleNamespace(
+            omega=truth.omega, attitude=truth.attitude, omega_scale=np.linalg.norm(scene.omega)))
+        assert motion.error_kind == "bounded" and found <= motion.error

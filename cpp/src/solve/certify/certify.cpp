@@ -218,10 +218,13 @@ class Certifier {
   }
 
   bool jumps_within_steps() const {
-    return !std::isnan(looks_.state_jump) || looks_.too_many || !looks_.breaks.empty();
+    return decision_.crosses_switches || !std::isnan(looks_.state_jump) || looks_.too_many || !looks_.breaks.empty();
   }
 
   std::string describe_jump() const {
+    if (decision_.crosses_switches)
+      return "a coarser run estimates the error, because " + decision_.plan.method + " steps over the switches of your "
+             "formula; taylor ends its steps there and bounds it";
     const std::string end = ": a coarser run estimates the error, and no step ends at a jump; it would "
                             "with np.where in a Formula, or with During";
     if (std::isnan(looks_.state_jump)) return "your torque jumps or kinks at many times" + end;

@@ -19,6 +19,7 @@ constexpr int perturbed_units = 8;         // in the last place: more than the r
 constexpr int stiff_order = 2;             // of an implicit method in a stiff body: below its stage order, 3
 constexpr double rounding_floor = 8.0;     // units of rounding that two runs may share, and the root of their steps
 constexpr double claimed_part = 8.0;       // times the error that the numbers of steps give
+constexpr double chance = 1.0 / 128;       // of the finer tolerance: two runs may agree better by chance
 constexpr double most_factor = 30.0;       // of runs with the same steps
 constexpr double most_stiff_factor = 10.0; // of chains with an implicit piece, which no third run is compared with
 constexpr long most_steps_of_another = 20'000;
@@ -127,7 +128,7 @@ Attempt PairCertificate::run(double coarse, double fine) {
     }
     // Runs that settle to the same path may share their rounding, which walks at random.
     const double units = rounding_floor + std::sqrt(static_cast<double>(motion.stats.steps));
-    const double least = units * std::numeric_limits<double>::epsilon();
+    const double least = units * std::numeric_limits<double>::epsilon() + chance * fine;
     if (difference < unknown_error) attempt.error = factor * difference + least + formulas;
     if (!(attempt.error <= accuracy)) {
       attempt.holds_until =

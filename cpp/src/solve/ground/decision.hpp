@@ -23,6 +23,7 @@ struct Decision {
   double turns = 0.0;                      ///< revolutions of all pieces together
   bool looked = false;                     ///< the pilot run looked at the user's own torques over the whole span
   Looks looks = {};                        ///< what it found; the span is divided at its breaks
+  bool crosses_switches = false;           ///< the method steps over the switches of a formula
   bool may_cut = true;                     ///< a run may end early where a torque of the user's own is found to jump
   std::vector<std::string> recognised = {};   ///< what the formulas are that are torques of the list
   ode::Counts pilot = {};                  ///< what the pilot run of a user's own torque took
