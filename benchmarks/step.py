@@ -3,6 +3,7 @@
     python benchmarks/step.py racket -o docs/pictures      # counts the flips and draws step_racket
     python benchmarks/step.py molecules -o docs/pictures   # charts the energy and draws step_molecules
     python benchmarks/step.py published                    # two steps of the literature that polhode has no method for
+    python benchmarks/step.py errors                       # of one step, by kinds of bodies
     python benchmarks/step.py cost
 
 NO_SQUISH: five rotations about the principal axes, 3-2-1-2-3 (Miller et al. 2002, J. Chem. Phys. 116, 8649), as LAMMPS
@@ -226,7 +227,40 @@ def published(_):
 
 # ---- cost
 
-def cost(n=100_000, repeats=25):
+def draw_moments(kind, n, rng):
+    if kind == "second moments uniform in 0.1 to 1":
+        second = rng.uniform(0.1, 1, (n, 3))
+    elif kind == "boxes, sides over a decade":
+        second = 10 ** (2 * rng.uniform(0, 1, (n, 3)))
+    else:
+        second = 10 ** rng.uniform(0, 4, (n, 3))
+    return second.sum(axis=1, keepdims=True) - second
+
+
+def errors(_, n=200_000):
+    """Print the largest rotation by which one step at 1 rad/s misses the closed form."""
+    for kind in ("second moments uniform in 0.1 to 1", "boxes, sides over a decade", "second moments over four decades"):
+        rng = np.random.default_rng(1)
+        moments, omega, attitude = draw_moments(kind, n, rng), rng.normal(size=(n, 3)), rng.normal(size=(n, 4))
+        moments /= moments.max(axis=1, keepdims=True)
+        omega /= np.linalg.norm(omega, axis=1, keepdims=True)
+        attitude /= np.linalg.norm(attitude, axis=1, keepdims=True)
+        for dtype in (np.float64, np.float32):
+            # The float32 inputs are the truth's inputs, too.
+            given = moments.astype(dtype), (moments * omega).astype(dtype), attitude.astype(dtype)
+            exact = [one.astype(float) for one in given]
+            exact[2] /= np.linalg.norm(exact[2], axis=1, keepdims=True)
+            found = []
+            for h in (0.01, 0.1, 0.5, 1.0, 2.0, 3.0):
+                _, q = ph.step(*given, h, frame="body")
+                truth = ph.free_motion(exact[0], exact[1] / exact[0], exact[2], h, want="attitude")
+                q = q / np.linalg.norm(q.astype(float), axis=1, keepdims=True)
+                apart = np.minimum(*(np.linalg.norm(q + sign * truth, axis=1) for sign in (-1, 1)))
+                found.append(2 * apart.max())
+            print(f"| {kind}, {np.dtype(dtype).name} | " + " | ".join(f"{error:.0e}" for error in found) + " |")
+
+
+def cost(_, n=100_000, repeats=25):
     rng = np.random.default_rng(0)
     for dtype in (np.float32, np.float64):
         moments = np.tile(RACKET, (n, 1)).astype(dtype)
@@ -241,15 +275,15 @@ def cost(n=100_000, repeats=25):
             print(f"{np.dtype(dtype).name}, {label}: {1e9 * least / n:.2f} ns a body and step")
 
 
+KINDS = {"racket": racket, "molecules": molecules, "published": published, "errors": errors, "cost": cost}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=("racket", "molecules", "published", "cost"))
+    parser.add_argument("what", choices=KINDS)
     parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("."))
     options = parser.parse_args()
-    if options.what == "cost":
-        cost()
-    else:
-        {"racket": racket, "molecules": molecules, "published": published}[options.what](options.output)
+    KINDS[options.what](options.output)
 
 
 if __name__ == "__main__":
