@@ -108,7 +108,7 @@ bool is_closed(const std::vector<std::array<std::uint32_t, 3>>& faces, const std
 }  // namespace
 
 Weld weld_vertices(const double* coordinates, const std::vector<std::uint32_t>& vertices, double distance) {
-  static const std::vector<Cell> steps = near_cells();
+  static const auto& steps = *new const std::vector<Cell>(near_cells());   // never destroyed, as threads may go on
   const std::vector<Vector3d> points = scaled(coordinates, vertices, distance);
   const Grid grid(points, 0.999 / std::sqrt(3.0));
   Surfaces groups(points.size());  // of vertices: the root is the first

@@ -5,7 +5,8 @@
 namespace polhode::shapes {
 
 const std::vector<Record>& all() {
-  static const std::vector<Record> records = {
+  // Never destroyed: threads may still run when the process ends.
+  static const auto& records = *new const std::vector<Record>{
 #define POLHODE_SHAPE(name, parameters) describe_##name(),
 #include "polhode/inertia/shapes.def"
 #undef POLHODE_SHAPE

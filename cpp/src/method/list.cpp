@@ -10,13 +10,14 @@ namespace polhode {
 namespace {
 
 const std::vector<BodyMethod>& all() {
-  static const std::vector<BodyMethod> list = [] {
+  // Never destroyed: threads may still run when the process ends.
+  static const auto& list = *new const std::vector<BodyMethod>([] {
     std::vector<BodyMethod> methods;
 #define POLHODE_METHOD(name) methods.push_back(name##_method);
 #include "polhode/method/methods.def"
 #undef POLHODE_METHOD
     return methods;
-  }();
+  }());
   return list;
 }
 
@@ -34,11 +35,11 @@ const BodyMethod& find_body_method(std::string_view name) {
 }
 
 std::span<const ode::MethodRecord> methods() {
-  static const std::vector<ode::MethodRecord> records = [] {
+  static const auto& records = *new const std::vector<ode::MethodRecord>([] {
     std::vector<ode::MethodRecord> copies;
     for (const BodyMethod& method : all()) copies.push_back(method.record);
     return copies;
-  }();
+  }());
   return records;
 }
 
