@@ -239,7 +239,8 @@ def draw_moments(kind, n, rng):
 
 def errors(_, n=200_000):
     """Print the largest rotation by which one step at 1 rad/s misses the closed form."""
-    for kind in ("second moments uniform in 0.1 to 1", "boxes, sides over a decade", "second moments over four decades"):
+    kinds = "second moments uniform in 0.1 to 1", "boxes, sides over a decade", "second moments over four decades"
+    for kind in kinds:
         rng = np.random.default_rng(1)
         moments, omega, attitude = draw_moments(kind, n, rng), rng.normal(size=(n, 3)), rng.normal(size=(n, 4))
         moments /= moments.max(axis=1, keepdims=True)

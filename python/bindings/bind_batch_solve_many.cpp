@@ -1,5 +1,6 @@
 #include <pybind11/stl.h>
 
+#include "bind_many.hpp"
 #include "bind_solve_options.hpp"
 #include "convert.hpp"
 #include "gil.hpp"
@@ -14,23 +15,8 @@ py::dict solve_batch(const py::list& scenes, const py::object& moments, const py
                      const py::object& attitude_out, const py::dict& given, int threads, bool refuse) {
   const SolveOptions options = to_solve_options(given);
 
-  // One scene for all with starts of its own for each body, or a scene for each.
-  std::vector<const Scene*> list;
-  for (const py::handle scene : scenes) list.push_back(&scene.cast<const Scene&>());
-  const bool starts = !omega.is_none();
-  const Array I = moments.is_none() ? Array() : moments.cast<Array>();
-  const Array w = starts ? omega.cast<Array>() : Array(), q = starts ? attitude.cast<Array>() : Array();
-  const double* moment = moments.is_none() ? nullptr : I.data();
-  const MakeScene make_scene = [&, rates = w.data(), turns = q.data()](std::size_t body) {
-    if (!starts) return *list[body];
-    const Scene& common = *list[0];
-    const double *a = rates + 3 * body, *b = turns + 4 * body;
-    InertiaTensor inertia = common.given_inertia_B();
-    if (moment != nullptr)
-      inertia = InertiaTensor::from_moments({moment[3 * body], moment[3 * body + 1], moment[3 * body + 2]});
-    return Scene(SceneParts{inertia, {a[0], a[1], a[2]}, {b[0], b[1], b[2], b[3]}, common.torques(), common.times(),
-                            common.want(), common.t0(), "", common.rotors()});
-  };
+  const ManyScenes many(scenes, moments, omega, attitude);
+  const MakeScene make_scene = many.maker();
   const auto target = [](const py::object& array) {
     return array.is_none() ? nullptr : array.cast<py::array_t<double, py::array::c_style>>().mutable_data();
   };

@@ -9,6 +9,7 @@
 #include "polhode/batch/free_motion.hpp"
 #include "polhode/batch/gyrostat.hpp"
 #include "polhode/batch/heavy_top.hpp"
+#include "polhode/batch/sensitivity_many.hpp"
 #include "polhode/batch/solve_many.hpp"
 #include "polhode/batch/step.hpp"
 #include "polhode/core/build_info.hpp"

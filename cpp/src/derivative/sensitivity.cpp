@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
+#include <utility>
 
 #include "method/series/switched_series.hpp"
 #include "polhode/core/error.hpp"
@@ -117,13 +119,36 @@ Scene resolve(const Scene& scene, const std::vector<SceneParameter>& parameters)
   return resolve_formulas(scene.with_torques(std::move(torques)), AsCustom::no);
 }
 
-}  // namespace
+/// The groups as columns of the closed form of a free body; none where one of them has no closed form.
+std::vector<SensitivityTo> find_closed_columns(const Scene& scene, const std::vector<std::string>& groups) {
+  static constexpr std::pair<std::string_view, SensitivityTo> closed[] = {{"omega", SensitivityTo::omega},
+                                                                          {"attitude", SensitivityTo::attitude},
+                                                                          {"inertia", SensitivityTo::inertia},
+                                                                          {"axes", SensitivityTo::axes}};
+  std::vector<SensitivityTo> columns;
+  if (!scene.torques().empty() || !scene.rotors().empty()) return columns;
+  for (const std::string& group : groups) {
+    const auto* found = std::find_if(std::begin(closed), std::end(closed), [&](const auto& one) { return one.first == group; });
+    if (found == std::end(closed)) return {};
+    columns.push_back(found->second);
+  }
+  return columns;
+}
 
-MotionSensitivity compute_sensitivity(const Scene& given, const std::vector<std::string>& groups,
-                                      const SensitivityOptions& options) {
-  if (!(options.accuracy > 0.0 && options.accuracy <= 1.0))
-    throw InvalidInput("accuracy", "above 0 and at most 1", to_text(options.accuracy));
-  const std::vector<SceneParameter> parameters = find_all(given, groups);   // resolved torques keep their numbers
+MotionSensitivity differentiate_free(const Scene& scene, const std::vector<SensitivityTo>& columns, TurnSide side) {
+  const FreeSensitivity closed(FreeMotion(scene.given_inertia_B(), scene.omega(), scene.attitude()), columns, side);
+  const std::size_t n = scene.times().size();
+  std::vector<double> t = scene.times();
+  for (double& time : t) time -= scene.t0();
+  MotionSensitivity found;
+  found.omega.resize(3 * n), found.attitude.resize(4 * n);
+  found.d_omega.resize(3 * n * closed.columns()), found.d_attitude.resize(3 * n * closed.columns());
+  closed.at(t.data(), n, found.omega.data(), found.attitude.data(), found.d_omega.data(), found.d_attitude.data());
+  return found;
+}
+
+MotionSensitivity integrate_columns(const Scene& given, const std::vector<SceneParameter>& parameters,
+                                    const SensitivityOptions& options) {
   const Scene scene = resolve(given, parameters);
   require_formulas(scene);
   const ColumnRun columns(scene, parameters, options.side);
@@ -150,11 +175,24 @@ MotionSensitivity compute_sensitivity(const Scene& given, const std::vector<std:
     last = std::move(now);
   }
   for (double& error : found.error) error += rounding * turns;
-  for (const SceneParameter& parameter : parameters) found.columns.push_back(parameter.column);
   found.omega = std::move(last.omega), found.attitude = std::move(last.attitude);
   found.d_omega = std::move(last.d_omega), found.d_attitude = std::move(last.turn);
   found.d_states = std::move(last.d_states);
   if (options.side == TurnSide::space) turn_to_space(found.attitude, parameters.size(), found.d_attitude);
+  return found;
+}
+
+}  // namespace
+
+MotionSensitivity compute_sensitivity(const Scene& given, const std::vector<std::string>& groups,
+                                      const SensitivityOptions& options) {
+  if (!(options.accuracy > 0.0 && options.accuracy <= 1.0))
+    throw InvalidInput("accuracy", "above 0 and at most 1", to_text(options.accuracy));
+  const std::vector<SceneParameter> parameters = find_all(given, groups);   // resolved torques keep their numbers
+  const std::vector<SensitivityTo> closed = find_closed_columns(given, groups);
+  MotionSensitivity found = closed.empty() ? integrate_columns(given, parameters, options)
+                                           : differentiate_free(given, closed, options.side);
+  for (const SceneParameter& parameter : parameters) found.columns.push_back(parameter.column);
   return found;
 }
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -15,6 +15,8 @@ from .._attitude.arrays import require_text, to_items
 from .._keywords import checked
 from .._scene.plain import to_plain
 from .._scene.scene import Scene
+from .._sensitivity.driven import check_groups, split_states
+from .._sensitivity.sensitivity import Sensitivity
 from .._solve.motion import Floats
 from .._solve.solve import check_max_steps
 from .broadcast import WIDTHS, check_errors, check_threads, to_attitudes, to_rows
@@ -44,6 +46,9 @@ class Motions:
         True if a body was integrated in SIMD lanes together with others, False if by `solve`.
     refused : ndarray of bool, shape (bodies,)
         With errors="nan": True for a start that no body can have. Its samples are NaN, and its message says why.
+    sensitivity : Sensitivity, or None
+        With `sensitivity=`: the derivatives, body by body. All its arrays begin with the axis of the bodies. Rows of a
+        body whose derivatives failed are NaN, and its message says why.
     scenes : Scene or list of Scene
     options : dict
         The other keywords: ``solve_many(motions.scenes, **motions.options)`` repeats the motions.
@@ -62,6 +67,7 @@ class Motions:
     refused: npt.NDArray[np.bool_]
     scenes: Scene | list[Scene] = field(default_factory=list)
     options: dict[str, Any] = field(default_factory=dict)
+    sensitivity: Sensitivity | None = None
 
     def _states(self) -> dict[str, Floats]:
         return {name: array for name, array in (("omega", self.omega), ("attitude", self.attitude))
@@ -132,6 +138,8 @@ def solve_many(
     max_steps: int = 10_000_000,
     threads: int | None = None,
     errors: str = "raise",
+    sensitivity: str | Sequence[str] | None = None,
+    side: str = "space",
 ) -> Motions:
     """Solve many scenes, or one scene from many starts.
 
@@ -158,6 +166,9 @@ def solve_many(
         threads and with any other bodies.
     errors : {"raise", "nan"}
         With "nan" a start that no body can have fails alone: see `Motions.refused`. Options are refused all the same.
+    sensitivity, side
+        As in `solve`, for each body: what the motions are differentiated by, for `Motions.sensitivity`. Scenes with
+        `accuracy`, or 1e-9, and all times; without `rtol`, `atol` and `step`.
 
     Returns
     -------
@@ -197,6 +208,11 @@ def solve_many(
             if scene.times.size != listed[0].times.size or scene.want != listed[0].want:
                 raise _core.InvalidInput(f"scenes[{i}]: must have as many times as scenes[0] and the same want")
     require_text(method, "method")
+    groups = None if sensitivity is None else check_groups(sensitivity, side)
+    for name, number in (("rtol", rtol), ("atol", atol), ("step", step)):
+        if groups and number is not None:
+            raise _core.InvalidInput(f"{name}: must be left out with sensitivity=, which has an accuracy, "
+                                     f"got {number!r}")
     workers, refuse = check_threads(threads), check_errors(errors)
     times = listed[0].times.size if listed else 0
     want = listed[0].want if listed else ("omega", "attitude")
@@ -207,5 +223,14 @@ def solve_many(
                                refuse)
     given |= {name: value for name, value in options.items() if value is not None and value != 10_000_000}
     given |= {} if refuse else {"errors": "nan"}
+    derivatives = None
+    if groups and bodies:
+        made = _core._sensitivities(listed, *starts, bodies, times, groups, 1e-9 if accuracy is None else accuracy,
+                                    True, side, check_max_steps(max_steps), workers, refuse)
+        found["message"] = tuple(f"{message}; no derivatives: {failure}" if failure else message
+                                 for message, failure in zip(found["message"], made["failures"], strict=True))
+        d_states = split_states(listed[0], made["d_states"])
+        derivatives = Sensitivity(made["omega"], made["attitude"], made["d_omega"], made["d_attitude"],
+                                  tuple(made["columns"]), side, made["error"], d_states)
     return Motions(omega=out["omega"], attitude=out["attitude"], **found,
-                   scenes=scenes if isinstance(scenes, Scene) else listed, options=given)
+                   scenes=scenes if isinstance(scenes, Scene) else listed, options=given, sensitivity=derivatives)

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from .. import _core
 from .._attitude.arrays import is_one_of
 from .._core import InvalidInput
 from .._scene.scene import Scene
 from .sensitivity import Sensitivity, to_names
-
-CLOSED = {"omega", "attitude", "inertia", "axes"}
 
 
 def differentiate(scene: Scene, names: str | Sequence[str], accuracy: float, side: str = "space",
@@ -21,22 +20,28 @@ def differentiate(scene: Scene, names: str | Sequence[str], accuracy: float, sid
 
     A free body has closed forms. Any other body has its variational equations integrated.
     """
+    made = _core.sensitivity(scene, check_groups(names, side), accuracy, certify, side, max_steps)
+    return Sensitivity(made.omega, made.attitude, made.d_omega, made.d_attitude, tuple(made.columns), side, made.error,
+                       split_states(scene, made.d_states))
+
+
+def check_groups(names: str | Sequence[str], side: str) -> list[str]:
+    """Return the names of groups, and check the side of small rotations."""
     if not is_one_of(side, ("space", "body")):
         raise InvalidInput(f"side: must be 'space' or 'body', got {side!r}")
     groups = to_names(names) if isinstance(names, (str, Sequence)) and names else ()
     if not groups or not all(isinstance(name, str) for name in groups):
         raise InvalidInput("sensitivity: must be names such as 'omega', 'inertia' or 'torques.0.weight', "
                            f"got {names!r}")
-    if not scene.torques and not scene.rotors and set(groups) <= CLOSED:
-        body = _core.FreeMotion(scene.inertia, scene.omega, scene.attitude)
-        found: Sensitivity = body.sensitivity(scene.times - scene.t0, groups, side)
-        return found
-    made = _core.sensitivity(scene, list(groups), accuracy, certify, side, max_steps)
-    d_states, first = {}, 0
+    return list(groups)
+
+
+def split_states(scene: Scene, d_states: npt.NDArray[np.float64]) -> dict[str, npt.NDArray[np.float64]]:
+    """Divide derivatives (..., numbers, columns) among the states of a scene's formulas, by name."""
+    parts, first = {}, 0
     for name, start in scene.states.items():
         width = np.size(start)
-        part = made.d_states[:, first : first + width]
-        d_states[name] = part if np.ndim(start) else part[:, 0]
+        part = d_states[..., first : first + width, :]
+        parts[name] = part if np.ndim(start) else part[..., 0, :]
         first += width
-    return Sensitivity(made.omega, made.attitude, made.d_omega, made.d_attitude, tuple(made.columns), side, made.error,
-                       d_states)
+    return parts

@@ -87,6 +87,7 @@ def lyapunov(scene: Scene, span: float | None = None, *, accuracy: float = 1e-9)
     length = float(np.max(scene.times)) - scene.t0 if span is None else to_number(span, "span")
     if not (length > 0 and math.isfinite(length)):
         raise InvalidInput(f"span: must be positive and finite, got {length}")
+    accuracy = to_number(accuracy, "accuracy")
     rate = float(np.linalg.norm(scene.omega))
     parts = int(min(max(PARTS, length * rate / (2 * math.pi * TURN)), 1_000_000))
     now = scene.replace(rotors=_held(scene), want=("omega", "attitude"))

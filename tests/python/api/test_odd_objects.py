@@ -81,6 +81,7 @@ DOORS = {
     "solve, tolerances": (ph.solve, dict(scene=SCENE, rtol=1e-6, atol=1e-9, method="rk45")),
     "solve_many": (ph.solve_many, dict(scenes=SCENE, inertia=I, omega=np.ones((2, 3)), attitude=Q, accuracy=1e-6,
                                        method=None, rtol=None, atol=None, step=None, max_steps=1000, threads=None,
+                                       sensitivity="omega", side="space",
                                        errors="raise")),
     "plan": (ph.plan, dict(scene=SCENE, accuracy=1e-6, method=None, certify=True, formulation="euler")),
     "lyapunov": (ph.lyapunov, dict(scene=SCENE, span=1e-3, accuracy=1e-6)),

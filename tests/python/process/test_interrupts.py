@@ -227,6 +227,8 @@ LONG = {
     "solve_many, lanes": lambda: many(rtol=1e-10),
     "solve_many, lanes, one thread": lambda: many(1, rtol=1e-10),
     "solve_many, closed forms": closed_form_bodies,
+    "solve_many, derivatives": lambda: many(sensitivity="omega", accuracy=1e-3),
+    "solve_many, derivatives, one thread": lambda: many(1, sensitivity="omega", accuracy=1e-3),
     "free_motion, bodies": lambda: free_bodies(None),
     "free_motion, bodies, one thread": lambda: free_bodies(1),
     "free_motion, times": lambda: free_body(None),

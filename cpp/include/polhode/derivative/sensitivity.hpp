@@ -21,7 +21,8 @@ struct MotionSensitivity {
   std::vector<double> omega, attitude;        ///< (n, 3) in body axes and (n, 4)
   std::vector<double> d_omega, d_attitude;    ///< (n, 3, columns)
   std::vector<double> d_states;               ///< (n, numbers of the states of formulas, columns)
-  /// The error of each column relative to its size, the largest of all samples; empty without a certificate. It is four
+  /// The error of each column relative to its size, the largest of all samples; empty without a certificate and for
+  /// closed forms. It is four
   /// times the difference of the last two runs, and 4e-15 for each turn, of what both round alike.
   /// The size of a column in a sample is the larger of |d omega| / (largest |omega|) and the angle of the rotation. The
   /// error of a state's derivative is relative to its largest size in the motion.
@@ -30,7 +31,8 @@ struct MotionSensitivity {
   int runs = 0;
 };
 
-/// Differentiates a motion with respect to numbers of its scene, by its variational equations in Taylor series.
+/// Differentiates a motion with respect to numbers of its scene: in closed form where the body is free and the groups are
+/// among "omega", "attitude", "inertia" and "axes", else by its variational equations in Taylor series.
 ///
 /// The columns are integrated beside the state, with the state's series and steps. Windows of torques and rotors cut
 /// the span, and the columns of a window's ends start with the jump of the derivative there. A second run, with a

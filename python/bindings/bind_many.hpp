@@ -1,0 +1,40 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "bind_scene.hpp"
+#include "convert.hpp"
+#include "polhode/batch/solve_many.hpp"
+
+namespace polhode::python {
+
+/// The scenes of many bodies as Python gives them: one for all with starts of their own, or a scene for each.
+class ManyScenes {
+ public:
+  ManyScenes(const py::list& scenes, const py::object& moments, const py::object& omega, const py::object& attitude)
+      : moments_(to_rows(moments)), omega_(to_rows(omega)), attitude_(to_rows(attitude)) {
+    for (const py::handle scene : scenes) list_.push_back(&scene.cast<const Scene&>());
+  }
+
+  /// It must not outlive this object, and needs no interpreter.
+  MakeScene maker() const {
+    return [this, moments = moments_.data(), rates = omega_.data(), turns = attitude_.data()](std::size_t body) {
+      if (omega_.size() == 0) return *list_[body];
+      const Scene& common = *list_[0];
+      const double *a = rates + 3 * body, *b = turns + 4 * body, *moment = moments + 3 * body;
+      InertiaTensor inertia = common.given_inertia_B();
+      if (moments_.size() != 0) inertia = InertiaTensor::from_moments({moment[0], moment[1], moment[2]});
+      return Scene(SceneParts{inertia, {a[0], a[1], a[2]}, {b[0], b[1], b[2], b[3]}, common.torques(), common.times(),
+                              common.want(), common.t0(), "", common.rotors()});
+    };
+  }
+
+ private:
+  static Array to_rows(const py::object& given) { return given.is_none() ? Array() : given.cast<Array>(); }
+
+  std::vector<const Scene*> list_;
+  Array moments_, omega_, attitude_;
+};
+
+}  // namespace polhode::python
