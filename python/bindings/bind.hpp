@@ -18,6 +18,7 @@ void bind_scene(py::module_& m);
 void bind_solve(py::module_& m);
 void bind_solve_sensitivity(py::module_& m);
 void bind_spectrum(py::module_& m);
+void bind_orbit(py::module_& m);
 void bind_batch(py::module_& m);
 void bind_batch_draw(py::module_& m);
 void bind_batch_summary(py::module_& m);

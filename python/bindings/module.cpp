@@ -65,6 +65,7 @@ PYBIND11_MODULE(polhode_core, m, pybind11::mod_gil_not_used()) {
   bind_solve(m);
   bind_solve_sensitivity(m);
   bind_spectrum(m);
+  bind_orbit(m);
   bind_batch(m);
   bind_batch_draw(m);
   bind_batch_summary(m);

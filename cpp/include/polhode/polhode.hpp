@@ -27,6 +27,7 @@
 #include "polhode/method/euler_problem.hpp"
 #include "polhode/method/methods.hpp"
 #include "polhode/ode/methods.hpp"
+#include "polhode/orbit/orbit.hpp"
 #include "polhode/solve/invariants.hpp"
 #include "polhode/solve/plan.hpp"
 #include "polhode/solve/solve.hpp"

@@ -1356,6 +1356,37 @@ class _FoundSensitivity:
     @property
     def steps(self) -> int:
         ...
+class _Orbit:
+    @staticmethod
+    def from_elements(arg0: dict[str, typing.Any]) -> _Orbit:
+        ...
+    @staticmethod
+    def from_state(arg0: typing.SupportsFloat | typing.SupportsIndex, arg1: typing.Any, arg2: typing.Any, arg3: typing.SupportsFloat | typing.SupportsIndex) -> _Orbit:
+        ...
+    @staticmethod
+    def table(arg0: typing.Any, arg1: typing.Any, arg2: typing.Any, arg3: typing.SupportsFloat | typing.SupportsIndex) -> _Orbit:
+        ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
+    def at(self, arg0: typing.Any) -> tuple[typing.Any, ...]:
+        ...
+    @property
+    def e(self) -> float:
+        ...
+    @property
+    def kind(self) -> str:
+        ...
+    @property
+    def mu(self) -> float:
+        ...
+    @property
+    def periapsis_distance(self) -> float:
+        ...
+    @property
+    def period(self) -> float:
+        ...
 class _Summary:
     @staticmethod
     def from_record(quantities: list[typing.Any], times: typing.SupportsInt | typing.SupportsIndex, record: dict[str, typing.Any]) -> _Summary:

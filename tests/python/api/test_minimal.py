@@ -226,6 +226,11 @@ def smoke_load():
     assert np.array_equal(ph.solve(again.scene, **again.options).omega, motion.omega)
 
 
+def smoke_orbit():
+    orbit = ph.Orbit(1.0, (1, 0, 0), (0, 1, 0))
+    assert orbit.kind == "circular" and np.allclose(orbit.at(np.pi / 2)[0], (0, 1, 0))
+
+
 SMOKE = {
     "Event": smoke_event,
     "DampedFree": smoke_damped_free,
@@ -239,6 +244,7 @@ SMOKE = {
     "InvalidInput": smoke_errors,
     "MassProperties": smoke_mass_properties,
     "Motion": smoke_solve,
+    "Orbit": smoke_orbit,
     "Motions": smoke_solve_many,
     "Plan": smoke_plan,
     "PrincipalAxes": smoke_principal_axes,

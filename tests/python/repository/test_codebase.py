@@ -14,7 +14,7 @@ import polhode
 
 ROOT = pathlib.Path(__file__).parents[3]
 ORDER = ["core", "math", "attitude", "inertia", "formula", "torque", "exact", "ode", "scene", "method", "solve",
-         "derivative", "reference", "batch", "spectrum"]
+         "derivative", "reference", "batch", "spectrum", "orbit"]
 MAY_USE = {
     "core": [],
     "math": ["core"],
@@ -31,6 +31,7 @@ MAY_USE = {
     "reference": ORDER[:11],
     "batch": ORDER[:12],
     "spectrum": ["core", "math"],
+    "orbit": ["core", "math"],
 }
 # The rooms of `solve`, and what each may use; solve.cpp stands above them.
 SOLVE_ROOMS = {"ground": [], "form": ["ground"], "run": ["ground"], "proof": ["ground"],

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "polhode/orbit/orbit.hpp"
+
+namespace polhode {
+
+/// What an orbit is: a conic or a table.
+class Orbit::Path {
+ public:
+  virtual ~Path() = default;
+  virtual OrbitState at(double t) const = 0;
+  virtual OrbitKind kind() const = 0;
+  virtual double mu() const = 0;
+  virtual double t0() const = 0;
+  virtual double e() const { return std::numeric_limits<double>::quiet_NaN(); }
+  virtual double period() const { return std::numeric_limits<double>::quiet_NaN(); }
+  virtual double periapsis_distance() const { return std::numeric_limits<double>::quiet_NaN(); }
+  virtual double first_time() const { return -std::numeric_limits<double>::infinity(); }
+  virtual double last_time() const { return std::numeric_limits<double>::infinity(); }
+};
+
+/// Cubic Hermite pieces.
+class OrbitTable final : public Orbit::Path {
+ public:
+  OrbitTable(std::vector<double> t, std::vector<Vector3d> r, std::vector<Vector3d> v, double mu);
+  OrbitState at(double t) const override;
+  OrbitKind kind() const override { return OrbitKind::table; }
+  double mu() const override { return mu_; }
+  double t0() const override { return t_.front(); }
+  double first_time() const override { return t_.front(); }
+  double last_time() const override { return t_.back(); }
+
+ private:
+  std::vector<double> t_;
+  std::vector<Vector3d> r_, v_;
+  double mu_;
+};
+
+}  // namespace polhode

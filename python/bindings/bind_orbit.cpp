@@ -1,0 +1,70 @@
+#include "bind.hpp"
+#include "convert.hpp"
+#include "gil.hpp"
+#include "polhode/core/error.hpp"
+#include "polhode/core/interrupt.hpp"
+#include "polhode/orbit/orbit.hpp"
+
+namespace polhode::python {
+namespace {
+
+std::vector<Vector3d> to_rows(py::handle value, const char* name) {
+  const Array array = to_array_with_tail(value, name, {3});
+  if (array.ndim() != 2) throw InvalidInput(name, "of shape (n, 3)", std::to_string(array.ndim()) + " dimensions");
+  std::vector<Vector3d> rows;
+  for (py::ssize_t i = 0; i < array.shape(0); ++i) rows.emplace_back(*array.data(i, 0), *array.data(i, 1), *array.data(i, 2));
+  return rows;
+}
+
+void fill(const Orbit& orbit, const Array& times, Array& r, Array& v) {
+  const double* in = times.data();
+  double *to_r = r.mutable_data(), *to_v = v.mutable_data();
+  const py::ssize_t n = times.size();
+  const WithoutGil nogil;
+  for (py::ssize_t i = 0; i < n; ++i) {
+    if ((i & 1023) == 0) check_interrupt();
+    const OrbitState state = orbit.at(in[i]);
+    for (int k = 0; k < 3; ++k) to_r[3 * i + k] = state.r[k], to_v[3 * i + k] = state.v[k];
+  }
+}
+
+py::tuple states_at(const Orbit& orbit, py::handle t) {
+  const Array times = to_array(t, "t");
+  std::vector<py::ssize_t> shape(times.shape(), times.shape() + times.ndim());
+  shape.push_back(3);
+  Array r(shape), v(shape);
+  fill(orbit, times, r, v);
+  return py::make_tuple(r, v);
+}
+
+}  // namespace
+
+void bind_orbit(py::module_& m) {
+  py::class_<Orbit>(m, "_Orbit")
+      .def_static("from_state", [](double mu, py::handle r0, py::handle v0, double t0) {
+        return Orbit::from_state(mu, to_vector3(r0, "r0"), to_vector3(v0, "v0"), t0);
+      })
+      .def_static("from_elements", [](const py::dict& given) {
+        OrbitElements elements{.mu = 0.0};
+        const std::pair<const char*, double*> places[] = {
+            {"mu", &elements.mu}, {"periapsis_distance", &elements.periapsis_distance},
+            {"a", &elements.semi_major_axis}, {"e", &elements.e}, {"inclination", &elements.inclination},
+            {"node", &elements.node}, {"periapsis", &elements.periapsis}, {"anomaly", &elements.anomaly},
+            {"t0", &elements.t0}, {"j2", &elements.j2}, {"radius", &elements.radius}};
+        for (const auto& [name, place] : places)
+          if (given.contains(name)) *place = to_real(given[name], name);
+        return Orbit::from_elements(elements);
+      })
+      .def_static("table", [](py::handle t, py::handle r, py::handle v, double mu) {
+        const Array times = to_array(t, "t");
+        return Orbit::table({times.data(), times.data() + times.size()}, to_rows(r, "r"), to_rows(v, "v"), mu);
+      })
+      .def("at", &states_at)
+      .def_property_readonly("kind", [](const Orbit& orbit) { return std::string(to_text(orbit.kind())); })
+      .def_property_readonly("mu", &Orbit::mu)
+      .def_property_readonly("e", &Orbit::e)
+      .def_property_readonly("period", &Orbit::period)
+      .def_property_readonly("periapsis_distance", &Orbit::periapsis_distance);
+}
+
+}  // namespace polhode::python

@@ -1,0 +1,1 @@
+"""Orbits: the paths of the centre of mass."""
