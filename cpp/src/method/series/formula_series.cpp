@@ -99,8 +99,8 @@ formula::Program make_body_system(const Scene& scene, const BodySeries& frame,
                a[1] + (r[1] - r[0]) * (r[1] + r[0]) * product[2]}};
   }
   for (const Expr& rate : change.components) made.outputs.push_back(rate.form());
-  const Vec<Expr, 4> turn = formula::multiply_pure(q_WP, w_P);
-  for (const Expr& rate : turn.components) made.outputs.push_back((rate * 0.5).form());
+  const Vec<Expr, 4> rotation = formula::multiply_pure(q_WP, w_P);
+  for (const Expr& rate : rotation.components) made.outputs.push_back((rate * 0.5).form());
   for (Form& rate : rates) made.outputs.push_back(std::move(rate));
   if (!plain)
     for (const Expr& rate : w_P.components) made.rates.push_back(rate.form());

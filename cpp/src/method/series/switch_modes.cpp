@@ -124,7 +124,7 @@ ode::StepResult SwitchedSeries::switch_mode(math::DD t, double unit, const doubl
   const int reached = std::exchange(shared_->reached, -1);
   if (shared_->on_time.hi != t.hi || shared_->on_time.lo != t.lo) shared_->on.clear(), shared_->on_time = t;
   if (reached >= 0) {
-    // A guard that turned on its surface stays in its mode.
+    // A guard that grazes its surface stays in its mode.
     list_coefficients(old, reached, order, direction * scale, a);
     if (old.guards[static_cast<std::size_t>(reached)].edge == formula::Side::held) a[0] = 0.0;
     const bool leaves = a[1] < 0.0 || (a[1] == 0.0 && a[2] < 0.0);

@@ -13,15 +13,15 @@ class Buss {
   Buss(const PrincipalBody& body, const Scene&) : body_(&body) {}
 
   bool advance(double h, const double*, double* L, double* q) {
-    double w[3], a[3], aw[3], turn[3], p[4];
+    double w[3], a[3], aw[3], rotation[3], p[4];
     for (int i = 0; i < 3; ++i) w[i] = L[i] / body_->I[i];
     cross(L, w, a);
     for (int i = 0; i < 3; ++i) a[i] /= body_->I[i];
     cross(a, w, aw);
-    for (int i = 0; i < 3; ++i) turn[i] = h * (w[i] + h * (0.5 * a[i] + h / 12 * aw[i]));
-    exponential(turn, p);
-    turn_by(p, q);
-    turn_back(p, L);
+    for (int i = 0; i < 3; ++i) rotation[i] = h * (w[i] + h * (0.5 * a[i] + h / 12 * aw[i]));
+    exponential(rotation, p);
+    rotate_by(p, q);
+    rotate_back(p, L);
     return true;
   }
 

@@ -23,9 +23,9 @@ class Catto {
         h * (L[1] - w[1] * I[0]), h * (w[0] * I[1] - L[0]), I[2];
     const Vector3d f{h * (w[1] * L[2] - w[2] * L[1]), h * (w[2] * L[0] - w[0] * L[2]), h * (w[0] * L[1] - w[1] * L[0])};
     const Vector3d change = J.inverse() * f;
-    double turn[3];
-    for (int i = 0; i < 3; ++i) L[i] += kick[i] - I[i] * change[i], turn[i] = h * (L[i] / I[i]);
-    turn_by_vector(turn, q);
+    double rotation[3];
+    for (int i = 0; i < 3; ++i) L[i] += kick[i] - I[i] * change[i], rotation[i] = h * (L[i] / I[i]);
+    rotate_by_vector(rotation, q);
     return true;
   }
 

@@ -78,7 +78,7 @@ class Dmv {
     double c[3];
     cross(x, M, c);
     for (int i = 0; i < 3; ++i) L[i] -= 4 / (h * A) * c[i];
-    turn_by(p, q);
+    rotate_by(p, q);
     return true;
   }
 

@@ -16,7 +16,7 @@ class Euler {
     for (int i = 0; i < 3; ++i) w[i] = L[i] / body_->I[i];
     cross(L, w, gyro);
     for (int i = 0; i < 3; ++i) L[i] += h * gyro[i] + kick[i], w[i] *= h;
-    turn_by_vector(w, q);
+    rotate_by_vector(w, q);
     return true;
   }
 

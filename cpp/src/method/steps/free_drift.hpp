@@ -72,11 +72,11 @@ class FreeDrift {
     const double first = square_[0] * w[0] * w[0], third = square_[2] * w[2] * w[2];
     const double rate = std::sqrt(square_[1] * w[1] * w[1] + std::max(first, third));
     const double radii = std::abs(h) * rate * (2 / std::numbers::pi);
-    const double turn = 0.5 * std::abs(h) * std::sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
-    const double parts = std::max(1.0, std::ceil(std::max(radii / enough.radii[most], turn / enough.turn[most])));
+    const double angle = 0.5 * std::abs(h) * std::sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+    const double parts = std::max(1.0, std::ceil(std::max(radii / enough.radii[most], angle / enough.angle[most])));
     if (!(parts <= most_parts)) return false;
     int order = least;
-    while (radii > parts * enough.radii[order] || turn > parts * enough.turn[order]) order += 2;
+    while (radii > parts * enough.radii[order] || angle > parts * enough.angle[order]) order += 2;
     for (int i = 0; i < static_cast<int>(parts); ++i) expand(h / parts, order, state, q);
     return true;
   }
@@ -87,12 +87,12 @@ class FreeDrift {
 
   /// For a remainder of 2^-64, by order n: the part of the radius of convergence, and x with x^n / n! = 2^-64.
   struct Enough {
-    double radii[most + 1], turn[most + 1];
+    double radii[most + 1], angle[most + 1];
     Enough() {
       double factorial = 1.0;
       for (int n = 1; n <= most; ++n) {
         factorial *= n;
-        radii[n] = math::fast_exp2(-64.0 / n), turn[n] = math::fast_pow(0x1p-64 * factorial, 1.0 / n);
+        radii[n] = math::fast_exp2(-64.0 / n), angle[n] = math::fast_pow(0x1p-64 * factorial, 1.0 / n);
       }
     }
   };

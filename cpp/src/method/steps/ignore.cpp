@@ -12,9 +12,9 @@ class Ignore {
   Ignore(const PrincipalBody& body, const Scene&) : body_(&body) {}
 
   bool advance(double h, const double* kick, double* L, double* q) {
-    double turn[3];
-    for (int i = 0; i < 3; ++i) L[i] += kick[i], turn[i] = h * (L[i] / body_->I[i]);
-    turn_by_vector(turn, q);
+    double rotation[3];
+    for (int i = 0; i < 3; ++i) L[i] += kick[i], rotation[i] = h * (L[i] / body_->I[i]);
+    rotate_by_vector(rotation, q);
     return true;
   }
 

@@ -18,9 +18,9 @@ class Jolt {
     for (int i = 0; i < 3; ++i) N[i] = L[i] + h * N[i];
     const double old_size = L[0] * L[0] + L[1] * L[1] + L[2] * L[2], size = N[0] * N[0] + N[1] * N[1] + N[2] * N[2];
     const double scale = size > 0.0 ? std::sqrt(old_size / size) : 1.0;
-    double turn[3];
-    for (int i = 0; i < 3; ++i) L[i] = N[i] * scale + kick[i], turn[i] = h * (L[i] / body_->I[i]);
-    turn_by_vector(turn, q);
+    double rotation[3];
+    for (int i = 0; i < 3; ++i) L[i] = N[i] * scale + kick[i], rotation[i] = h * (L[i] / body_->I[i]);
+    rotate_by_vector(rotation, q);
     return true;
   }
 

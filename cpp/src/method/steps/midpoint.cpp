@@ -41,7 +41,7 @@ class Midpoint {
     double g[3];
     cross(x, M, g);
     for (int i = 0; i < 3; ++i) L[i] -= 4 / h * g[i];
-    turn_by(p, q);
+    rotate_by(p, q);
     return true;
   }
 

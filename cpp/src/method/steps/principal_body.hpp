@@ -107,7 +107,7 @@ inline void cross(const double* a, const double* b, double* c) {
 }
 
 /// q = q p, normalised.
-inline void turn_by(const double* p, double* q) {
+inline void rotate_by(const double* p, double* q) {
   const double x = q[3] * p[0] + q[0] * p[3] + q[1] * p[2] - q[2] * p[1];
   const double y = q[3] * p[1] - q[0] * p[2] + q[1] * p[3] + q[2] * p[0];
   const double z = q[3] * p[2] + q[0] * p[1] - q[1] * p[0] + q[2] * p[3];
@@ -135,21 +135,21 @@ inline void exponential(const double* r, double* p) {
                                               (1 - x * (1.0 / 90) * (1 - x * (1.0 / 132) * (1 - x * (1.0 / 182)))))));
   } else {
     const double half = std::sqrt(x);
-    const math::SinCosPair turn = math::sincos(half);
-    s = 0.5 * turn.sin / half;
-    p[3] = turn.cos;
+    const math::SinCosPair unit = math::sincos(half);
+    s = 0.5 * unit.sin / half;
+    p[3] = unit.cos;
   }
   for (int i = 0; i < 3; ++i) p[i] = s * r[i];
 }
 
-inline void turn_by_vector(const double* r, double* q) {
+inline void rotate_by_vector(const double* r, double* q) {
   double p[4];
   exponential(r, p);
-  turn_by(p, q);
+  rotate_by(p, q);
 }
 
 /// v = R(p)^T v for a unit quaternion p: a vector fixed in space, in the axes of a body that has rotated by p.
-inline void turn_back(const double* p, double* v) {
+inline void rotate_back(const double* p, double* v) {
   double t[3], u[3];
   cross(v, p, t);
   for (int i = 0; i < 3; ++i) t[i] *= 2;

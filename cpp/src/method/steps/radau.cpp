@@ -51,10 +51,10 @@ class RadauStepper final : public ode::Stepper {
     const double* c = segment + 2;
     for (int i = 0; i < 3; ++i) out[i] = c[i] + s * (c[3 + i] + s * (c[6 + i] + s * c[9 + i]));
     std::copy_n(c + 12, 4, out + 3);
-    double w[12], turn[3];
+    double w[12], rotation[3];
     to_rates(segment[1], c, w);
-    compute_turn(w, segment[0], s, turn);
-    turn_by_vector(turn, out + 3);
+    compute_rotation_vector(w, segment[0], s, rotation);
+    rotate_by_vector(rotation, out + 3);
   }
 
   StepResult advance(double t_end) override {
@@ -161,9 +161,9 @@ class RadauStepper final : public ode::Stepper {
         for (int i = 0; i < 3; ++i) y[i] = y_[i] + Z[k][i];
         std::copy_n(y_ + 3, 4, y + 3);
         if (coupled_) {
-          double turn[3];
-          compute_turn(w, h, node[k], turn);
-          turn_by_vector(turn, y + 3);
+          double rotation[3];
+          compute_rotation_vector(w, h, node[k], rotation);
+          rotate_by_vector(rotation, y + 3);
         }
         compute(t_ + node[k] * h, y, F[k]);
       }
@@ -264,9 +264,9 @@ class RadauStepper final : public ode::Stepper {
     // The same formula for the integral of w(s). Only the cubic term contributes: sum of E_i node_i^4 / 4.
     constexpr auto fourth = [](double x) { return x * x * x * x; };
     constexpr double weight = (error[0] * fourth(node[0]) + error[1] * fourth(node[1]) + error[2]) / 4 / mu_real;
-    double w[12], turn[3], beyond[3];
+    double w[12], rotation[3], beyond[3];
     to_rates(segment_[1], c, w);
-    compute_turn(w, h, 1.0, turn, beyond);
+    compute_rotation_vector(w, h, 1.0, rotation, beyond);
     const double angle = 0.5 * std::max(std::abs(h * weight) * sum3(w + 9), sum3(beyond)) / (rtol_ + atol_);
     return rates > angle || rates != rates ? rates : angle;
   }

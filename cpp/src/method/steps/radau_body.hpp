@@ -139,9 +139,9 @@ class Body {
       return;
     }
     const double all = size[2] = std::max(std::abs(y[0]), std::abs(y[1])) + std::abs(y[2]);
-    const double least = 0x1p-200 * all, turn = separatrix_->rate().hi * y[2];
+    const double least = 0x1p-200 * all, speed = separatrix_->rate().hi * y[2];
     for (int i = 0; i < 2; ++i) {
-      const double driven = std::abs(f[i] - (i == 0 ? turn : -turn) * y[i]);
+      const double driven = std::abs(f[i] - (i == 0 ? speed : -speed) * y[i]);
       const double damped =
           std::abs(damping_[i][0] * y[0]) + std::abs(damping_[i][1] * y[1]) + std::abs(damping_[i][2] * y[2]);
       size[i] = std::clamp(std::abs(h) * std::max(driven, damped), std::max(std::abs(y[i]), least), all);

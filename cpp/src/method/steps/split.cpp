@@ -14,17 +14,17 @@ class Split {
   Split(const PrincipalBody& body, const Scene&) : body_(&body) {}
 
   bool advance(double h, const double*, double* L, double* q) {
-    turn(0, 0.5 * h, L, q);
-    turn(1, 0.5 * h, L, q);
-    turn(2, h, L, q);
-    turn(1, 0.5 * h, L, q);
-    turn(0, 0.5 * h, L, q);
+    rotate(0, 0.5 * h, L, q);
+    rotate(1, 0.5 * h, L, q);
+    rotate(2, h, L, q);
+    rotate(1, 0.5 * h, L, q);
+    rotate(0, 0.5 * h, L, q);
     return true;
   }
 
  private:
   /// The flow of L_i^2 / (2 I_i): the body rotates about axis i by a = h L_i / I_i, and L by -a.
-  void turn(int i, double h, double* L, double* q) const {
+  void rotate(int i, double h, double* L, double* q) const {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     const auto [s, c] = math::sincos(0.5 * h * (L[i] / body_->I[i]));
     const double sin_a = 2 * s * c, cos_a = 1 - 2 * s * s, Lj = L[j];
@@ -32,7 +32,7 @@ class Split {
     L[k] = cos_a * L[k] - sin_a * Lj;
     double p[4] = {0, 0, 0, c};
     p[i] = s;
-    turn_by(p, q);
+    rotate_by(p, q);
   }
 
   const PrincipalBody* body_;

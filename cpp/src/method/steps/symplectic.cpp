@@ -56,13 +56,13 @@ class ExactDrift {
       return true;
     }
     if (axis_ >= 0) {
-      turn_symmetric(h, L, p);
+      rotate_symmetric(h, L, p);
     } else {
       const State end = FreeMotion(inertia_, {L[0] / I_[0], L[1] / I_[1], L[2] / I_[2]}).at(h);
       p[0] = end.attitude.x, p[1] = end.attitude.y, p[2] = end.attitude.z, p[3] = end.attitude.w;
     }
-    turn_by(p, q);
-    turn_back(p, L);
+    rotate_by(p, q);
+    rotate_back(p, L);
     if (series_) {
       for (int i = 0; i < 3; ++i) w[i] = L[i] / I_[i];
       series_->start(w, L + 3);
@@ -72,7 +72,7 @@ class ExactDrift {
 
  private:
   /// Regular precession: a rotation about L by |L| h / I1, then about the axis by (1 - I3/I1) w3 h.
-  void turn_symmetric(double h, const double* L, double* p) const {
+  void rotate_symmetric(double h, const double* L, double* p) const {
     const double across = I_[(axis_ + 1) % 3];
     double r[3], spin[4] = {0, 0, 0, 1};
     for (int i = 0; i < 3; ++i) r[i] = h * (L[i] / across);
@@ -80,7 +80,7 @@ class ExactDrift {
     const math::SinCosPair half = math::sincos(0.5 * h * (L[axis_] / I_[axis_]) * ((across - I_[axis_]) / across));
     spin[axis_] = half.sin;
     spin[3] = half.cos;
-    turn_by(spin, p);
+    rotate_by(spin, p);
   }
 
   InertiaTensor inertia_;

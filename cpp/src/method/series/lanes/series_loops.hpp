@@ -100,7 +100,7 @@ template <bool separatrix, bool attitude, int fixed, bool gradient>
 class Expansion {
   static constexpr int vectors = fixed + (gradient ? 2 : 0), kept = vectors > 0 ? vectors : 1;
   // (q times k, rates) with (w3, rates); (q times i, q times j) with (w1, w2); u with itself; vectors with the rates
-  static constexpr int mixed = 0, turn = 1, pair = turn + attitude, carried = pair + gradient,
+  static constexpr int mixed = 0, with_vector = 1, pair = with_vector + attitude, carried = pair + gradient,
                        count = carried + vectors;
 
  public:
@@ -186,7 +186,7 @@ class Expansion {
     }
 
     if constexpr (attitude)
-      advance_attitude<early>(n, low(older[turn]) + high(older[turn]) + low(older[mixed]), inverse);
+      advance_attitude<early>(n, low(older[with_vector]) + high(older[with_vector]) + low(older[mixed]), inverse);
     advance_rates<early>(n, high(older[mixed]), tau, inverse);
     for (int i = 0; i < vectors; ++i) v_[i] = next_v[i] * inverse;
     put(n + 1, products);
@@ -251,7 +251,7 @@ class Expansion {
     }
     if constexpr (attitude) {
       const Quad i = permute<3, 2, 1, 0>(q_) ^ signs(0), j = permute<2, 3, 0, 1>(q_) ^ signs(1);
-      products.put(turn, n, join(i, j), spread<0, 0, 0, 0, 1, 1, 1, 1>(w_));
+      products.put(with_vector, n, join(i, j), spread<0, 0, 0, 0, 1, 1, 1, 1>(w_));
       products.put(mixed, n, join(permute<1, 0, 3, 2>(q_) ^ signs(2), left_), join(broadcast<2>(w_), right_));
     } else {
       products.put(mixed, n, join(left_, left_), join(right_, right_));
