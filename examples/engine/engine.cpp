@@ -73,43 +73,43 @@ void collide(Box& b) {
       const Vec n{wall / 2 == 0 ? side : 0, wall / 2 == 1 ? side : 0, wall / 2 == 2 ? side : 0};   // into the room
       const float approach = dot(b.v + cross(rates(b), r), n);
       if (dot(p, n) > -room || approach >= 0) continue;
-      const Vec rn = cross(r, n), turned = to_space(b.q, polhode::step::rates(b.inertia, to_body(b.q, rn)));
-      const float impulse = -2 * approach / (1 / b.mass + dot(rn, turned));
+      const Vec rn = cross(r, n), change = to_space(b.q, polhode::step::rates(b.inertia, to_body(b.q, rn)));
+      const float impulse = -2 * approach / (1 / b.mass + dot(rn, change));
       b.v = b.v + (impulse / b.mass) * n;
       polhode::step::kick(b.L, rn, impulse);   // L += r x impulse
     }
   }
 }
 
-// ---- ways to turn a box over h
+// ---- ways to rotate a box over h
 
-void turn_free(Box& b) { polhode::step::drift_space(b.inertia, h, b.L, b.q); }
+void rotate_free(Box& b) { polhode::step::drift_space(b.inertia, h, b.L, b.q); }
 
-/// The attitude turned by the body's rates over h, w_B; then L_B as it comes out, in space.
-void turn_with(Box& b, Vec L_B) {
+/// The attitude rotated by the body's rates over h, w_B; then L_B as it comes out, in space.
+void rotate_with(Box& b, Vec L_B) {
   const Vec w = polhode::step::rates(b.inertia, L_B);
   const float angle = h * std::sqrt(dot(w, w)), s = angle > 1e-6f ? std::sin(angle / 2) / angle * h : h / 2;
-  b.q = polhode::step::turn_by(b.q, Quat{s * w.x, s * w.y, s * w.z, std::cos(angle / 2)});
+  b.q = polhode::step::compose(b.q, Quat{s * w.x, s * w.y, s * w.z, std::cos(angle / 2)});
   b.L = to_space(b.q, L_B);
 }
 
-void turn_ignoring(Box& b) { turn_with(b, to_body(b.q, b.L)); }   // omega kept in the body
+void rotate_ignoring(Box& b) { rotate_with(b, to_body(b.q, b.L)); }   // omega kept in the body
 
 /// Jolt Physics, MotionProperties::ApplyGyroscopicForceInternal.
-void turn_jolt(Box& b) {
+void rotate_jolt(Box& b) {
   const Vec L = to_body(b.q, b.L), N = L - h * cross(polhode::step::rates(b.inertia, L), L);
-  turn_with(b, std::sqrt(dot(L, L) / dot(N, N)) * N);
+  rotate_with(b, std::sqrt(dot(L, L) / dot(N, N)) * N);
 }
 
 /// Catto 2015, GDC, Numerical Methods: one Newton step of implicit Euler, by Cramer's rule.
-void turn_catto(Box& b) {
+void rotate_catto(Box& b) {
   const Vec L = to_body(b.q, b.L), w = polhode::step::rates(b.inertia, L), I = b.moments, f = h * cross(w, L);
   const Vec c0{I.x, h * (w.z * I.x - L.z), h * (L.y - w.y * I.x)};
   const Vec c1{h * (L.z - w.z * I.y), I.y, h * (w.x * I.y - L.x)};
   const Vec c2{h * (w.y * I.z - L.y), h * (L.x - w.x * I.z), I.z};   // the columns of the Jacobian
   const float d = dot(c0, cross(c1, c2));
   const Vec dw = (1 / d) * Vec{dot(f, cross(c1, c2)), dot(c0, cross(f, c2)), dot(c0, cross(c1, f))};
-  turn_with(b, L - Vec{I.x * dw.x, I.y * dw.y, I.z * dw.z});
+  rotate_with(b, L - Vec{I.x * dw.x, I.y * dw.y, I.z * dw.z});
 }
 
 }  // namespace
@@ -119,11 +119,13 @@ int main(int arguments, char** values) {
   constexpr int boxes = 32;
   struct Way {
     const char* name;
-    void (*turn)(Box&);
+    void (*rotate)(Box&);
   };
   std::printf("median and largest |energy / start - 1| of %d boxes\n%8s", boxes, "seconds");
-  const Way ways[] = {
-      {"free step", turn_free}, {"jolt", turn_jolt}, {"catto", turn_catto}, {"no gyroscopic term", turn_ignoring}};
+  const Way ways[] = {{"free step", rotate_free},
+                      {"jolt", rotate_jolt},
+                      {"catto", rotate_catto},
+                      {"no gyroscopic term", rotate_ignoring}};
   for (const Way& way : ways) std::printf("  %20s", way.name);
   std::printf("\n");
 
@@ -144,7 +146,7 @@ int main(int arguments, char** values) {
         for (int step = 0; step < 60; ++step) {
           b.v.z -= h / 2 * gravity;   // half a kick, the drift, half a kick
           b.x = b.x + h * b.v;
-          ways[way].turn(b);
+          ways[way].rotate(b);
           b.v.z -= h / 2 * gravity;
           collide(b);
         }

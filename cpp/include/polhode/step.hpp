@@ -122,7 +122,8 @@ template <class T> POLHODE_STEP void kick(Vec<T>& L, const Vec<T>& torque, As<T>
 }
 
 /// R(p)^T v. What the length of p lacks to 1 is taken out, and small terms are summed first: |v| hardly drifts.
-template <class T> POLHODE_STEP Vec<T> turn_back(const Quat<T>& p, const Vec<T>& v) {
+template <class T>
+POLHODE_STEP Vec<T> rotate_back(const Quat<T>& p, const Vec<T>& v) {
   using O = Ops<T>;
   const T ww = O::madd(-p.w, p.w, O::set(1)), two = O::set(2);
   const T k = O::madd(-p.x, p.x, O::madd(-p.y, p.y, O::madd(-p.z, p.z, ww)));
@@ -133,7 +134,8 @@ template <class T> POLHODE_STEP Vec<T> turn_back(const Quat<T>& p, const Vec<T>&
 }
 
 /// q p, of length 1. p is scaled first and the large terms are added last, so each component is rounded once.
-template <class T> POLHODE_STEP Quat<T> turn_by(const Quat<T>& q, const Quat<T>& p) {
+template <class T>
+POLHODE_STEP Quat<T> compose(const Quat<T>& q, const Quat<T>& p) {
   using O = Ops<T>;
   const T s = O::madd(q.x, q.x, O::madd(q.y, q.y, O::madd(q.z, q.z, q.w * q.w))), k = O::set(0.5) - O::set(0.5) * s;
   const T x = O::madd(k, p.x, p.x), y = O::madd(k, p.y, p.y), z = O::madd(k, p.z, p.z), w = O::madd(k, p.w, p.w);
@@ -171,12 +173,13 @@ template <class T> POLHODE_STEP void circle(T angle, T& c, T& s) {
   s = O::madd(r * z, s, r), c = O::madd(z, c, O::set(1));
 }
 
-/// The turn of the free body over a step h, a unit quaternion in principal axes. y = (h / 4) L / I_max.
-/// Weierstrass's wp with roots -K_i gives the polhode, Lame's equation (n = 1) the turn about L: DLMF 23.9, 23.10 and
+/// The rotation of the free body over a step h, a unit quaternion in principal axes. y = (h / 4) L / I_max.
+/// Weierstrass's wp with roots -K_i gives the polhode, Lame's equation (n = 1) the angle about L: DLMF 23.9, 23.10 and
 /// Whittaker & Watson, sec. 23.7. Both are series at a quarter of the step, doubled by their addition theorems. T and
-/// |L| are kept for any value of the series, because f_i^2 - f_j^2 = K_i - K_j is all that the polhode uses. The turn
-/// has the form of Moser and Veselov's discrete body (Hairer & Vilmart 2006, J. Phys. A 39, 13225).
-template <int N = 0, class T> POLHODE_STEP Quat<T> free_turn(const Inertia<T>& body, const Vec<T>& y) {
+/// |L| are kept for any value of the series, because f_i^2 - f_j^2 = K_i - K_j is all that the polhode uses. The
+/// rotation has the form of Moser and Veselov's discrete body (Hairer & Vilmart 2006, J. Phys. A 39, 13225).
+template <int N = 0, class T>
+POLHODE_STEP Quat<T> free_rotation(const Inertia<T>& body, const Vec<T>& y) {
   using O = Ops<T>;
   constexpr int terms = N != 0 ? N : O::single ? 3 : 5;
   static_assert(terms >= 2 && terms <= 5, "series of 2 to 5 terms");
@@ -191,7 +194,7 @@ template <int N = 0, class T> POLHODE_STEP Quat<T> free_turn(const Inertia<T>& b
   T pm = set(1.0 / 3) * madd(g2x, g3x, madd(g3y, g1y, madd(g1z, g2z, least)));
   T K1 = madd(g2x, g3x, -pm), K2 = madd(g3y, g1y, -pm), K3 = madd(g1z, g2z, -pm), s = one;
   T kk = madd(K1, K1, madd(K2, K2, madd(K3, K3, least)));
-  // Where it turns by more than about 1.4 rad in h / 4: a slower body on the same polhode, of moments u + s (a - u).
+  // Where it rotates by more than about 1.4 rad in h / 4: a slower body on the same polhode, of moments u + s (a - u).
   bool fast = true;
   if constexpr (O::scalar) fast = two < kk;
   if (fast) {
@@ -258,31 +261,31 @@ template <int N = 0, class T> POLHODE_STEP Quat<T> free_turn(const Inertia<T>& b
 /// Moves the body by h: L in principal axes, q principal axes to space.
 template <int N = 0, class T> POLHODE_STEP void drift_body(const Inertia<T>& body, As<T> h, Vec<T>& L, Quat<T>& q) {
   const T k = Ops<T>::set(0.25) * h * body.scale;
-  const Quat<T> p = free_turn<N>(body, Vec<T>{k * L.x, k * L.y, k * L.z});
-  L = turn_back(p, L), q = turn_by(q, p);
+  const Quat<T> p = free_rotation<N>(body, Vec<T>{k * L.x, k * L.y, k * L.z});
+  L = rotate_back(p, L), q = compose(q, p);
 }
 
 /// Moves the body by h: L in space, where it does not change.
 template <int N = 0, class T>
 POLHODE_STEP void drift_space(const Inertia<T>& body, As<T> h, const Vec<T>& L, Quat<T>& q) {
   const T k = Ops<T>::set(0.25) * h * body.scale;
-  const Vec<T> y = turn_back(q, L);
-  q = turn_by(q, free_turn<N>(body, Vec<T>{k * y.x, k * y.y, k * y.z}));
+  const Vec<T> y = rotate_back(q, L);
+  q = compose(q, free_rotation<N>(body, Vec<T>{k * y.x, k * y.y, k * y.z}));
 }
 
-/// From a full tensor, by Jacobi's method with its turns as quaternions. For float and double; once for each body.
+/// From a full tensor, by Jacobi's method with its rotations as quaternions. For float and double; once for each body.
 template <class T> Principal<T> make_principal(T xx, T yy, T zz, T xy, T xz, T yz) {
   Quat<T> q{0, 0, 0, 1};
   T m[6] = {xx, yy, zz, yz, xz, xy};   // m[3 + k]: off the diagonal, opposite to k
-  for (int turn = 0; turn < 24; ++turn) {
-    const int k = turn % 3, i = (k + 1) % 3, j = (k + 2) % 3;
+  for (int step = 0; step < 24; ++step) {
+    const int k = step % 3, i = (k + 1) % 3, j = (k + 2) % 3;
     const T off = m[3 + k], gap = (m[j] - m[i]) / 2;
     if (off == 0) continue;
     const T t = off / (gap + (gap < 0 ? T(-1) : T(1)) * std::sqrt(gap * gap + off * off));   // tan of the angle
     const T c = 1 / std::sqrt(1 + t * t), s = t * c, mi = m[3 + i], mj = m[3 + j], half = std::sqrt((1 + c) / 2);
     m[i] -= t * off, m[j] += t * off, m[3 + k] = 0, m[3 + i] = c * mi + s * mj, m[3 + j] = c * mj - s * mi;
     const T v = -s / (2 * half);
-    q = turn_by(q, Quat<T>{k == 0 ? v : 0, k == 1 ? v : 0, k == 2 ? v : 0, half});
+    q = compose(q, Quat<T>{k == 0 ? v : 0, k == 1 ? v : 0, k == 2 ? v : 0, half});
   }
   return {make_inertia(m[0], m[1], m[2]), q};
 }
@@ -291,9 +294,9 @@ template <class T> Principal<T> make_principal(T xx, T yy, T zz, T xy, T xz, T y
 template <int N = 0, class T>
 POLHODE_STEP void drift_space(const Principal<T>& body, As<T> h, const Vec<T>& L, Quat<T>& q) {
   const Quat<T>& b = body.q_BP;
-  Quat<T> q_WP = turn_by(q, b);
+  Quat<T> q_WP = compose(q, b);
   drift_space<N>(body.inertia, h, L, q_WP);
-  q = turn_by(q_WP, Quat<T>{-b.x, -b.y, -b.z, b.w});
+  q = compose(q_WP, Quat<T>{-b.x, -b.y, -b.z, b.w});
 }
 
 }  // namespace polhode::step

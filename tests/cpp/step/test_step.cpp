@@ -77,10 +77,10 @@ step::Inertia<T> make(const double* I) {
 }
 
 template <int N, class T>
-step::Quat<T> turn(const double* I, const double* L, double h) {
+step::Quat<T> rotation(const double* I, const double* L, double h) {
   const auto body = make<T>(I);
   const T k = static_cast<T>(h / 4) * body.scale;
-  return step::free_turn<N>(body, step::Vec<T>{k * static_cast<T>(L[0]), k * static_cast<T>(L[1]),
+  return step::free_rotation<N>(body, step::Vec<T>{k * static_cast<T>(L[0]), k * static_cast<T>(L[1]),
                                                k * static_cast<T>(L[2])});
 }
 
@@ -113,20 +113,20 @@ double largest_error(double h) {
     const Vector3d w{body.L[0] / body.I[0], body.L[1] / body.I[1], body.L[2] / body.I[2]};
     const State end = FreeMotion(InertiaTensor::from_moments({body.I[0], body.I[1], body.I[2]}), w).at(h);
     const double q[4] = {end.attitude.x, end.attitude.y, end.attitude.z, end.attitude.w};
-    worst = std::max(worst, compute_angle(turn<N, double>(body.I, body.L, h), q));
+    worst = std::max(worst, compute_angle(rotation<N, double>(body.I, body.L, h), q));
   }
   return worst;
 }
 
 }  // namespace
 
-TEST_CASE("free step: the turn of stored bodies, float64 and float32, against mpmath") {
+TEST_CASE("free step: the rotation of stored bodies, float64 and float32, against mpmath") {
   for (const Case& c : read_cases()) {
     CAPTURE(c.kind);
     CAPTURE(c.h);
     const bool long_step = std::abs(c.h) > 0.9 && c.kind != "sphere" && c.kind != "principal" && c.kind != "racket";
-    CHECK(compute_angle(turn<5, double>(c.I, c.L, c.h), c.p) < (long_step ? 2e-11 : 4e-15));
-    CHECK(compute_angle(turn<3, float>(c.I, c.L, c.h), c.p) < (c.kind == "needle" ? 1e-5 : 2e-6));
+    CHECK(compute_angle(rotation<5, double>(c.I, c.L, c.h), c.p) < (long_step ? 2e-11 : 4e-15));
+    CHECK(compute_angle(rotation<3, float>(c.I, c.L, c.h), c.p) < (c.kind == "needle" ? 1e-5 : 2e-6));
   }
   CHECK(read_cases().size() == 33);
 }
@@ -161,10 +161,10 @@ TEST_CASE_TEMPLATE("free step: energy, |L| and L in space of each step, up to 10
         const double z = static_cast<double>(values[i][2]);
         sizes[i] = std::sqrt(x * x + y * y + z * z), energies[i] = energy(body.I, x, y, z);
       }
-      // A long step turns by |omega| h, whose own rounding is |omega| h eps: it moves L along the polhode alone.
+      // A long step rotates by |omega| h, whose own rounding is |omega| h eps: it moves L along the polhode alone.
       CHECK(std::abs(energies[1] / energies[0] - 1) < 20 * rounding<T>);
       CHECK(std::abs(sizes[1] / sizes[0] - 1) < 8 * rounding<T>);
-      const step::Vec<T> back = step::turn_back(step::Quat<T>{-q.x, -q.y, -q.z, q.w}, end);
+      const step::Vec<T> back = step::rotate_back(step::Quat<T>{-q.x, -q.y, -q.z, q.w}, end);
       CHECK(std::abs(static_cast<double>(back.x - L.x)) < 8 * rounding<T> * sizes[0]);
       CHECK(std::abs(static_cast<double>(back.z - L.z)) < 8 * rounding<T> * sizes[0]);
     }
@@ -189,13 +189,13 @@ TEST_CASE("free step: a step and its opposite are the identity; spheres, princip
   const FreeMotion truth(InertiaTensor::from_moments({0.4, 0.2, 0.4}), {0.25, 0.75, -0.5});
   const State end = truth.at(1.0);
   const double q[4] = {end.attitude.x, end.attitude.y, end.attitude.z, end.attitude.w};
-  CHECK(compute_angle(turn<5, double>(symmetric, L, 1.0), q) < 1e-14);
+  CHECK(compute_angle(rotation<5, double>(symmetric, L, 1.0), q) < 1e-14);
   for (int axis = 0; axis < 3; ++axis) {
     const double I[3] = {0.2, 0.4, 0.5};
     double spin[3] = {0, 0, 0}, half[4] = {0, 0, 0, std::cos(15.0)};
     spin[axis] = I[axis], half[axis] = std::sin(15.0);
-    CHECK(compute_angle(turn<5, double>(I, spin, 30.0), half) < 4e-14);
-    CHECK(compute_angle(turn<3, float>(I, spin, 30.0), half) < 2e-5);
+    CHECK(compute_angle(rotation<5, double>(I, spin, 30.0), half) < 4e-14);
+    CHECK(compute_angle(rotation<3, float>(I, spin, 30.0), half) < 2e-5);
   }
 }
 
@@ -212,7 +212,7 @@ TEST_CASE_TEMPLATE("free step: never a number that is not finite, whatever the b
     if (k % 11 == 0) L[1] = L[2] = 0;
     if (k % 101 == 0) L[0] = L[1] = L[2] = 0;
     if (k % 7 == 0) I[1] = I[0];
-    const auto p = turn<0, T>(I, L, std::pow(10.0, 4 - 30 * even(bits) * (k % 3 == 0)));
+    const auto p = rotation<0, T>(I, L, std::pow(10.0, 4 - 30 * even(bits) * (k % 3 == 0)));
     const double zero[4] = {0, 0, 0, 0};
     wrong += !(std::abs(compute_angle(p, zero) - 4 * std::asin(0.5)) < 1e-5);   // |p| = 1
   }
@@ -263,12 +263,12 @@ TEST_CASE_TEMPLATE("free step: full tensors, vectors of lanes", T, float, double
     CHECK(compute_angle(q, lane) < 20 * rounding<T>);
     CHECK(std::abs(static_cast<double>(L.y - wide_L.y[2])) < 10 * rounding<T>);
 
-    // The same body in axes turned by b: its tensor is R diag(I) R^T.
+    // The same body in axes rotated by b: its tensor is R diag(I) R^T.
     const step::Quat<double> b{0.1, -0.3, 0.5, std::sqrt(1 - 0.35)};
     double M[3][3] = {};
     for (int i = 0; i < 3; ++i) {
       const step::Vec<double> axis{i == 0 ? 1.0 : 0.0, i == 1 ? 1.0 : 0.0, i == 2 ? 1.0 : 0.0};
-      const step::Vec<double> e = step::turn_back(step::Quat<double>{-b.x, -b.y, -b.z, b.w}, axis);
+      const step::Vec<double> e = step::rotate_back(step::Quat<double>{-b.x, -b.y, -b.z, b.w}, axis);
       const double v[3] = {e.x, e.y, e.z};
       for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 3; ++c) M[r][c] += body.I[i] * v[r] * v[c];
