@@ -62,9 +62,12 @@ int main() {
     for (std::size_t i = 0; i < n; ++i) times[i] = 1e-3 * static_cast<double>((i * 2654435761u) % 1000003u);
     const double state = least(2000, [&] { top.at(times.data(), n, omega.data(), attitude.data()); }) / n;
     double kept = 0;
-    const double set_up = least(2000, [&] {
-      for (int i = 0; i < 20; ++i) kept += HeavyTop(c.moments, c.arm, c.omega, c.attitude).constants().turn;
-    }) / 20;
+    const double set_up = least(2000,
+                                [&] {
+                                  for (int i = 0; i < 20; ++i)
+                                    kept += HeavyTop(c.moments, c.arm, c.omega, c.attitude).constants().sum_k;
+                                }) /
+                          20;
     const State s = top.at(c.t);
     const Quat d = conjugate(s.attitude) * c.attitude_t;
     std::printf("%-26s %14.1f %14.2f %10.1e %10.1e%s\n", c.name, state, set_up * 1e-3, 2 * std::hypot(d.x, d.y, d.z),

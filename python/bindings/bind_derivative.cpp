@@ -16,9 +16,9 @@
 namespace polhode::python {
 namespace {
 
-TurnSide to_turn_side(const std::string& side) {
-  if (side == "space") return TurnSide::space;
-  if (side == "body") return TurnSide::body;
+RotationSide to_rotation_side(const std::string& side) {
+  if (side == "space") return RotationSide::space;
+  if (side == "body") return RotationSide::body;
   throw InvalidInput("side", "'space' or 'body'", "'" + side + "'");
 }
 
@@ -34,7 +34,7 @@ struct FoundSensitivity {
 FoundSensitivity sensitivity_of(const Scene& scene, const std::vector<std::string>& groups, double accuracy,
                          bool certify, const std::string& side, long max_steps) {
   const SensitivityOptions options{
-      .accuracy = accuracy, .certify = certify, .side = to_turn_side(side), .max_steps = max_steps};
+      .accuracy = accuracy, .certify = certify, .side = to_rotation_side(side), .max_steps = max_steps};
   MotionSensitivity found;
   {
     const WithoutGil nogil;

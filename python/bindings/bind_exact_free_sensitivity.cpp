@@ -28,9 +28,9 @@ std::vector<SensitivityTo> to_wrt(py::handle given) {
   return wrt;
 }
 
-TurnSide to_side(const std::string& side) {
-  if (side == "space") return TurnSide::space;
-  if (side == "body") return TurnSide::body;
+RotationSide to_side(const std::string& side) {
+  if (side == "space") return RotationSide::space;
+  if (side == "body") return RotationSide::body;
   throw InvalidInput("side", "'space' or 'body'", "'" + side + "'");
 }
 
@@ -65,7 +65,7 @@ std::size_t batch_free_sensitivity(const py::object& inertia, const Array& omega
   Array moments;
   const auto batch = make_batch<FreeMotionBatch>(inertia, moments, omega, attitude, t);
   const std::vector<SensitivityTo> to = to_wrt(wrt);
-  const TurnSide which = to_side(side);
+  const RotationSide which = to_side(side);
   double *a = w.mutable_data(), *b = q.mutable_data(), *c = d_w.mutable_data(), *d = d_q.mutable_data();
   const WithoutGil nogil;
   return free_sensitivity(batch, to, which, a, b, c, d, threads);

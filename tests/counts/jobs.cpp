@@ -122,15 +122,14 @@ const std::vector<std::pair<const char*, std::function<void()>>> jobs = {
     {"free motion: any times", [] { free_motion(one(spin, times), w.data(), q.data(), 1); }},
     {"free motion: uniform grid", [] { free_motion(one(spin, grid), w.data(), q.data(), 1); }},
     {"free motion: near the separatrix", [] { free_motion(one(racket, times), w.data(), q.data(), 1); }},
-    {"free motion: float32",
-     [] { free_motion(one(spin, times), {.single = {w32.data(), q32.data(), nullptr}}, 1); }},
+    {"free motion: float32", [] { free_motion(one(spin, times), {.single = {w32.data(), q32.data(), nullptr}}, 1); }},
     {"free motion: directions",
      [] { free_motion(one(spin, times), {.rows = {nullptr, nullptr, d.data()}, .vector = spin}, 1); }},
     {"free motion: a body at one time each", [] { free_motion(each(many, 1, true), w.data(), q.data(), 1); }},
     {"free motion: bodies x times", [] { free_motion(each(32, 128, false), w.data(), q.data(), 1); }},
     {"free motion: derivatives",
      [] {
-       free_sensitivity(one(spin, times), {SensitivityTo::omega}, TurnSide::body, w.data(), q.data(), jw.data(),
+       free_sensitivity(one(spin, times), {SensitivityTo::omega}, RotationSide::body, w.data(), q.data(), jw.data(),
                         jq.data(), 1);
      }},
     {"FreeMotion: set-up",

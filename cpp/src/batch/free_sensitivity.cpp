@@ -124,8 +124,8 @@ class ColumnsRun {
 
 }  // namespace
 
-std::size_t free_sensitivity(const FreeMotionBatch& given, std::vector<SensitivityTo> wrt, TurnSide side, double* omega,
-                             double* attitude, double* d_omega, double* d_attitude, int threads) {
+std::size_t free_sensitivity(const FreeMotionBatch& given, std::vector<SensitivityTo> wrt, RotationSide side,
+                             double* omega, double* attitude, double* d_omega, double* d_attitude, int threads) {
   exact::check_wrt(wrt);
   if (given.bodies == 0 || given.times == 0) return 0;
   FreeMotionBatch batch = given;

@@ -120,7 +120,7 @@ struct Rows {
     if (rows.direction) std::fill_n(rows.direction, 3 * count, nan);
   }
 
-  /// Whether the body's vector can be turned.
+  /// Whether the body's vector can be rotated.
   bool follows(std::size_t body) const { return !out.has_direction() || within(out.vector + 3 * body, 3, 1e300); }
 
   template <class Evaluate, class Single>
@@ -135,10 +135,10 @@ struct Rows {
     constexpr std::size_t most = 4 * exact::TimeGrid::block;
     double omega[3 * most], attitude[4 * most];
     const bool rates = at.rows.omega || at.single.omega;
-    const bool turns = at.rows.attitude || at.single.attitude || out.has_direction();
+    const bool attitudes = at.rows.attitude || at.single.attitude || out.has_direction();
     for (std::size_t i = 0; i < part.n; i += most) {
       const std::size_t n = std::min(most, part.n - i);
-      evaluate(part.piece(i, n), rates ? omega : nullptr, turns ? attitude : nullptr);
+      evaluate(part.piece(i, n), rates ? omega : nullptr, attitudes ? attitude : nullptr);
       write(body, body * times + begin + i, n, omega, attitude);
     }
   }
@@ -151,11 +151,11 @@ struct Rows {
     if (at.rows.attitude) std::copy_n(attitude, 4 * n, at.rows.attitude);
     if (at.single.omega) kernels.narrow(omega, 3 * n, at.single.omega);
     if (at.single.attitude) kernels.narrow(attitude, 4 * n, at.single.attitude);
-    if (at.rows.direction) kernels.turn(out.vector + 3 * body, attitude, n, out.from_space, at.rows.direction);
+    if (at.rows.direction) kernels.rotate(out.vector + 3 * body, attitude, n, out.from_space, at.rows.direction);
     if (at.single.direction) {
-      std::vector<double> turned(3 * n);
-      kernels.turn(out.vector + 3 * body, attitude, n, out.from_space, turned.data());
-      kernels.narrow(turned.data(), 3 * n, at.single.direction);
+      std::vector<double> rotated(3 * n);
+      kernels.rotate(out.vector + 3 * body, attitude, n, out.from_space, rotated.data());
+      kernels.narrow(rotated.data(), 3 * n, at.single.direction);
     }
   }
 };

@@ -83,8 +83,11 @@ class SampleTarget {
 
 }  // namespace
 
-ColumnRun::ColumnRun(const Scene& scene, const std::vector<SceneParameter>& parameters, TurnSide side)
-    : scene_(scene), parameters_(parameters), side_(side), pieces_(cut(scene, find_further_ends(scene))),
+ColumnRun::ColumnRun(const Scene& scene, const std::vector<SceneParameter>& parameters, RotationSide side)
+    : scene_(scene),
+      parameters_(parameters),
+      side_(side),
+      pieces_(cut(scene, find_further_ends(scene))),
       states_(static_cast<std::size_t>(scene.count_states())) {
   const Matrix3d& R_BP = scene.inertia_B().axes();
   J_inverse_ = R_BP * Matrix3d(scene.inertia_B().moments().cwiseInverse().asDiagonal()) * R_BP.transpose();
@@ -164,7 +167,7 @@ std::vector<double> ColumnRun::start_columns() const {
     if (parameters_[c].of == Of::omega) start.add(0, c, unit);
     if (parameters_[c].of == Of::state) start.at(6 + parameters_[c].index, c) = 1.0;
     if (parameters_[c].of == Of::attitude)
-      start.add(3, c, side_ == TurnSide::body ? unit : rotate(conjugate(scene_.attitude()), unit));
+      start.add(3, c, side_ == RotationSide::body ? unit : rotate(conjugate(scene_.attitude()), unit));
   }
   return std::move(start.columns);
 }

@@ -24,7 +24,7 @@ struct ColumnSamples {
 class ColumnRun {
  public:
   /// @param side  of the small rotations of the start
-  ColumnRun(const Scene& scene, const std::vector<SceneParameter>& parameters, TurnSide side);
+  ColumnRun(const Scene& scene, const std::vector<SceneParameter>& parameters, RotationSide side);
 
   /// @param most  compute about so many samples in each direction of time, the last among them; 0: all
   /// @throws IntegrationFailure if it does not reach its end
@@ -48,7 +48,7 @@ class ColumnRun {
 
   const Scene& scene_;
   const std::vector<SceneParameter>& parameters_;
-  TurnSide side_;
+  RotationSide side_;
   Pieces pieces_;
   std::size_t states_;                   ///< numbers of the states of formulas
   Matrix3d J_inverse_;

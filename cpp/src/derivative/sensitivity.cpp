@@ -178,7 +178,7 @@ MotionSensitivity integrate_columns(const Scene& given, const std::vector<SceneP
   found.omega = std::move(last.omega), found.attitude = std::move(last.attitude);
   found.d_omega = std::move(last.d_omega), found.d_attitude = std::move(last.turn);
   found.d_states = std::move(last.d_states);
-  if (options.side == TurnSide::space) turn_to_space(found.attitude, parameters.size(), found.d_attitude);
+  if (options.side == RotationSide::space) turn_to_space(found.attitude, parameters.size(), found.d_attitude);
   return found;
 }
 

@@ -14,7 +14,7 @@ namespace polhode {
 namespace {
 
 constexpr double most_exponent = 700.0;   // of e^-ct
-constexpr double most_turned = 1e25;      // |omega s| [rad], as for FreeMotion
+constexpr double largest_swept = 1e25;     // |omega s| [rad], as for FreeMotion
 
 }  // namespace
 
@@ -42,7 +42,7 @@ void DampedFree::check_time(double t) const {
   const double exponent = -damping_ * t, rate = omega().norm();
   if (rate == 0.0) return;
   const double angle = exponent > most_exponent ? std::numeric_limits<double>::infinity() : rate * slowed_time(t);
-  if (std::abs(angle) <= most_turned && (exponent <= 0.0 || rate * math::exp(exponent) < 1e300)) return;
+  if (std::abs(angle) <= largest_swept && (exponent <= 0.0 || rate * math::exp(exponent) < 1e300)) return;
   if (exponent <= 0.0) {
     throw InvalidInput("t", "such that |omega s| <= 1e25 rad", to_text(t) + " s",
                        "beyond this the phase has no reliable digits");

@@ -51,8 +51,8 @@ Vector3d euler_angles_about(const Vector3d& momentum_W, const Quat& q_WB) {
   const Quat q_LB = conjugate(shortest_rotation_to(momentum_W)) * q_WB;
   const double sum = math::atan2(q_LB.z, q_LB.w), difference = math::atan2(q_LB.y, q_LB.x);
   const double theta = 2.0 * math::atan2(math::hypot(q_LB.x, q_LB.y), math::hypot(q_LB.z, q_LB.w));
-  constexpr double turn = 2.0 * std::numbers::pi;
-  return {std::remainder(sum + difference, turn), theta, std::remainder(sum - difference, turn)};
+  constexpr double full_turn = 2.0 * std::numbers::pi;
+  return {std::remainder(sum + difference, full_turn), theta, std::remainder(sum - difference, full_turn)};
 }
 
 }  // namespace polhode::exact

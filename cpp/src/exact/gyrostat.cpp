@@ -20,13 +20,13 @@ namespace {
 using exact::GyrostatStart;
 using math::DD;
 
-constexpr double most_turning = 1e25;  // rad: beyond it the phase has no reliable digits
+constexpr double largest_angle = 1e25;  // rad: beyond it the phase has no reliable digits
 
 std::string triple(const Vector3d& v) {
   return "(" + to_text(v[0]) + ", " + to_text(v[1]) + ", " + to_text(v[2]) + ")";
 }
 
-/// With two equal moments the axes are turned about the third until h has one component across it. Returns the
+/// With two equal moments the axes are rotated about the third until h has one component across it. Returns the
 /// rotation from working to principal axes.
 Matrix3d align(GyrostatStart& s) {
   Matrix3d M = Matrix3d::Identity();
@@ -110,7 +110,7 @@ void Gyrostat::set_up() {
   GyrostatStart start{};
   for (int a = 0; a < 3; ++a) {
     start.J[a] = J[a], start.w[a] = w[a];
-    // A smaller part turns nothing by an ulp within 1e25 rad; its square would leave the range.
+    // A smaller part rotates nothing by an ulp within 1e25 rad; its square would leave the range.
     start.h[a] = std::abs(h[a]) < 0x1p-200 ? 0.0 : h[a];
   }
   if (start.h[0].hi == 0.0 && start.h[1].hi == 0.0 && start.h[2].hi == 0.0) {
@@ -123,8 +123,8 @@ void Gyrostat::set_up() {
   exact::gyrostat_kernels().set_up(start, series_, motion);
   kind_ = motion.kind;
   period_ = std::ldexp(motion.period, -e);
-  longest_ = std::ldexp(most_turning, -e) / std::max({1.0, std::abs(h[0] / J[0]), std::abs(h[1] / J[1]),
-                                                      std::abs(h[2] / J[2])});
+  longest_ = std::ldexp(largest_angle, -e) /
+             std::max({1.0, std::abs(h[0] / J[0]), std::abs(h[1] / J[1]), std::abs(h[2] / J[2])});
   frame_ = exact::make_free_frame(R_BP, M, std::ldexp(1.0, e), start_attitude(series_), attitude_);
 }
 

@@ -246,11 +246,11 @@ void HeavyTop::at(const exact::TimeGrid& times, double* omega, double* attitude)
     }
   }
   kernels.at(constants_, times, omega, attitude);
-  if (rotor_ != 0.0) turn_back(times, omega, attitude);
+  if (rotor_ != 0.0) rotate_back(times, omega, attitude);
 }
 
-/// The plain top has omega3 + h / C about its axis. The body is turned back about it by h t / C.
-void HeavyTop::turn_back(const exact::TimeGrid& times, double* omega, double* attitude) const {
+/// The plain top has omega3 + h / C about its axis. The body is rotated back about it by h t / C.
+void HeavyTop::rotate_back(const exact::TimeGrid& times, double* omega, double* attitude) const {
   const Vector3d& n = axis_;
   const Vector3d axial = omega_.dot(n) * n;   // constant
   for (std::size_t i = 0; i < times.n; ++i) {
@@ -259,14 +259,14 @@ void HeavyTop::turn_back(const exact::TimeGrid& times, double* omega, double* at
     if (omega != nullptr) {
       Eigen::Map<Vector3d> w(omega + 3 * i);
       const Vector3d across = w - n.dot(w) * n;
-      const Vector3d turned{n[1] * across[2] - n[2] * across[1], n[2] * across[0] - n[0] * across[2],
-                            n[0] * across[1] - n[1] * across[0]};   // n x across
-      w = axial + (across + 2 * s * (c * turned - s * across));
+      const Vector3d quarter{n[1] * across[2] - n[2] * across[1], n[2] * across[0] - n[0] * across[2],
+                             n[0] * across[1] - n[1] * across[0]};   // n x across
+      w = axial + (across + 2 * s * (c * quarter - s * across));
     }
     if (attitude == nullptr) continue;
     double* q = attitude + 4 * i;
-    const Quat turned = Quat{q[0], q[1], q[2], q[3]} * Quat{-s * n[0], -s * n[1], -s * n[2], c};
-    q[0] = turned.x, q[1] = turned.y, q[2] = turned.z, q[3] = turned.w;
+    const Quat rotated = Quat{q[0], q[1], q[2], q[3]} * Quat{-s * n[0], -s * n[1], -s * n[2], c};
+    q[0] = rotated.x, q[1] = rotated.y, q[2] = rotated.z, q[3] = rotated.w;
   }
 }
 

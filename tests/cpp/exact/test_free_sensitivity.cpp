@@ -57,8 +57,8 @@ TEST_CASE("a batch is each body, for any number of threads") {
   batch.moments = moments.data(), batch.omega = omega.data(), batch.attitude = attitude.data(), batch.t = t.data();
   std::vector<double> one_w(18 * n), one_q(18 * n), two_w(18 * n), two_q(18 * n);
   const std::vector<SensitivityTo> wrt = {SensitivityTo::omega, SensitivityTo::inertia};
-  CHECK(free_sensitivity(batch, wrt, TurnSide::space, nullptr, nullptr, one_w.data(), one_q.data(), 1) == 0);
-  CHECK(free_sensitivity(batch, wrt, TurnSide::space, nullptr, nullptr, two_w.data(), two_q.data(), 3) == 0);
+  CHECK(free_sensitivity(batch, wrt, RotationSide::space, nullptr, nullptr, one_w.data(), one_q.data(), 1) == 0);
+  CHECK(free_sensitivity(batch, wrt, RotationSide::space, nullptr, nullptr, two_w.data(), two_q.data(), 3) == 0);
   CHECK(one_w == two_w);
   CHECK(one_q == two_q);
   for (std::size_t i = 0; i < n; i += 7) {

@@ -11,7 +11,7 @@ namespace polhode {
 struct SensitivityOptions {
   double accuracy = 1e-9;             ///< of each column relative to its size, 0 < accuracy <= 1
   bool certify = true;                ///< measure the error by a second run
-  TurnSide side = TurnSide::space;    ///< of the small rotations, those of the start included
+  RotationSide side = RotationSide::space;    ///< of the small rotations, those of the start included
   long max_steps = 10'000'000;        ///< of one run
 };
 

@@ -18,7 +18,7 @@ enum class SensitivityTo {
 };
 
 /// Where a small rotation of the attitude R stands: exp(d theta_W) R in space axes, or R exp(d theta_B) in body axes.
-enum class TurnSide { space, body };
+enum class RotationSide { space, body };
 
 /// Derivatives of a free motion, in closed form at any time and in every regime.
 ///
@@ -27,7 +27,7 @@ enum class TurnSide { space, body };
 class FreeSensitivity {
  public:
   /// Throws InvalidInput for an empty list or a name twice.
-  FreeSensitivity(const FreeMotion& motion, std::vector<SensitivityTo> wrt, TurnSide side = TurnSide::space);
+  FreeSensitivity(const FreeMotion& motion, std::vector<SensitivityTo> wrt, RotationSide side = RotationSide::space);
 
   std::size_t columns() const;  ///< their number
 

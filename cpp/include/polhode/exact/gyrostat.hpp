@@ -13,9 +13,9 @@ enum class GyrostatKind {
   rest,        ///< omega = 0
   steady,      ///< omega is constant and parallel to the momentum
   precession,  ///< omega runs on a circle at a constant rate: a sphere, or two equal moments with the rotor on the axis
-  paired,      ///< the momentum has a second closed curve of the same energy on its sphere
-  single,      ///< the momentum's curve is the only one of its energy
-  separatrix,  ///< leaves an unstable steady turn and returns to it, each in infinite time
+  paired,  ///< the momentum has a second closed curve of the same energy on its sphere
+  single,  ///< the momentum's curve is the only one of its energy
+  separatrix,  ///< leaves an unstable steady rotation and returns to it, each in infinite time
 };
 
 /// "rest", "steady", "precession", "paired", "single" or "separatrix".

@@ -78,14 +78,14 @@ class HeavyTop {
 
  private:
   void set_up();
-  void turn_back(const exact::TimeGrid& times, double* omega, double* attitude) const;
+  void rotate_back(const exact::TimeGrid& times, double* omega, double* attitude) const;
 
   InertiaTensor inertia_;
   double weight_arm_;
   Vector3d omega_;
   Quat attitude_;
   double rotor_;
-  double half_turns_ = 0, half_turns_low_ = 0;  ///< h / C / 2 [cycles/s], of half the angle that rotors turn back
+  double half_turns_ = 0, half_turns_low_ = 0;  ///< h / C / 2 [cycles/s], of half the angle that rotors rotate back
   Vector3d axis_ = Vector3d::UnitZ();
   TopKind kind_ = TopKind::steady_precession;
   double period_ = 0, tilt_min_ = 0, tilt_max_ = 0, precession_ = 0, largest_time_ = 0;

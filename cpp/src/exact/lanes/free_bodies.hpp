@@ -249,7 +249,7 @@ inline void prepare(const exact::FreeStart<double>& start, exact::FreeConstants<
 inline constexpr exact::FreeKernels free_kernels = {
     .times = time_kernels, .trig = &on_times, .hyper = &on_times, .prepare = &prepare};
 inline constexpr exact::FreeBatchKernels free_batch_kernels = {
-    .trig_single = &on_times_single, .turn = &turn, .narrow = &narrow, .once = &once, .set_up = &set_up};
+    .trig_single = &on_times_single, .rotate = &rotate_all, .narrow = &narrow, .once = &once, .set_up = &set_up};
 inline constexpr exact::DampedKernels damped_kernels = {
     .trig = &at_slowed_times, .hyper = &at_slowed_times, .slow = &slow};
 

@@ -139,15 +139,15 @@ inline void set_hyper(GyrostatSeries& out, const Form& f, const Solution& s) {
     const DD value = power[n - brought];
     return s.nome.hi < 0.0 && n % 2 ? -value : value;
   };
-  Complex<DD> turn[2 * J + 1];  // e^n
-  turn[0] = {DD(1.0), DD(0.0)};
-  for (int n = 1; n <= 2 * J; ++n) turn[n] = turn[n - 1] * e;
-  const auto turned = [&](int n) { return n < 0 ? conj(turn[-n]) : turn[n]; };
+  Complex<DD> powers[2 * J + 1];  // e^n
+  powers[0] = {DD(1.0), DD(0.0)};
+  for (int n = 1; n <= 2 * J; ++n) powers[n] = powers[n - 1] * e;
+  const auto power_of = [&](int n) { return n < 0 ? conj(powers[-n]) : powers[n]; };
 
   for (int j = -J; j <= J; ++j) {
     const int far = j < 0 ? -j : j, place = j < 0 ? J - j : j;
     const Pair& b = j % 2 ? s.bO : s.bE;
-    const Complex<DD> c = weight(nome_power(far), far > 0 ? far - 1 : 0) * turned(j);
+    const Complex<DD> c = weight(nome_power(far), far > 0 ? far - 1 : 0) * power_of(j);
     Complex<DD> part[2];
     set_parts(c * b[0], c * b[1], part);
     for (int i = 0; i < 2; ++i) {
@@ -167,10 +167,10 @@ inline void set_hyper(GyrostatSeries& out, const Form& f, const Solution& s) {
       if (power[raised - brought].hi == 0.0) continue;
       const DD w = weight(raised, brought);
       if (n % 2) {
-        mixed = mixed + w * turned(j - k);
+        mixed = mixed + w * power_of(j - k);
       } else {
         DD& sum = j % 2 ? odd : even;
-        sum = sum + w * turned(j - k).re;
+        sum = sum + w * power_of(j - k).re;
       }
     }
     for (int i = 0; i < 3; ++i) {
@@ -192,13 +192,14 @@ inline void set_hyper(GyrostatSeries& out, const Form& f, const Solution& s) {
   out.start = (v0 / passage).hi;
   // The half turn keeps the sign of the quaternion continuous.
   const bool alternates = s.nome.hi < 0.0;
-  set_cycles(out.turn_hi, out.turn_lo, math::twice(angle_of(e)) + (alternates ? math::pi<DD>() : DD(0.0)));
+  set_cycles(out.kappa_passage_hi, out.kappa_passage_lo,
+             math::twice(angle_of(e)) + (alternates ? math::pi<DD>() : DD(0.0)));
   out.alternates = alternates ? 1.0 : 0.0;
 }
 
 /// Constant omega, or omega = lam M + c with c constant in the body: at most two powers.
 /// e^{i t (lam L + c . sigma) / 2} splits psi into the two eigenvectors of c . sigma.
-inline void set_turning(GyrostatSeries& out, const Form& f, DD lam, const DD (&c)[3], const DD (&m)[3]) {
+inline void set_constant_rates(GyrostatSeries& out, const Form& f, DD lam, const DD (&c)[3], const DD (&m)[3]) {
   const DD size = root_of(squared(c[0]) + squared(c[1]) + squared(c[2]));
   Pair psi, up, down;
   set_spinor(m, psi);

@@ -11,7 +11,7 @@
 namespace polhode::POLHODE_ISA::gyrostat {
 
 /// The exact cases: omega constant, or constant plus a multiple of the momentum. Returns false for all others.
-inline bool set_up_turning(const Form& f, GyrostatSeries& out, exact::GyrostatMotion& motion) {
+inline bool set_up_constant_rates(const Form& f, GyrostatSeries& out, exact::GyrostatMotion& motion) {
   const double(&J)[3] = f.start.J;
   const DD(&w)[3] = f.start.w;
   DD moved(0.0), speed(0.0);
@@ -25,7 +25,7 @@ inline bool set_up_turning(const Form& f, GyrostatSeries& out, exact::GyrostatMo
     DD m[3] = {DD(0.0), DD(0.0), DD(1.0)};
     if (!rest)
       for (int i = 0; i < 3; ++i) m[i] = w[i] / root_of(speed);
-    set_turning(out, f, DD(0.0), w, m);
+    set_constant_rates(out, f, DD(0.0), w, m);
     for (int i = 0; i < 3; ++i) out.rate[i] = {}, out.rate[i].even_cos[0] = w[i].hi;
     motion.kind = rest ? GyrostatKind::rest : GyrostatKind::steady;
     return true;
@@ -33,14 +33,14 @@ inline bool set_up_turning(const Form& f, GyrostatSeries& out, exact::GyrostatMo
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     const bool sphere = J[0] == J[1] && J[1] == J[2];
-    if (!sphere && (J[j] != J[k] || f.turning[j] || f.turning[k])) continue;
+    if (!sphere && (J[j] != J[k] || f.has_rotor[j] || f.has_rotor[k])) continue;
     DD c[3] = {DD(0.0), DD(0.0), DD(0.0)};
     if (sphere) {
       for (int a = 0; a < 3; ++a) c[a] = -f.g[a];
     } else {
       c[i] = w[i] - f.A[j] * f.M[i];
     }
-    set_turning(out, f, f.A[j], c, f.m);
+    set_constant_rates(out, f, f.A[j], c, f.m);
     motion.kind = GyrostatKind::precession;
     motion.period = 1.0 / out.nu_hi;
     return true;
@@ -51,7 +51,7 @@ inline bool set_up_turning(const Form& f, GyrostatSeries& out, exact::GyrostatMo
 inline void set_up(const exact::GyrostatStart& start, GyrostatSeries& out, exact::GyrostatMotion& motion) {
   out = {}, motion = {};
   const Form f(start);
-  if (set_up_turning(f, out, motion)) return;
+  if (set_up_constant_rates(f, out, motion)) return;
   const Roots roots(f);
   const int third = roots.pair ? 0 : 2, fourth = roots.pair ? 0 : 3;
   const Eigenvector vectors[4] = {

@@ -13,7 +13,7 @@ struct Form {
   const exact::GyrostatStart& start;
   DD A[3], g[3], M[3], m[3], L, sg;
   DD apart[3][3];  ///< A_i - A_o
-  bool turning[3];  ///< g_i != 0: 1/J_i is a pole
+  bool has_rotor[3]; ///< g_i != 0: 1/J_i is a pole
 
   explicit Form(const exact::GyrostatStart& s) : start(s) {
     DD LL(0.0), along(0.0);
@@ -21,7 +21,7 @@ struct Form {
       A[i] = DD(1.0) / DD(s.J[i]);
       g[i] = s.h[i] / DD(s.J[i]);
       M[i] = DD(s.J[i]) * s.w[i] + s.h[i];
-      turning[i] = s.h[i].hi != 0.0;
+      has_rotor[i] = s.h[i].hi != 0.0;
       LL = LL + M[i] * M[i];
       for (int o = 0; o < 3; ++o)
         apart[i][o] = math::two_diff(s.J[o], s.J[i]) / math::two_prod(s.J[i], s.J[o]);
@@ -50,23 +50,23 @@ struct Quartic {
       }
     }
     degree = 1;
-    for (int i = 0; i < 3; ++i) degree += f.turning[i];
+    for (int i = 0; i < 3; ++i) degree += f.has_rotor[i];
     for (DD& a : c) a = DD(0.0);
     DD rest[5] = {DD(0.0), DD(0.0), DD(0.0), DD(0.0), DD(0.0)};
     int have = 1;  // the degree of `rest`
     for (int i = 0; i < 3; ++i) {
-      if (!f.turning[i]) {
+      if (!f.has_rotor[i]) {
         rest[1] = rest[1] + f.m[i] * f.m[i], rest[0] = rest[0] - f.m[i] * f.m[i] * b[i];
         continue;
       }
       DD term[5] = {u[i] * u[i], math::scaled(u[i] * f.m[i], -2.0), f.m[i] * f.m[i], DD(0.0), DD(0.0)};
       int top = 2;
       for (int j = 0; j < 3; ++j)
-        if (j != i && f.turning[j]) multiply(term, top++, b[j]);
+        if (j != i && f.has_rotor[j]) multiply(term, top++, b[j]);
       for (int k = 0; k <= top; ++k) c[k] = c[k] + term[k];
     }
     for (int j = 0; j < 3; ++j)
-      if (f.turning[j]) multiply(rest, have++, b[j]);
+      if (f.has_rotor[j]) multiply(rest, have++, b[j]);
     for (int k = 0; k <= degree; ++k) c[k] = c[k] + rest[k];
   }
 
@@ -171,7 +171,7 @@ struct Roots {
     double largest = 0.0;
     for (int i = 0; i < 3; ++i) {
       largest = math::max(largest, math::abs((f.A[i] - f.sg).hi));
-      if (f.turning[i]) {
+      if (f.has_rotor[i]) {
         poles[n++] = i;
       } else {
         add({f.A[i] - f.sg, DD(0.0), i});

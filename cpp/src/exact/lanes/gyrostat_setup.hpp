@@ -18,7 +18,7 @@ struct Eigenvector {
 
   Eigenvector(const Form& f, const Root& root) {
     const int i = root.pole;
-    if (root.mu.hi == 0.0 && !f.turning[i]) {
+    if (root.mu.hi == 0.0 && !f.has_rotor[i]) {
       n[i] = DD(1.0);
     } else {
       n[i] = -f.g[i];
@@ -96,7 +96,7 @@ inline Complex<DD> discriminant(const Form& f, const Pair& b) {
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     squares = squares + (a[j] * a[k]) * (N[i] * N[i]);
-    if (!f.turning[i]) continue;
+    if (!f.has_rotor[i]) continue;
     along = along + f.g[i] * N[i];
     mixed = mixed + (f.g[i] * f.apart[j][k]) * (N[j] * N[k]);
   }

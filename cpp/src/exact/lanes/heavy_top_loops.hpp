@@ -44,12 +44,12 @@ void top_trig(const HeavyTopConstants& given, const TimeGrid& grid, double* omeg
     const auto f = exact::heavy_top_trig(c, now[0].sine, now[0].cosine);
     kept[0] = f.a_re, kept[1] = f.a_im, kept[2] = f.b_re, kept[3] = f.b_im, kept[4] = f.inverse2, kept[5] = f.inverse;
   };
-  const auto finish = [&]<class T>(const Angle<T>(&now)[3], const T(&p)[6], std::size_t k)
-                          __attribute__((always_inline)) {
-    const auto turning = exact::heavy_top_trig_turning(c, now[0].sine, now[0].cosine);
+  const auto finish = [&]<class T>(const Angle<T>(&now)[3], const T(&p)[6],
+                                   std::size_t k) __attribute__((always_inline)) {
+    const auto transverse = exact::heavy_top_trig_transverse(c, now[0].sine, now[0].cosine);
     const exact::HeavyTopPair<T> f{p[0], p[1], p[2], p[3], p[4], p[5]};
-    const auto state = exact::heavy_top_state<framed>(c, f, turning, now[1].cosine, now[1].sine, now[2].cosine,
-                                                      now[2].sine);
+    const auto state =
+        exact::heavy_top_state<framed>(c, f, transverse, now[1].cosine, now[1].sine, now[2].cosine, now[2].sine);
     write_top(state, row_of(omega, 3 * k), row_of(attitude, 4 * k));
   };
   at_phases<6>(rates, grid, pair, finish);

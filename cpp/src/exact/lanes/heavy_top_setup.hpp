@@ -126,7 +126,7 @@ inline void set_factors(HeavyTopConstants& c, const HeavyTopStart& s, DD ca, DD 
   const Complex b = cb * direction(f.by_slope_2, beta, beta_slope, f.N2, f.D2, kB, speed, f), ab = conj(a) * b;
   c.ca_re = a.re.hi, c.ca_im = a.im.hi, c.cb_re = b.re.hi, c.cb_im = b.im.hi;
   c.w12_re = 2.0 * ab.re.hi, c.w12_im = 2.0 * ab.im.hi;
-  c.speed = speed.hi, c.turn = (kA + kB).hi;
+  c.speed = speed.hi, c.sum_k = (kA + kB).hi;
 }
 
 /// The half turns of N1 and N2 in the complex plane over a nutation; 0 when they pass through 0.
@@ -199,21 +199,21 @@ inline void set_up_trig(HeavyTopConstants& c, HeavyTopMotion& motion, const Comm
   const M* const parts[] = {&N1r, &N1i, &N2r, &N2i};
   for (int i = 0; i < 4; ++i)
     for (int k = 0; k < 5; ++k) c.p[i][k] = parts[i]->p[k];
-  // speed (conj(N1) D2 - N2 conj(D1)) + i turn conj(N1) N2, with sin^2 z, cos^2 z = (1 -+ X)/2
+  // speed (conj(N1) D2 - N2 conj(D1)) + i sum_k conj(N1) N2, with sin^2 z, cos^2 z = (1 -+ X)/2
   const double half = 0.5 * c.speed;
   double even[degree_12 + 1] = {}, odd_part[degree_12 + 1] = {};
   add_product(even, half, 1, -1, N1r, D2r);
   add_product(even, -half, 1, -1, N2i, D1i);
   add_product(even, half, 1, 1, N1i, D2i);
   add_product(even, -half, 1, 1, N2r, D1r);
-  add_product(even, -0.5 * c.turn, 1, -1, N1r, N2i);
-  add_product(even, 0.5 * c.turn, 1, 1, N1i, N2r);
+  add_product(even, -0.5 * c.sum_k, 1, -1, N1r, N2i);
+  add_product(even, 0.5 * c.sum_k, 1, 1, N1i, N2r);
   add_product(odd_part, c.speed, 1, 0, N1r, D2i);
   add_product(odd_part, -c.speed, 1, 0, N1i, D2r);
   add_product(odd_part, c.speed, 1, 0, N2r, D1i);
   add_product(odd_part, -c.speed, 1, 0, N2i, D1r);
-  add_product(odd_part, c.turn, 1, 0, N1r, N2r);
-  add_product(odd_part, c.turn, 1, 0, N1i, N2i);
+  add_product(odd_part, c.sum_k, 1, 0, N1r, N2r);
+  add_product(odd_part, c.sum_k, 1, 0, N1i, N2i);
   for (int i = 0; i <= degree_12; ++i) c.even[i] = even[i], c.odd[i] = odd_part[i];
 
   motion.period = (math::pi<DD>() / nu).hi;
@@ -301,8 +301,8 @@ inline void set_up_hyper(HeavyTopConstants& c, HeavyTopMotion& motion, const Com
   const DD pass_a = DD(m.sA) * half - angle_a, pass_b = DD(m.sB) * half - angle_b;
   c.passage_a = in_cycles(pass_a + pass_a), c.passage_b = in_cycles(pass_b + pass_b);
   motion.period = (DD(1.0) / rate).hi;
-  const DD turn = DD(half_turns_of_a(m) + half_turns_of_b(m)) * half - angle_a - angle_b;
-  motion.precession = (kA + kB + rate * (turn + turn)).hi;
+  const DD angle = DD(half_turns_of_a(m) + half_turns_of_b(m)) * half - angle_a - angle_b;
+  motion.precession = (kA + kB + rate * (angle + angle)).hi;
 }
 
 /// Constant tilt: only the phases of alpha and beta change. It is the trig form with z fixed at a quarter cycle.
@@ -313,11 +313,11 @@ inline void set_up_steady(HeavyTopConstants& c, HeavyTopMotion& motion, const He
   c.rate_a = in_cycles(kA), c.rate_b = in_cycles(kB);
   c.start_z = 0.25;
   c.p[0][0] = 1.0, c.p[3][0] = 1.0;  // N1 = 1, N2 = i
-  c.even[0] = -(kA + kB).hi;         // i turn conj(N1) N2
+  c.even[0] = -(kA + kB).hi;         // i sum_k conj(N1) N2
   const Complex a{s.w, s.z}, b{s.y, -s.x}, ab = conj(a) * b;
   c.ca_re = a.re.hi, c.ca_im = a.im.hi, c.cb_re = b.re.hi, c.cb_im = b.im.hi;
   c.w12_re = 2.0 * ab.re.hi, c.w12_im = 2.0 * ab.im.hi;
-  c.turn = (kA + kB).hi;
+  c.sum_k = (kA + kB).hi;
   motion.sin_low = motion.sin_high = root_of(t.om).hi;
   motion.cos_low = motion.cos_high = root_of(t.op).hi;
   motion.period = 0.0;

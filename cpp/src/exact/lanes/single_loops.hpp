@@ -3,7 +3,7 @@
 #include "exact/lanes/free_loops.hpp"
 #include "math/lanes/floats.hpp"
 
-// What is not omega and attitude in doubles: floats, and vectors that turn. Each file that is built for one instruction
+// What is not omega and attitude in doubles: floats, and rotated vectors. Each file that is built for one instruction
 // set includes this once.
 namespace polhode::POLHODE_ISA {
 
@@ -51,7 +51,7 @@ void single_loop(const AlongBodyAxes& axes, const FreeFrame& frame_in, const dou
   const exact::FreeTrig<double>& b = axes.body;
   const Wide scale(frame_in.time_scale), nu_hi(b.nu_hi), nu_lo(b.nu_lo), phi0(b.phi0);
   const Wide kappa_hi(b.kappa_hi), kappa_lo(b.kappa_lo);
-  alignas(64) float phi[block], turn[block];
+  alignas(64) float phi[block], kappa[block];
   alignas(64) double own[block] = {};
   for (std::size_t first = 0; first < n; first += block) {
     const std::size_t count = in_block(n, first), padded = (count + width - 1) / width * width;
@@ -63,12 +63,12 @@ void single_loop(const AlongBodyAxes& axes, const FreeFrame& frame_in, const dou
     for (std::size_t k = 0; k < padded; k += Wide::width) {
       const Wide now = Wide::load(times + k) * scale;
       store_floats(phi + k, math::cycle_fraction(now, nu_hi, nu_lo, phi0));
-      store_floats(turn + k, math::cycle_fraction(now, kappa_hi, kappa_lo, Wide(0.0)));
+      store_floats(kappa + k, math::cycle_fraction(now, kappa_hi, kappa_lo, Wide(0.0)));
     }
     for (std::size_t k = 0; k < padded; k += width) {
       Floats s, c, ks, kc;
       sincos_cycles(Floats::load(phi + k), s, c);
-      sincos_cycles(Floats::load(turn + k), ks, kc);
+      sincos_cycles(Floats::load(kappa + k), ks, kc);
       const auto state = exact::evaluate(body, exact::evaluate_pair(body, s, c), s, c, ks, kc, order);
       write_first<want_omega, want_attitude>(in_caller_frames<along>(frame, state), count - k, omega + 3 * (first + k),
                                              attitude + 4 * (first + k));
@@ -125,21 +125,21 @@ POLHODE_INLINE void load4(const double* p, Wide (&q)[4]) {
 /// v + w t + u x t with t = 2 u x v / |q|^2, where q = (u, w) is the attitude; `sense` -1 for its inverse. The attitude
 /// is unit up to rounding, so 2 / |q|^2 is 4 - 2 |q|^2.
 template <class T>
-POLHODE_INLINE void turn_at(const double* v, const double* attitude, double sense, double* turned) {
+POLHODE_INLINE void rotate_at(const double* v, const double* attitude, double sense, double* rotated) {
   T q[4];
   load4(attitude, q);
   const T size2 = madd(q[0], q[0], q[1] * q[1]) + madd(q[2], q[2], q[3] * q[3]), twice = madd(T(-2.0), size2, T(4.0));
   const T a(v[0]), b(v[1]), c(v[2]), w = q[3] * T(sense), x = q[0] * twice, y = q[1] * twice, z = q[2] * twice;
   const T tx = madd(y, c, -(z * b)), ty = madd(z, a, -(x * c)), tz = madd(x, b, -(y * a));
-  store3(turned, a + madd(w, tx, madd(q[1], tz, -(q[2] * ty))), b + madd(w, ty, madd(q[2], tx, -(q[0] * tz))),
+  store3(rotated, a + madd(w, tx, madd(q[1], tz, -(q[2] * ty))), b + madd(w, ty, madd(q[2], tx, -(q[0] * tz))),
          c + madd(w, tz, madd(q[0], ty, -(q[1] * tx))));
 }
 
-inline void turn(const double* vector, const double* attitude, std::size_t n, bool inverse, double* turned) {
+inline void rotate_all(const double* vector, const double* attitude, std::size_t n, bool inverse, double* rotated) {
   const double v[3] = {vector[0], vector[1], vector[2]}, sense = inverse ? -1.0 : 1.0;
   std::size_t i = 0;
-  for (; i + Wide::width <= n; i += Wide::width) turn_at<Wide>(v, attitude + 4 * i, sense, turned + 3 * i);
-  for (; i < n; ++i) turn_at<One>(v, attitude + 4 * i, sense, turned + 3 * i);
+  for (; i + Wide::width <= n; i += Wide::width) rotate_at<Wide>(v, attitude + 4 * i, sense, rotated + 3 * i);
+  for (; i < n; ++i) rotate_at<One>(v, attitude + 4 * i, sense, rotated + 3 * i);
 }
 
 }  // namespace polhode::POLHODE_ISA

@@ -16,13 +16,13 @@ constexpr double hyper_from = 0.97;       // k^2, as in FreeMotion
 
 /// Rows of 3 numbers, `width` apart, of one sample.
 struct SampleColumns {
-  double *omega, *turn;
+  double *omega, *theta;
   std::size_t width;
 
-  void put(std::ptrdiff_t column, const Vector3d& d_omega, const Vector3d& d_turn) const {
+  void put(std::ptrdiff_t column, const Vector3d& d_omega, const Vector3d& d_theta) const {
     for (std::size_t r = 0; r < 3; ++r) {
       omega[r * width + static_cast<std::size_t>(column)] = d_omega[static_cast<Eigen::Index>(r)];
-      turn[r * width + static_cast<std::size_t>(column)] = d_turn[static_cast<Eigen::Index>(r)];
+      theta[r * width + static_cast<std::size_t>(column)] = d_theta[static_cast<Eigen::Index>(r)];
     }
   }
   Vector3d get(const double* rows, std::ptrdiff_t column) const {
@@ -56,7 +56,7 @@ Matrix3d moved_axes(const ColumnsStart& start, const Matrix3d& R0, const Matrix3
 
 }  // namespace
 
-ColumnLayout::ColumnLayout(const std::vector<SensitivityTo>& wrt, TurnSide which) : side(which) {
+ColumnLayout::ColumnLayout(const std::vector<SensitivityTo>& wrt, RotationSide which) : side(which) {
   for (const SensitivityTo to : wrt) {
     std::ptrdiff_t* const places[] = {&omega, &attitude, &inertia, &axes, &time};
     *places[static_cast<int>(to)] = static_cast<std::ptrdiff_t>(width);
@@ -109,11 +109,11 @@ void ColumnsBody::finish(const FreeColumns<double>& given, const double* omega, 
   const double* A = frame.attitude;
   const Quat left{A[3], A[7], A[11], A[15]};
   const Quat first = conjugate(left) * start_.attitude;  // the start in the working space axes, body axes
-  const Matrix3d turn = to_matrix(left) * S, R0 = S.transpose() * to_matrix(first) * S;
+  const Matrix3d theta = to_matrix(left) * S, R0 = S.transpose() * to_matrix(first) * S;
   const int e = start_.time_exponent, f = start_.moment_exponent;
   for (int i = 0; i < 9; ++i) {
-    b.omega[i] = S(i / 3, i % 3), b.turn[i] = std::ldexp(turn(i / 3, i % 3), -e);
-    b.omega_moment[i] = std::ldexp(S(i / 3, i % 3), e - f), b.turn_moment[i] = std::ldexp(turn(i / 3, i % 3), -f);
+    b.omega[i] = S(i / 3, i % 3), b.theta[i] = std::ldexp(theta(i / 3, i % 3), -e);
+    b.omega_moment[i] = std::ldexp(S(i / 3, i % 3), e - f), b.theta_moment[i] = std::ldexp(theta(i / 3, i % 3), -f);
   }
 
   for (int c = 0; c < 3; ++c) {
@@ -172,9 +172,9 @@ void ColumnsBody::groups(const ColumnTarget& to, std::ptrdiff_t axes, const doub
                                           : series.on_unstable_axis(t[i] * scale, quat_at(attitude, i));
     const SampleColumns out = sample(to, i);
     for (int c = 0; c < 3; ++c) {
-      if (to.rates >= 0) out.put(to.rates + c, found.omega.col(c), found.turn.col(c));
-      if (to.moments >= 0) out.put(to.moments + c, found.omega.col(3 + c), found.turn.col(3 + c));
-      if (axes >= 0 && is_short_i) out.put(axes + c, found.omega.col(6 + c), found.turn.col(6 + c));
+      if (to.rates >= 0) out.put(to.rates + c, found.omega.col(c), found.theta.col(c));
+      if (to.moments >= 0) out.put(to.moments + c, found.omega.col(3 + c), found.theta.col(3 + c));
+      if (axes >= 0 && is_short_i) out.put(axes + c, found.omega.col(6 + c), found.theta.col(6 + c));
     }
   }
 }
@@ -183,16 +183,16 @@ void ColumnsBody::at(const ColumnLayout& layout, const double* t, std::size_t n,
                      const double* attitude, double* d_omega, double* d_attitude) const {
   const ColumnTarget to{d_omega, d_attitude, layout.width, layout.omega, layout.inertia};
   const Matrix3d R0 = to_matrix(start_.attitude);
-  const bool turns = form_ != ColumnsForm::rest;
+  const bool rotates = form_ != ColumnsForm::rest;
   const double scale = std::ldexp(1.0, start_.time_exponent);
-  if (!turns) {
+  if (!rotates) {
     std::fill_n(d_omega, 3 * layout.width * n, 0.0), std::fill_n(d_attitude, 3 * layout.width * n, 0.0);
     for (std::size_t i = 0; i < n && layout.omega >= 0; ++i)
       for (int c = 0; c < 3; ++c) sample(to, i).put(layout.omega + c, Matrix3d::Identity().col(c), t[i] * R0.col(c));
   } else if (layout.omega >= 0 || layout.inertia >= 0) {
     groups(to, layout.axes, t, n, omega, attitude);
   }
-  if (layout.attitude < 0 && layout.axes < 0 && layout.time < 0 && layout.side == TurnSide::space) return;
+  if (layout.attitude < 0 && layout.axes < 0 && layout.time < 0 && layout.side == RotationSide::space) return;
 
   const Vector3d w0 = start_.R_BP * start_.w, m0 = start_.I.cwiseProduct(start_.w);
   Eigen::Index last = 0;
@@ -201,7 +201,7 @@ void ColumnsBody::at(const ColumnLayout& layout, const double* t, std::size_t n,
     const SampleColumns out = sample(to, i);
     const Matrix3d R = to_matrix(quat_at(attitude, i));
     const Vector3d w_B = Eigen::Map<const Vector3d>(omega + 3 * i), w = to_principal(start_, w_B);
-    if (layout.time >= 0 && turns) {
+    if (layout.time >= 0 && rotates) {
       const Vector3d& I = start_.I;
       const Vector3d slope((I[1] - I[2]) / I[0] * w[1] * w[2], (I[2] - I[0]) / I[1] * w[2] * w[0],
                            (I[0] - I[1]) / I[2] * w[0] * w[1]);
@@ -209,24 +209,24 @@ void ColumnsBody::at(const ColumnLayout& layout, const double* t, std::size_t n,
     }
     if (layout.attitude >= 0)
       for (int c = 0; c < 3; ++c) out.put(layout.attitude + c, Vector3d::Zero(), Matrix3d::Identity().col(c));
-    if (layout.axes >= 0 && turns && !(std::abs(rate_ * (t[i] * scale)) <= closed_form_from)) {
+    if (layout.axes >= 0 && rotates && !(std::abs(rate_ * (t[i] * scale)) <= closed_form_from)) {
       const Matrix3d moved = moved_axes(start_, R0 * start_.R_BP, R * start_.R_BP, w, last) * start_.R_BP.transpose();
       for (int c = 0; c < 3; ++c) {
         const Vector3d e = Matrix3d::Identity().col(c), start = e.cross(w0);
-        Vector3d d_w = e.cross(w_B), d_turn = moved.col(c);
+        Vector3d d_w = e.cross(w_B), d_theta = moved.col(c);
         for (int a = 0; a < 3; ++a) {
           d_w -= ldexp(out.get(out.omega, layout.omega + a) * start[a], start_.time_exponent);
-          d_turn -= ldexp(out.get(out.turn, layout.omega + a), start_.time_exponent) * start[a];
+          d_theta -= ldexp(out.get(out.theta, layout.omega + a), start_.time_exponent) * start[a];
         }
-        out.put(layout.axes + c, d_w, d_turn);
+        out.put(layout.axes + c, d_w, d_theta);
       }
     }
-    if (layout.side == TurnSide::space) continue;
+    if (layout.side == RotationSide::space) continue;
     for (std::size_t c = 0; c < layout.width; ++c) {
       const auto column = static_cast<std::ptrdiff_t>(c);
-      Vector3d d_turn = out.get(out.turn, column);
-      if (layout.attitude >= 0 && column >= layout.attitude && column < layout.attitude + 3) d_turn = R0 * d_turn;
-      out.put(column, out.get(out.omega, column), R.transpose() * d_turn);
+      Vector3d d_theta = out.get(out.theta, column);
+      if (layout.attitude >= 0 && column >= layout.attitude && column < layout.attitude + 3) d_theta = R0 * d_theta;
+      out.put(column, out.get(out.omega, column), R.transpose() * d_theta);
     }
   }
 }

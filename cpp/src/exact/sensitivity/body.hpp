@@ -15,10 +15,10 @@ namespace polhode::exact {
 struct ColumnLayout {
   std::size_t width = 0;
   std::ptrdiff_t omega = -1, attitude = -1, inertia = -1, axes = -1, time = -1;  ///< first columns
-  TurnSide side = TurnSide::space;
+  RotationSide side = RotationSide::space;
 
   ColumnLayout() = default;
-  ColumnLayout(const std::vector<SensitivityTo>& wrt, TurnSide side);
+  ColumnLayout(const std::vector<SensitivityTo>& wrt, RotationSide side);
 };
 
 /// Throws InvalidInput for an empty list or a name twice.

@@ -17,7 +17,7 @@ class FreeSensitivity::Body {
   std::size_t width;  ///< the columns that are wanted, the first ones
 };
 
-FreeSensitivity::FreeSensitivity(const FreeMotion& motion, std::vector<SensitivityTo> wrt, TurnSide side) {
+FreeSensitivity::FreeSensitivity(const FreeMotion& motion, std::vector<SensitivityTo> wrt, RotationSide side) {
   exact::check_wrt(wrt);
   // The columns of the axes are made of those of omega(0).
   body_ = std::make_shared<const Body>(motion, exact::ColumnLayout(exact::with_needed(wrt), side),

@@ -13,8 +13,8 @@ namespace polhode::exact {
 struct BodyColumns {
   FreeColumns<double> c;
   double time_scale;
-  double omega[9], turn[9];                ///< working body axes to body axes; working space axes to space, rates
-  double omega_moment[9], turn_moment[9];  ///< the same for the moment columns, with the units of both
+  double omega[9], theta[9];                ///< working body axes to body axes; working space axes to space, rates
+  double omega_moment[9], theta_moment[9];  ///< the same for the moment columns, with the units of both
   double is_own[2][3], own_rate[2], dL_x[2], dL_y[2];  ///< of the two moments: 1 for its axis, omega0 about it
   double share[2];                         ///< column 3 = share[0] column 1 + share[1] column 2
   std::size_t place[3];                    ///< which moment of the caller each column belongs to
@@ -40,9 +40,9 @@ struct FreeColumnsKernels {
   void (*trig)(const FreeTrig<double>&, const BodyColumns&, const double* t, std::size_t n, const ColumnTarget&);
   void (*hyper)(const FreeHyper<double>&, const BodyColumns&, const double* t, std::size_t n, const ColumnTarget&);
 
-  void (*make_series)(const SeriesStart& start, bool axes, int order, bool turns, ColumnSeries& series);
+  void (*make_series)(const SeriesStart& start, bool axes, int order, ColumnSeries& series);
   /// All rows of the series at one time: see ColumnSeries.
-  void (*sum_series)(const ColumnSeries& series, double t, int order, bool turns, SeriesSums& sums);
+  void (*sum_series)(const ColumnSeries& series, double t, int order, bool attitudes, SeriesSums& sums);
 };
 
 const FreeColumnsKernels& free_columns_kernels(SimdLevel level);

@@ -18,13 +18,13 @@ struct SeriesStart {
 struct ColumnSeries {
   int slots = 8;  ///< 8, or 16 with the columns of the axes
   alignas(64) double omega[series_order + 1][3][series_slots];  ///< d omega of each column
-  alignas(64) double turn[series_order + 1][3][series_slots];   ///< d theta in body axes
+  alignas(64) double theta[series_order + 1][3][series_slots];   ///< d theta in body axes
   /// The integrals of omega_i(0)^2 - omega_i^2, then of the products of the two other components alike.
   double square[series_order + 1][6];
 };
 
 struct SeriesSums {
-  alignas(64) double omega[3][series_slots], turn[3][series_slots];
+  alignas(64) double omega[3][series_slots], theta[3][series_slots];
   double square[6];
 };
 

@@ -12,37 +12,36 @@ namespace {
 using Columns = Eigen::Matrix<double, 3, 9>;
 
 constexpr int short_order = 20;             // enough for |p t| <= 1/4
-constexpr double short_reach = 0.25, turn_reach = 0.5;  // of |p t|; of |omega t| for the attitude's own series
+constexpr double short_reach = 0.25, attitude_reach = 0.5;  // of |p t|; of |omega t| for the attitude's own series
 
 /// Slot of a column in the series.
 constexpr int slot(int column) { return column < 6 ? column : column + 2; }
 
 }  // namespace
 
-ShortTimes::ShortTimes(const ColumnsStart& start, double longest, bool axes)
-    : start_(start), axes_(axes), turns_(true) {
+ShortTimes::ShortTimes(const ColumnsStart& start, double longest, bool axes) : start_(start), axes_(axes) {
   SeriesStart s;
   for (int a = 0; a < 3; ++a) s.I[a] = start.I[a], s.w[a] = start.w[a];
-  free_columns_kernels().make_series(s, axes, longest <= short_reach ? short_order : series_order, turns_, series_);
+  free_columns_kernels().make_series(s, axes, longest <= short_reach ? short_order : series_order, series_);
 }
 
 ShortColumns ShortTimes::at(double t, double rate, const Vector3d& omega, const Quat& attitude) const {
-  const bool turns = start_.w.norm() * std::abs(t) <= turn_reach;
+  const bool attitudes = start_.w.norm() * std::abs(t) <= attitude_reach;
   SeriesSums sums;
-  free_columns_kernels().sum_series(series_, t, rate * std::abs(t) <= short_reach ? short_order : series_order, turns,
-                                    sums);
-  Columns d_w = Columns::Zero(), d_turn = Columns::Zero();
+  free_columns_kernels().sum_series(series_, t, rate * std::abs(t) <= short_reach ? short_order : series_order,
+                                    attitudes, sums);
+  Columns d_w = Columns::Zero(), d_theta = Columns::Zero();
   for (int c = 0; c < (axes_ ? 9 : 6); ++c)
     for (int a = 0; a < 3; ++a) {
       d_w(a, c) = sums.omega[a][slot(c)];
-      if (turns) d_turn(a, c) = sums.turn[a][slot(c)];
+      if (attitudes) d_theta(a, c) = sums.theta[a][slot(c)];
     }
-  if (!turns) d_turn = this->turns(t, to_principal(start_, omega), attitude, d_w, sums.square);
-  return in_caller_frames(d_w, d_turn, attitude);
+  if (!attitudes) d_theta = find_attitudes(t, to_principal(start_, omega), attitude, d_w, sums.square);
+  return in_caller_frames(d_w, d_theta, attitude);
 }
 
-Columns ShortTimes::turns(double t, const Vector3d& w, const Quat& attitude, const Columns& d_w,
-                          const double* square) const {
+Columns ShortTimes::find_attitudes(double t, const Vector3d& w, const Quat& attitude, const Columns& d_w,
+                                   const double* square) const {
   const Vector3d &I = start_.I, &w0 = start_.w, m = I.cwiseProduct(w);
   const double LL = m.squaredNorm(), L = std::sqrt(LL);
   const Matrix3d back = start_.R_BP.transpose() * to_matrix(conjugate(attitude) * start_.attitude) * start_.R_BP;
@@ -74,17 +73,17 @@ Columns ShortTimes::turns(double t, const Vector3d& w, const Quat& attitude, con
   return out;
 }
 
-ShortColumns ShortTimes::in_caller_frames(const Columns& d_w, const Columns& d_turn, const Quat& attitude) const {
+ShortColumns ShortTimes::in_caller_frames(const Columns& d_w, const Columns& d_theta, const Quat& attitude) const {
   const Matrix3d &S = start_.R_BP, R = to_matrix(attitude) * S;
   const int e = start_.time_exponent, f = start_.moment_exponent;
-  const int omega_exponents[] = {0, e - f, e}, turn_exponents[] = {-e, -f, 0};
+  const int omega_exponents[] = {0, e - f, e}, theta_exponents[] = {-e, -f, 0};
   ShortColumns out;
   for (int group = 0; group < 3; ++group) {
-    Matrix3d w = S * d_w.middleCols<3>(3 * group), turn = R * d_turn.middleCols<3>(3 * group);
-    if (group != 1) w = w * S.transpose(), turn = turn * S.transpose();  // directions along the body axes
+    Matrix3d w = S * d_w.middleCols<3>(3 * group), theta = R * d_theta.middleCols<3>(3 * group);
+    if (group != 1) w = w * S.transpose(), theta = theta * S.transpose();  // directions along the body axes
     for (int c = 0; c < 3; ++c) {
       out.omega.col(3 * group + c) = ldexp(w.col(c), omega_exponents[group]);
-      out.turn.col(3 * group + c) = ldexp(turn.col(c), turn_exponents[group]);
+      out.theta.col(3 * group + c) = ldexp(theta.col(c), theta_exponents[group]);
     }
   }
   return out;
@@ -103,9 +102,9 @@ ShortColumns ShortTimes::on_unstable_axis(double t, const Quat& attitude) const 
   d_w(a, a) = 1.0, d_w(b, b) = cosh, d_w(c, c) = cosh;
   d_w(b, c) = B / lambda * sinh, d_w(c, b) = C / lambda * sinh;
   const double no_square[6] = {};
-  Columns d_turn = turns(t, w, attitude, d_w, no_square);
-  d_turn.middleCols<6>(3).setZero();  // a moment does not change a steady rotation
-  return in_caller_frames(d_w, d_turn, attitude);
+  Columns d_theta = find_attitudes(t, w, attitude, d_w, no_square);
+  d_theta.middleCols<6>(3).setZero();  // a moment does not change a steady rotation
+  return in_caller_frames(d_w, d_theta, attitude);
 }
 
 }  // namespace polhode::exact

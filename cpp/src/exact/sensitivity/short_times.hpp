@@ -6,10 +6,10 @@
 // The columns where the closed form cancels: the power series in t, and the steady rotation about the unstable axis.
 namespace polhode::exact {
 
-/// Three columns each of omega(0), of the moments and of the axes, in body axes and the caller's units; the turn in
+/// Three columns each of omega(0), of the moments and of the axes, in body axes and the caller's units; the rotation in
 /// space axes.
 struct ShortColumns {
-  Eigen::Matrix<double, 3, 9> omega, turn;
+  Eigen::Matrix<double, 3, 9> omega, theta;
 };
 
 class ShortTimes {
@@ -24,14 +24,14 @@ class ShortTimes {
   ShortColumns on_unstable_axis(double t, const Quat& attitude) const;
 
  private:
-  /// The turn of columns from d omega by the constant momentum in space, in principal axes.
-  Eigen::Matrix<double, 3, 9> turns(double t, const Vector3d& w, const Quat& attitude,
-                                    const Eigen::Matrix<double, 3, 9>& d_w, const double* square) const;
-  ShortColumns in_caller_frames(const Eigen::Matrix<double, 3, 9>& d_w, const Eigen::Matrix<double, 3, 9>& d_turn,
+  /// The columns of the attitude from d omega by the constant momentum in space, in principal axes.
+  Eigen::Matrix<double, 3, 9> find_attitudes(double t, const Vector3d& w, const Quat& attitude,
+                                             const Eigen::Matrix<double, 3, 9>& d_w, const double* square) const;
+  ShortColumns in_caller_frames(const Eigen::Matrix<double, 3, 9>& d_w, const Eigen::Matrix<double, 3, 9>& d_theta,
                                 const Quat& attitude) const;
 
   const ColumnsStart& start_;
-  bool axes_, turns_;
+  bool axes_;
   ColumnSeries series_;
 };
 

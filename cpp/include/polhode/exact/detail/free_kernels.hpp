@@ -48,8 +48,8 @@ struct FreeBatchKernels {
   void (*trig_single)(const FreeTrig<double>&, const FreeFrame&, const double* t, std::size_t n, float* omega,
                       float* attitude);
 
-  /// What a vector (3) becomes by the turns of n attitudes, row by row, or by their inverses.
-  void (*turn)(const double* vector, const double* attitude, std::size_t n, bool inverse, double* turned);
+  /// What a vector (3) becomes by the rotations of n attitudes, row by row, or by their inverses.
+  void (*rotate)(const double* vector, const double* attitude, std::size_t n, bool inverse, double* rotated);
   /// n numbers, rounded to floats.
   void (*narrow)(const double* numbers, std::size_t n, float* rounded);
 

@@ -33,7 +33,7 @@ struct GyrostatSeries {
   double v_start_hi = 0.0, v_start_lo = 0.0;    ///< of v
   double v_rate_hi = 0.0, v_rate_lo = 0.0;      ///< dv/dt
   double v_passage_hi = 0.0, v_passage_lo = 0.0;  ///< -ln |Q|
-  double turn_hi = 0.0, turn_lo = 0.0;          ///< cycles of the common phase that a passage adds
+  double kappa_passage_hi = 0.0, kappa_passage_lo = 0.0;  ///< cycles of the common phase that a passage adds
   double alternates = 0.0;                      ///< 1: odd powers change their sign with each passage (Q < 0)
   double nome = 0.0;                            ///< |Q|; 0 where the growing terms are nothing
   /// The coefficients of v^j, without the powers of |Q| that e^v brings: j = 0, 1 ..., then -1, -2, ...
@@ -142,9 +142,9 @@ POLHODE_INLINE GyrostatPassage<T> gyrostat_passage(const GyrostatSeries& body, T
   const T rest = madd(t, T(body.v_rate_lo), travelled.lo) - madd(passages, T(body.v_passage_lo), done.lo);
   const T tail = sum.lo + (left.lo + (rest + T(body.v_start_lo)));
   const auto v = two_sum(sum.hi, tail);
-  const T turned = cycle_fraction(passages, T(body.turn_hi), T(body.turn_lo), T(0.0));
+  const T passed = cycle_fraction(passages, T(body.kappa_passage_hi), T(body.kappa_passage_lo), T(0.0));
   GyrostatPassage<T> out{v.hi, v.lo, passages, T(0.0), T(0.0)};
-  sincos_cycles(few_cycles(t, T(body.kappa_hi), T(body.kappa_lo), turned), out.sine, out.cosine);
+  sincos_cycles(few_cycles(t, T(body.kappa_hi), T(body.kappa_lo), passed), out.sine, out.cosine);
   return out;
 }
 

@@ -42,7 +42,7 @@ struct HeavyTopConstants {
   Cycles rate_a, rate_b;     ///< of the phases of alpha and beta
   double start_z = 0.0;      ///< cycles (trig), passages (hyper)
   double speed = 0.0;        ///< d/dt of the theta argument [rad]
-  double turn = 0.0;         ///< k_A + k_B [rad]
+  double sum_k = 0.0;  ///< k_A + k_B [rad]
   double ca_re = 0.0, ca_im = 0.0, cb_re = 0.0, cb_im = 0.0;
   double w12_re = 0.0, w12_im = 0.0;  ///< 2 conj(c_a) c_b, times rate_scale
   double w3 = 0.0;                    ///< constant spin about the axis [rad/s]
@@ -52,7 +52,7 @@ struct HeavyTopConstants {
   bool framed = false;                ///< whether q_SB is not the identity
 
   // Trig: with X = cos 2z, N1 = sin z p0(X) + i cos z p1(X), N2 = cos z p2(X) + i sin z p3(X), and the rotating part of
-  // omega, speed (conj(N1) N2' - N2 conj(N1')) + i turn conj(N1) N2 = even(X) + i sin z cos z odd(X); monomials.
+  // omega, speed (conj(N1) N2' - N2 conj(N1')) + i sum_k conj(N1) N2 = even(X) + i sin z cos z odd(X); monomials.
   double p[4][5] = {};
   double even[degree_12 + 1] = {}, odd[degree_12 + 1] = {};
 
@@ -153,36 +153,37 @@ POLHODE_INLINE HeavyTopPair<V> heavy_top_trig(const HeavyTopConstants& c, V sz, 
 
 /// The rotating part of omega.
 template <class V>
-struct HeavyTopTurning {
+struct HeavyTopTransverse {
   V re, im;
 };
 
 template <class V>
-POLHODE_INLINE HeavyTopTurning<V> heavy_top_trig_turning(const HeavyTopConstants& c, V sz, V cz) {
+POLHODE_INLINE HeavyTopTransverse<V> heavy_top_trig_transverse(const HeavyTopConstants& c, V sz, V cz) {
   const V X = (cz + sz) * (cz - sz);
   return {polynomial(c.even, X), (sz * cz) * polynomial(c.odd, X)};
 }
 
 /// The same from the hyperbolic sums.
 template <class V>
-POLHODE_INLINE HeavyTopTurning<V> heavy_top_turning(const HeavyTopConstants& c, const HeavyTopSums<V>& f) {
+POLHODE_INLINE HeavyTopTransverse<V> heavy_top_transverse(const HeavyTopConstants& c, const HeavyTopSums<V>& f) {
   const V t_re = plus(f.n1_re, f.d2_re, f.n1_im, f.d2_im) - plus(f.n2_re, f.d1_re, f.n2_im, f.d1_im);
   const V t_im = less(f.n1_re, f.d2_im, f.n1_im, f.d2_re) + less(f.n2_re, f.d1_im, f.n2_im, f.d1_re);
   const V q_re = plus(f.n1_re, f.n2_re, f.n1_im, f.n2_im), q_im = less(f.n1_re, f.n2_im, f.n1_im, f.n2_re);
-  const V speed = V(c.speed), turn = V(c.turn);
-  return {less(speed, t_re, turn, q_im), plus(speed, t_im, turn, q_re)};
+  const V speed = V(c.speed), sum_k = V(c.sum_k);
+  return {less(speed, t_re, sum_k, q_im), plus(speed, t_im, sum_k, q_re)};
 }
 
 /// The state from the pair, the rotating part of omega, and e^{i a}, e^{i b} of the phases of alpha and beta. `framed`
 /// may be false only if c.framed is. It is a template argument, so that lanes share one form.
 template <bool framed, class V>
 POLHODE_INLINE HeavyTopState<V> heavy_top_state(const HeavyTopConstants& c, const HeavyTopPair<V>& f,
-                                                const HeavyTopTurning<V>& turning, V ea_re, V ea_im, V eb_re, V eb_im) {
+                                                const HeavyTopTransverse<V>& transverse, V ea_re, V ea_im, V eb_re,
+                                                V eb_im) {
   const V qw = f.inverse * less(f.a_re, ea_re, f.a_im, ea_im), qz = f.inverse * plus(f.a_re, ea_im, f.a_im, ea_re);
   const V qx = f.inverse * less(f.b_re, eb_re, f.b_im, eb_im), qy = f.inverse * plus(f.b_re, eb_im, f.b_im, eb_re);
 
   // w1 + i w2 = 2 (conj(alpha) beta' - beta conj(alpha')): the derivative of the common factor drops out
-  const V s_re = f.inverse2 * turning.re, s_im = f.inverse2 * turning.im;
+  const V s_re = f.inverse2 * transverse.re, s_im = f.inverse2 * transverse.im;
   const V r_re = plus(ea_re, eb_re, ea_im, eb_im), r_im = less(ea_re, eb_im, ea_im, eb_re);
   const V h_re = less(V(c.w12_re), r_re, V(c.w12_im), r_im), h_im = plus(V(c.w12_re), r_im, V(c.w12_im), r_re);
   const V w1 = less(h_re, s_re, h_im, s_im), w2 = plus(h_re, s_im, h_im, s_re), w3 = V(c.w3);
@@ -205,24 +206,24 @@ POLHODE_INLINE HeavyTopState<V> evaluate_heavy_top(const HeavyTopConstants& c, V
   const V s = t * V(c.rate_scale);
   V phase_a = V(0.0), phase_b = V(0.0);
   HeavyTopPair<V> f;
-  HeavyTopTurning<V> turning;
+  HeavyTopTransverse<V> transverse;
   if constexpr (hyper) {
     V passages;
     const HeavyTopSums<V> sums = heavy_top_hyper(c, s, passages);
     f = heavy_top_pair(c, sums.n1_re, sums.n1_im, sums.n2_re, sums.n2_im);
-    turning = heavy_top_turning(c, sums);
+    transverse = heavy_top_transverse(c, sums);
     phase_a = cycle_fraction(passages, V(c.passage_a.hi), V(c.passage_a.lo), V(0.0));
     phase_b = cycle_fraction(passages, V(c.passage_b.hi), V(c.passage_b.lo), V(0.0));
   } else {
     V sz, cz;
     sincos_cycles(few_cycles(s, V(c.rate_z.hi), V(c.rate_z.lo), V(c.start_z)), sz, cz);
     f = heavy_top_trig(c, sz, cz);
-    turning = heavy_top_trig_turning(c, sz, cz);
+    transverse = heavy_top_trig_transverse(c, sz, cz);
   }
   V ea_re, ea_im, eb_re, eb_im;
   sincos_cycles(few_cycles(s, V(c.rate_a.hi), V(c.rate_a.lo), phase_a), ea_im, ea_re);
   sincos_cycles(few_cycles(s, V(c.rate_b.hi), V(c.rate_b.lo), phase_b), eb_im, eb_re);
-  return heavy_top_state<framed>(c, f, turning, ea_re, ea_im, eb_re, eb_im);
+  return heavy_top_state<framed>(c, f, transverse, ea_re, ea_im, eb_re, eb_im);
 }
 
 }  // namespace polhode::exact

@@ -14,7 +14,7 @@ using exact::BodyColumns, exact::ColumnTarget, exact::FreeColumns, exact::Integr
 /// d omega and the small rotation of the attitude of the columns of one group, in the caller's frames.
 template <class T>
 struct ColumnGroup {
-  T omega[3][3], turn[3][3];  ///< row, column
+  T omega[3][3], theta[3][3];  ///< row, column
 };
 
 /// The functions of Jacobi and the first two rows of the rotation to the working space axes.
@@ -46,12 +46,12 @@ POLHODE_INLINE void rotate_into(const double* matrix, const T (&v)[3], T (&rows)
 /// The small rotation in working space axes, from dL there, the change dm of the momentum in working body axes, and
 /// the angle about the momentum.
 template <class T>
-POLHODE_INLINE void turn_of(const FreeColumns<double>& c, const Place<T>& at, double dL_x, double dL_y,
-                            const T (&dm)[3], T psi, T (&turn)[3]) {
+POLHODE_INLINE void theta_of(const FreeColumns<double>& c, const Place<T>& at, double dL_x, double dL_y,
+                             const T (&dm)[3], T psi, T (&theta)[3]) {
   const T x = madd(at.R_x[0], dm[0], madd(at.R_x[1], dm[1], at.R_x[2] * dm[2]));
   const T y = madd(at.R_y[0], dm[0], madd(at.R_y[1], dm[1], at.R_y[2] * dm[2]));
   const T inverse(1.0 / c.L);
-  turn[0] = (y - T(dL_y)) * inverse, turn[1] = (T(dL_x) - x) * inverse, turn[2] = psi;
+  theta[0] = (y - T(dL_y)) * inverse, theta[1] = (T(dL_x) - x) * inverse, theta[2] = psi;
 }
 
 template <class T>
@@ -66,10 +66,10 @@ POLHODE_INLINE void rate_columns(const BodyColumns& b, const Place<T>& at, const
     const T dm[3] = {madd(at.cn, T(r.x), -(sd * U)), madd(at.sn, T(r.x), cd * U) * inverse_root,
                      madd(madd(T(r.Q), cn2, madd(-T(r.R), sn2, T(r.P))), at.idn, -(kap_sc * U))};
     const T w[3] = {dm[0] * T(1.0 / c.J[0]), dm[1] * T(1.0 / c.J[1]), dm[2] * T(1.0 / c.J[2])};
-    T turn[3];
-    turn_of(c, at, r.dL_x, r.dL_y, dm, t * T(r.psi), turn);
+    T theta[3];
+    theta_of(c, at, r.dL_x, r.dL_y, dm, t * T(r.psi), theta);
     rotate_into(b.omega, w, out.omega, k);
-    rotate_into(b.turn, turn, out.turn, k);
+    rotate_into(b.theta, theta, out.theta, k);
   }
 }
 
@@ -94,14 +94,14 @@ POLHODE_INLINE void moment_columns(const BodyColumns& b, const Place<T>& at, con
     const T now = madd(T(own[0]), at.omega[0], madd(T(own[1]), at.omega[1], madd(T(own[2]), at.omega[2], T(0.0))));
     const T dm[3] = {madd(T(c.J[0]), w[0], T(own[0]) * now), madd(T(c.J[1]), w[1], T(own[1]) * now),
                      madd(T(c.J[2]), w[2], T(own[2]) * now)};
-    T turn[3];
-    turn_of(c, at, b.dL_x[k], b.dL_y[k], dm, T(m.psi) * X, turn);
+    T theta[3];
+    theta_of(c, at, b.dL_x[k], b.dL_y[k], dm, T(m.psi) * X, theta);
     rotate_into(b.omega_moment, w, out.omega, k);
-    rotate_into(b.turn_moment, turn, out.turn, k);
+    rotate_into(b.theta_moment, theta, out.theta, k);
   }
   for (int r = 0; r < 3; ++r) {
     out.omega[r][2] = madd(T(b.share[0]), out.omega[r][0], T(b.share[1]) * out.omega[r][1]);
-    out.turn[r][2] = madd(T(b.share[0]), out.turn[r][0], T(b.share[1]) * out.turn[r][1]);
+    out.theta[r][2] = madd(T(b.share[0]), out.theta[r][0], T(b.share[1]) * out.theta[r][1]);
   }
 }
 
@@ -115,7 +115,7 @@ POLHODE_INLINE void store_group(const ColumnGroup<T>& group, const ColumnTarget&
       const std::size_t at = r * to.width + column[k];
       group.omega[r][k].store(buffer);
       for (std::size_t i = 0; i < T::width; ++i) to.d_omega[(first + i) * 3 * to.width + at] = buffer[i];
-      group.turn[r][k].store(buffer);
+      group.theta[r][k].store(buffer);
       for (std::size_t i = 0; i < T::width; ++i) to.d_attitude[(first + i) * 3 * to.width + at] = buffer[i];
     }
   }
@@ -127,19 +127,19 @@ POLHODE_INLINE void write_columns(const BodyColumns& b, const Place<T>& at, cons
   ColumnGroup<T> group;
   if (to.rates >= 0 && to.moments >= 0 && to.width == 6) {
     // The usual six columns: whole rows, transposed.
-    T omega[18], turn[18];
+    T omega[18], theta[18];
     rate_columns(b, at, I, t, group);
     for (std::size_t i = 0; i < 9; ++i) {
       const std::size_t to_place = i / 3 * 6 + static_cast<std::size_t>(to.rates) + i % 3;
-      omega[to_place] = group.omega[i / 3][i % 3], turn[to_place] = group.turn[i / 3][i % 3];
+      omega[to_place] = group.omega[i / 3][i % 3], theta[to_place] = group.theta[i / 3][i % 3];
     }
     moment_columns(b, at, I, t, group);
     for (std::size_t i = 0; i < 9; ++i) {
       const std::size_t to_place = i / 3 * 6 + static_cast<std::size_t>(to.moments) + b.place[i % 3];
-      omega[to_place] = group.omega[i / 3][i % 3], turn[to_place] = group.turn[i / 3][i % 3];
+      omega[to_place] = group.omega[i / 3][i % 3], theta[to_place] = group.theta[i / 3][i % 3];
     }
     store_rows(to.d_omega + 18 * first, omega);
-    store_rows(to.d_attitude + 18 * first, turn);
+    store_rows(to.d_attitude + 18 * first, theta);
     return;
   }
   if (to.rates >= 0) {

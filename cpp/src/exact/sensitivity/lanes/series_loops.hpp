@@ -18,19 +18,19 @@ struct SeriesSources {
       const int b = (i + 1) % 3, c = (i + 2) % 3, slot = 3 + i;
       // J_i in the equations of the axes i, b and c
       of[i][6 + i][slot] = -1.0, of[b][b][slot] = -1.0, of[c][c][slot] = 1.0;
-      // The axes turned about axis i: dJ has the elements (b, c) and (c, b). With omega' = gap / I times a product, two
+      // Axes rotated about axis i: dJ has the elements (b, c) and (c, b). With omega' = gap / I times a product, two
       // terms of a row are one, whose factor cancels for slender bodies. It is 0 for a plate across axis i.
       const math::DD others = math::two_sum(s.I[b], s.I[c]);
       const double gap = s.I[b] - s.I[c], left = (others.hi - s.I[i]) + others.lo;
-      const int turned = 8 + i;
-      of[b][c][turned] = gap * left / s.I[c];
-      of[c][b][turned] = -gap * left / s.I[b];
-      of[i][3 + b][turned] = -gap, of[i][3 + c][turned] = gap;
+      const int rotated = 8 + i;
+      of[b][c][rotated] = gap * left / s.I[c];
+      of[c][b][rotated] = -gap * left / s.I[b];
+      of[i][3 + b][rotated] = -gap, of[i][3 + c][rotated] = gap;
     }
   }
 };
 
-inline void make_series(const SeriesStart& s, bool axes, int order, bool turns, ColumnSeries& series) {
+inline void make_series(const SeriesStart& s, bool axes, int order, ColumnSeries& series) {
   constexpr int width = Wide::width;
   series.slots = axes ? 16 : 8;
   double w[series_order + 1][3], squares[series_order + 1][9];
@@ -53,44 +53,43 @@ inline void make_series(const SeriesStart& s, bool axes, int order, bool turns, 
 
   const SeriesSources sources(s);
   for (int slot = 0; slot < series.slots; ++slot) {
-    for (int a = 0; a < 3; ++a) series.omega[0][a][slot] = slot == a ? 1.0 : 0.0, series.turn[0][a][slot] = 0.0;
+    for (int a = 0; a < 3; ++a) series.omega[0][a][slot] = slot == a ? 1.0 : 0.0, series.theta[0][a][slot] = 0.0;
   }
   for (int lane = 0; lane < series.slots; lane += width) {
     for (int n = 0; n < order; ++n) {
       const Wide inverse(1.0 / (n + 1.0));
       for (int a = 0; a < 3; ++a) {
         const int b = (a + 1) % 3, c = (a + 2) % 3;
-        Wide sum(0.0), turned = Wide::load(series.omega[n][a] + lane);
+        Wide sum(0.0), rotated = Wide::load(series.omega[n][a] + lane);
         for (int j = 0; j <= n; ++j) {
           const Wide wb(w[n - j][b]), wc(w[n - j][c]);
           sum = madd(Wide::load(series.omega[j][b] + lane), wc, sum);
           sum = madd(Wide::load(series.omega[j][c] + lane), wb, sum);
-          if (!turns) continue;
-          turned = madd(-wb, Wide::load(series.turn[j][c] + lane), turned);
-          turned = madd(wc, Wide::load(series.turn[j][b] + lane), turned);
+          rotated = madd(-wb, Wide::load(series.theta[j][c] + lane), rotated);
+          rotated = madd(wc, Wide::load(series.theta[j][b] + lane), rotated);
         }
         Wide source(0.0);
         for (int k = 0; k < 9; ++k)
           source = madd(Wide::load(sources.of[a][k] + lane), Wide(squares[n][k]), source);
         const Wide next = madd(Wide(gap[a]), sum, source) / Wide(s.I[a]) * inverse;
         next.store(series.omega[n + 1][a] + lane);
-        if (turns) (turned * inverse).store(series.turn[n + 1][a] + lane);
+        (rotated * inverse).store(series.theta[n + 1][a] + lane);
       }
     }
   }
 }
 
-inline void sum_series(const ColumnSeries& series, double t, int order, bool turns, SeriesSums& sums) {
+inline void sum_series(const ColumnSeries& series, double t, int order, bool attitudes, SeriesSums& sums) {
   const Wide x(t);
   for (int lane = 0; lane < series.slots; lane += Wide::width) {
     for (int a = 0; a < 3; ++a) {
       Wide omega = Wide::load(series.omega[order][a] + lane);
       for (int n = order - 1; n >= 0; --n) omega = madd(omega, x, Wide::load(series.omega[n][a] + lane));
       omega.store(sums.omega[a] + lane);
-      if (!turns) continue;
-      Wide turn = Wide::load(series.turn[order][a] + lane);
-      for (int n = order - 1; n >= 0; --n) turn = madd(turn, x, Wide::load(series.turn[n][a] + lane));
-      turn.store(sums.turn[a] + lane);
+      if (!attitudes) continue;
+      Wide theta = Wide::load(series.theta[order][a] + lane);
+      for (int n = order - 1; n >= 0; --n) theta = madd(theta, x, Wide::load(series.theta[n][a] + lane));
+      theta.store(sums.theta[a] + lane);
     }
   }
   for (int a = 0; a < 6; ++a) {
