@@ -19,10 +19,10 @@ class ManyScenes {
 
   /// It must not outlive this object, and needs no interpreter.
   MakeScene maker() const {
-    return [this, moments = moments_.data(), rates = omega_.data(), turns = attitude_.data()](std::size_t body) {
+    return [this, moments = moments_.data(), rates = omega_.data(), attitudes = attitude_.data()](std::size_t body) {
       if (omega_.size() == 0) return *list_[body];
       const Scene& common = *list_[0];
-      const double *a = rates + 3 * body, *b = turns + 4 * body, *moment = moments + 3 * body;
+      const double *a = rates + 3 * body, *b = attitudes + 4 * body, *moment = moments + 3 * body;
       InertiaTensor inertia = common.given_inertia_B();
       if (moments_.size() != 0) inertia = InertiaTensor::from_moments({moment[0], moment[1], moment[2]});
       return Scene(SceneParts{inertia, {a[0], a[1], a[2]}, {b[0], b[1], b[2], b[3]}, common.torques(), common.times(),

@@ -194,12 +194,12 @@ void bind_solve(py::module_& m) {
   m.def("energy", [](const Scene& scene, const Array& t, const Array& omega, const py::object& attitude) {
     Array energy(t.size());
     const Array q = attitude.is_none() ? Array(py::array::ShapeContainer{0}) : attitude.cast<Array>();
-    const double *in = t.data(), *w = omega.data(), *turns = attitude.is_none() ? nullptr : q.data();
+    const double *in = t.data(), *w = omega.data(), *attitudes = attitude.is_none() ? nullptr : q.data();
     double* out = energy.mutable_data();
     const std::size_t count = rows(t);
     {
       const WithoutGil nogil;
-      compute_energy(scene, count, in, w, turns, out);
+      compute_energy(scene, count, in, w, attitudes, out);
     }
     return energy;
   });

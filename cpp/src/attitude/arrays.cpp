@@ -83,9 +83,9 @@ void to_matrix(std::size_t n, const double* q, double* R) {
 
 std::size_t quat_from_rotation_vector(std::size_t n, const double* v, double unit, double* q) {
   for (std::size_t i = 0; i < n; ++i) {
-    const Vector3d turn = unit * load3(v + 3 * i);
-    if (!turn.array().isFinite().all()) return i;
-    store(polhode::quat_from_rotation_vector(turn), q + 4 * i);
+    const Vector3d vector = unit * load3(v + 3 * i);
+    if (!vector.array().isFinite().all()) return i;
+    store(polhode::quat_from_rotation_vector(vector), q + 4 * i);
   }
   return n;
 }

@@ -12,8 +12,8 @@
 namespace polhode {
 namespace {
 
-/// v turned by the angle about the axis.
-Vector3d turned(const Vector3d& v, int axis, double angle) {
+/// v rotated by the angle about the axis.
+Vector3d rotate_about(const Vector3d& v, int axis, double angle) {
   const int a = (axis + 1) % 3, b = (axis + 2) % 3;
   const auto [s, c] = math::sincos(angle);
   Vector3d out = v;
@@ -24,9 +24,9 @@ Vector3d turned(const Vector3d& v, int axis, double angle) {
 
 }  // namespace
 
-// Before the last turn, in the frame F it turns, the three rates lie along
+// Before the last rotation, in the frame F that it rotates, the three rates lie along
 //   first: cos(middle) e_first + sign sin(middle) e_other,   middle: e_second,   last: e_last;
-// the last turn then takes w_F to body axes, w_B = R_last(-angle) w_F.
+// the last rotation then takes w_F to body axes, w_B = R_last(-angle) w_F.
 
 Vector3d body_rates(const EulerSequence& sequence, const Vector3d& angles, const Vector3d& angle_rates) {
   const int out = sequence.extrinsic() ? 2 : 0;
@@ -37,7 +37,7 @@ Vector3d body_rates(const EulerSequence& sequence, const Vector3d& angles, const
   w_F[sequence.other()] = first_rate * sequence.sign() * middle.sin;
   w_F[sequence.second()] = angle_rates[1];
   w_F[sequence.last()] += angle_rates[2 - out];
-  return turned(w_F, sequence.last(), -angles[2 - out]);
+  return rotate_about(w_F, sequence.last(), -angles[2 - out]);
 }
 
 bool try_euler_rates(const EulerSequence& sequence, const Vector3d& angles, const Vector3d& w_B,
@@ -47,7 +47,7 @@ bool try_euler_rates(const EulerSequence& sequence, const Vector3d& angles, cons
   // The double nearest to a pole is within half an ulp of it; theta = 0 is a pole only when it is 0.
   const double distance = std::abs(sequence.proper() ? s : c);
   if (!(distance > 0.5 * std::numeric_limits<double>::epsilon() * std::abs(angles[1]))) return false;
-  const Vector3d w_F = turned(w_B, sequence.last(), angles[2 - out]);
+  const Vector3d w_F = rotate_about(w_B, sequence.last(), angles[2 - out]);
   const double along_first = w_F[sequence.first()], along_other = sequence.sign() * w_F[sequence.other()];
   double first_rate, last_rate;
   if (sequence.proper()) {
@@ -71,7 +71,7 @@ Vector3d euler_rates(const EulerSequence& sequence, const Vector3d& angles, cons
                      "away from gimbal lock, which for '" + sequence.letters() + "' is a middle angle of " +
                          (sequence.proper() ? "0 or pi" : "+-pi/2"),
                      to_text(angles[1]),
-                     "the first and the third turn have one axis there; use another sequence or quaternions");
+                     "the first and the third rotation have one axis there; use another sequence or quaternions");
 }
 
 }  // namespace polhode

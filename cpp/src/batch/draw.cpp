@@ -44,8 +44,8 @@ math::SinCosPair sincos_of_turns(double f) {
 void draw_direction(const std::array<std::uint64_t, DrawStream::words>& words, double* v) {
   // The height is uniform (Archimedes).
   const double height = 2.0 * fraction_of(words[0]) - 1.0, radius = std::sqrt((1.0 - height) * (1.0 + height));
-  const math::SinCosPair turn = sincos_of_turns(fraction_of(words[1]));
-  v[0] = radius * turn.cos, v[1] = radius * turn.sin, v[2] = height;
+  const math::SinCosPair unit = sincos_of_turns(fraction_of(words[1]));
+  v[0] = radius * unit.cos, v[1] = radius * unit.sin, v[2] = height;
 }
 
 /// Shoemake 1992, Graphics Gems III, 124.
@@ -56,7 +56,7 @@ void draw_attitude(const std::array<std::uint64_t, DrawStream::words>& words, do
   q[0] = a * first.sin, q[1] = a * first.cos, q[2] = b * second.sin, q[3] = b * second.cos;
 }
 
-void draw_turn(const double* deviation, const std::array<std::uint64_t, DrawStream::words>& words, double* q) {
+void draw_rotation(const double* deviation, const std::array<std::uint64_t, DrawStream::words>& words, double* q) {
   double v[3], square = 0.0;
   for (std::size_t i = 0; i < 3; ++i) v[i] = deviation[i] * normal_of(words[i]), square = square + v[i] * v[i];
   const double angle = std::sqrt(square);
@@ -175,7 +175,7 @@ void Draw::operator()(const DrawStream& stream, std::uint64_t first, std::size_t
       draw_attitude(words, values);
     } else if (distribution_ == Distribution::turn) {
       const double deviation[] = {components_[0].a, components_[0].b, components_[0].low};
-      draw_turn(deviation, words, values);
+      draw_rotation(deviation, words, values);
     } else {
       for (std::size_t k = 0; k < width_; ++k) values[k] = component(components_[k], words[k]);
     }

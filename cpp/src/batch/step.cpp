@@ -42,7 +42,8 @@ bool is_unit(const T* q) {
 }
 
 template <class T>
-constexpr double most_turning = std::is_same_v<T, float> ? 1e10 : 1e25;   // [rad]: beyond it no digit of a phase is left
+constexpr double largest_angle =
+    std::is_same_v<T, float> ? 1e10 : 1e25;   // [rad]: beyond it no digit of a phase is left
 
 /// Bound on the sum of a body's components of momentum in all steps. Not finite for a body that becomes NaN.
 template <class T>
@@ -57,7 +58,7 @@ double bound_momentum(const StepBatch<T>& b, std::size_t body) {
 
 /// Bound on the angle of rotation in one step. NaN passes every comparison: it is the body's own.
 template <class T>
-double bound_turning(const StepBatch<T>& b, std::size_t body) {
+double bound_angle(const StepBatch<T>& b, std::size_t body) {
   const T* I = b.moments + (b.one_inertia ? 0 : 3 * body);
   const double size = bound_momentum(b, body), least = static_cast<double>(std::min({I[0], I[1], I[2]}));
   return size <= std::numeric_limits<double>::max() ? size * std::abs(static_cast<double>(b.step)) / least : 0.0;
@@ -70,11 +71,11 @@ std::size_t find_refused(const StepBatch<T>& b, std::size_t begin, std::size_t e
   if (!b.one_inertia)
     for (std::size_t i = begin; i < end; ++i) good &= is_body(b.moments + 3 * i);
   for (std::size_t i = begin; i < end; ++i) good &= is_unit(b.attitude + 4 * i);
-  for (std::size_t i = begin; i < end; ++i) good &= !(bound_turning(b, i) > most_turning<T>);
+  for (std::size_t i = begin; i < end; ++i) good &= !(bound_angle(b, i) > largest_angle<T>);
   if (good) return b.bodies;
   for (std::size_t i = begin; i < end; ++i) {
     if (!b.one_inertia && !is_body(b.moments + 3 * i)) return i;
-    if (!is_unit(b.attitude + 4 * i) || bound_turning(b, i) > most_turning<T>) return i;
+    if (!is_unit(b.attitude + 4 * i) || bound_angle(b, i) > largest_angle<T>) return i;
   }
   return b.bodies;
 }
@@ -90,8 +91,9 @@ template <class T>
   }
   const T* q = b.attitude + 4 * body;
   if (is_unit(q)) {
-    throw InvalidInput(row_name("momentum", body), "such that the body rotates by at most " +
-                       to_text(most_turning<T>) + " rad in a step", to_text(bound_turning(b, body)) + " rad at most",
+    throw InvalidInput(row_name("momentum", body),
+                       "such that the body rotates by at most " + to_text(largest_angle<T>) + " rad in a step",
+                       to_text(bound_angle(b, body)) + " rad at most",
                        "beyond this the phase has no digits; h may be too large, or the units do not fit");
   }
   double norm2 = 0.0;

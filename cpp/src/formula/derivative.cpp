@@ -48,8 +48,8 @@ class Derivative {
     if (by_.kind != Variable::Kind::rotation || number < first_attitude || number >= first_extra) return {};
     Vec<Expr, 3> axis;
     axis[static_cast<std::size_t>(by_.number)] = Expr(1.0);
-    const Vec<Expr, 4> turn = multiply_pure(list_states<4>(graph_, first_attitude), axis);
-    return turn[static_cast<std::size_t>(number - first_attitude)].form() * 0.5;
+    const Vec<Expr, 4> rotation = multiply_pure(list_states<4>(graph_, first_attitude), axis);
+    return rotation[static_cast<std::size_t>(number - first_attitude)].form() * 0.5;
   }
 
   /// d(R^T v) = (R^T v) x e + R^T dv

@@ -48,10 +48,10 @@ Packing::Packing(const Tape& tape) : offsets_(tape.slots().size(), -1), levels_(
 void Packing::sort_by_use(const Tape& tape, std::vector<int>& slots) const {
   std::map<int, std::pair<int, int>> use;
   for (const StateSlot& state : tape.state_slots()) {
-    int turn = 0;
+    int rank = 0;
     for (const Term& term : state.rate.terms)
       if (tape.slots()[static_cast<std::size_t>(term.node)].kind != SlotKind::state)
-        use.try_emplace(term.node, turn++, offset_of(state.slot));
+        use.try_emplace(term.node, rank++, offset_of(state.slot));
   }
   const auto key = [&](int slot) {
     const auto found = use.find(slot);

@@ -152,17 +152,17 @@ Program rewrite(const Program& program, const Change& change) {
   return made;
 }
 
-std::vector<Form> embed(const Program& program, Graph& to, const std::vector<Form>& states, const Matrix3d* turn) {
+std::vector<Form> embed(const Program& program, Graph& to, const std::vector<Form>& states, const Matrix3d* rotation) {
   Rewriter* own = nullptr;
   const Change change = [&](int node, Graph& graph) -> std::optional<Form> {
     const Node& n = program.graph[node];
     if (n.op == Op::state) return states[static_cast<std::size_t>(n.index)];
-    if (n.op != Op::to_body || turn == nullptr) return std::nullopt;
+    if (n.op != Op::to_body || rotation == nullptr) return std::nullopt;
     std::array<Form, 3> v;
     for (std::size_t i = 0; i < 3; ++i) v[i] = (*own)(Form::of(n.operands[i]));
     const std::array<Form, 3> seen = graph.to_body(v);
     Form sum;
-    for (int j = 0; j < 3; ++j) sum = sum + seen[static_cast<std::size_t>(j)] * (*turn)(n.index, j);
+    for (int j = 0; j < 3; ++j) sum = sum + seen[static_cast<std::size_t>(j)] * (*rotation)(n.index, j);
     return sum;
   };
   Rewriter rewriter(program.graph, to, change);
@@ -209,8 +209,8 @@ Program make_body_equations(const Program& torque, const Matrix3d& inertia_B) {
     rest = apply_matrix(I.inverse(), tau - cross(w, h));
   }
   for (const Expr& rate : rest.components) made.outputs.push_back(rate.form());
-  const Vec<Expr, 4> turn = multiply_pure(q, w);
-  for (const Expr& rate : turn.components) made.outputs.push_back((rate * 0.5).form());
+  const Vec<Expr, 4> rotation = multiply_pure(q, w);
+  for (const Expr& rate : rotation.components) made.outputs.push_back((rate * 0.5).form());
   for (std::size_t i = 3; i < torque.outputs.size(); ++i) made.outputs.push_back(torque.outputs[i]);
   return rewrite(made);
 }

@@ -36,8 +36,8 @@ Rotated find_rotated(const Polynomial& p) {
     const auto at = [](int n) { return static_cast<std::size_t>(n); };
     found.entries(i, i) = 0.25 * (square[i] - square[j] - square[k]);
     // i, j, k cyclic: R_ji = 2 (q_i q_j + q_k w)
-    const double mixed = p.coefficient(pair(at(i), at(j))), turn = p.coefficient(pair(at(k), 3));
-    found.entries(i, j) = 0.25 * (mixed - turn), found.entries(j, i) = 0.25 * (mixed + turn);
+    const double mixed = p.coefficient(pair(at(i), at(j))), scalar = p.coefficient(pair(at(k), 3));
+    found.entries(i, j) = 0.25 * (mixed - scalar), found.entries(j, i) = 0.25 * (mixed + scalar);
   }
   return found;
 }

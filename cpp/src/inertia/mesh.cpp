@@ -153,8 +153,8 @@ MassProperties scaled(const MeshIntegrals& mesh, DD mass, DD density, double uni
 void require_body(const MeshIntegrals& mesh, double unit) {
   inertia::positive(unit, "unit");
   if (mesh.volume.hi > 0) return;
-  constexpr const char* turn = "inside out: every face wound the wrong way? repair=\"flip\" turns them";
-  throw InvalidInput("faces", "round a positive volume", to_text(mesh.volume.hi), mesh.volume.hi < 0 ? turn : "");
+  constexpr const char* reversed = "inside out: every face wound the wrong way? repair=\"flip\" turns them";
+  throw InvalidInput("faces", "round a positive volume", to_text(mesh.volume.hi), mesh.volume.hi < 0 ? reversed : "");
 }
 
 }  // namespace

@@ -100,8 +100,8 @@ double find_lowest(const double* a, int degree, double limit) {
     if (values[i] < values[best] && (i == 0 || values[i] <= values[i - 1])) best = i;
   if (!(values[best] < limit)) return 2.0;
   if (best == 0 || best == parts) return best == 0 ? begin : 1.0;
-  const double turn = values[best - 1] - 2 * values[best] + values[best + 1];
-  return begin + (best + (turn > 0.0 ? 0.5 * (values[best - 1] - values[best + 1]) / turn : 0.0)) * width;
+  const double bend = values[best - 1] - 2 * values[best] + values[best + 1];
+  return begin + (best + (bend > 0.0 ? 0.5 * (values[best - 1] - values[best + 1]) / bend : 0.0)) * width;
 }
 
 double polish_root(const std::function<double(double)>& value, const double* a, int degree, double root) {

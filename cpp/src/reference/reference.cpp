@@ -98,11 +98,11 @@ class LongDoubleSeries {
   Real step(Real tolerance, Real longest) const {
     Real h = longest;
     for (int m : {order_ - 1, order_}) {
-      Real size = 0, last = 0, turn = 0;
+      Real size = 0, last = 0, angle = 0;
       for (const Series& s : w_) size = std::max(size, std::fabs(s[0])), last = std::max(last, std::fabs(s[index(m)]));
-      for (const Series& s : q_) turn = std::max(turn, std::fabs(s[index(m)]));
+      for (const Series& s : q_) angle = std::max(angle, std::fabs(s[index(m)]));
       if (last > 0 && size > 0) h = std::min(h, find_root(tolerance * size / last, m));
-      if (turn > 0) h = std::min(h, find_root(tolerance / turn, m));
+      if (angle > 0) h = std::min(h, find_root(tolerance / angle, m));
     }
     return h;
   }

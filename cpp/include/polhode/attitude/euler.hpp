@@ -7,7 +7,7 @@
 
 namespace polhode {
 
-/// One of the 24 Euler sequences, in SciPy's letters: upper case intrinsic (each turn about the axes as turned so
+/// One of the 24 Euler sequences, in SciPy's letters: upper case intrinsic (each rotation about the axes as rotated so
 /// far), lower case extrinsic (about the fixed axes). "ZXZ" is the textbook's (phi, theta, psi), "ZYX" yaw pitch roll.
 ///
 /// An extrinsic sequence is the intrinsic one read backwards. All members describe that intrinsic form,
@@ -17,8 +17,8 @@ class EulerSequence {
   /// Three letters, neighbours different; InvalidInput otherwise.
   explicit EulerSequence(std::string_view letters);
 
-  int first() const noexcept { return first_; }        ///< axis 0, 1, 2 of the first turn
-  int second() const noexcept { return second_; }      ///< axis of the middle turn
+  int first() const noexcept { return first_; }        ///< axis 0, 1, 2 of the first rotation
+  int second() const noexcept { return second_; }      ///< axis of the middle rotation
   int other() const noexcept { return other_; }        ///< the axis that is neither
   int last() const noexcept { return proper_ ? first_ : other_; }
   bool proper() const noexcept { return proper_; }     ///< first = last ("ZXZ"): locks at 0 and pi, else at +-pi/2

@@ -4,7 +4,7 @@
 
 namespace polhode {
 
-/// q_WB of the turn by |v| about v, (v sin(|v|/2)/|v|, cos(|v|/2)): exact to rounding down to the smallest v.
+/// q_WB of the rotation by |v| about v, (v sin(|v|/2)/|v|, cos(|v|/2)): exact to rounding down to the smallest v.
 /// The vector must be finite; it has the same components in W and in B.
 Quat quat_from_rotation_vector(const Vector3d& v);
 
@@ -12,7 +12,7 @@ Quat quat_from_rotation_vector(const Vector3d& v);
 /// same attitude, the one whose first non-zero component is positive.
 Vector3d to_rotation_vector(const Quat& q_WB);
 
-/// Its length, the angle of the turn in [0, pi] [rad].
+/// Its length, the angle of the rotation in [0, pi] [rad].
 double rotation_angle(const Quat& q_WB);
 
 /// Of q and -q, the one with w > 0; for w = 0 the one whose first non-zero component is positive.

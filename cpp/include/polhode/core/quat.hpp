@@ -40,7 +40,7 @@ inline Quat normalized(const Quat& q) {
 }
 
 /// R_WB of a unit quaternion q_WB. The diagonal is a sum of differences of squares, in which equal components cancel: a
-/// quarter turn has exact zeros. Near 1 it is 1 minus squares instead, which keeps the digits of small turns.
+/// quarter turn has exact zeros. Near 1 it is 1 minus squares instead, which keeps the digits of small angles.
 inline Matrix3d to_matrix(const Quat& q) {
   const double xx = q.x * q.x, yy = q.y * q.y, zz = q.z * q.z, ww = q.w * q.w;
   const double xy = q.x * q.y, xz = q.x * q.z, yz = q.y * q.z;

@@ -79,8 +79,8 @@ Program expand_rotations(const Program& program, bool but_carried = false);
 
 /// Copies a program's nodes into `to`, which gets its outputs as forms. States become other forms: the first seven of
 /// `states` are the body's, and the program's own follow.
-/// @param turn  makes a vector seen from the axes of `to` one seen from the program's; null if they are the same
-std::vector<Form> embed(const Program& program, Graph& to, const std::vector<Form>& states, const Matrix3d* turn);
+/// @param rotation  makes a vector seen from the axes of `to` one seen from the program's; null if they are the same
+std::vector<Form> embed(const Program& program, Graph& to, const std::vector<Form>& states, const Matrix3d* rotation);
 
 /// The equations of a body with a torque: w' = I^-1 (tau - w x I w), q' = q w / 2, and the rates of its states.
 Program make_body_equations(const Program& torque, const Matrix3d& inertia_B);

@@ -24,7 +24,7 @@ POLHODE_INLINE void compute_rate_change_skew(const N* I, const N* inverse, const
 
 /// q' = q (w, 0) / 2
 template <class N>
-POLHODE_INLINE void compute_turning(const N* q, const N* w, N* f) {
+POLHODE_INLINE void compute_attitude_rate(const N* q, const N* w, N* f) {
   const N half(0.5), a = half * w[0], b = half * w[1], c = half * w[2];
   f[0] = q[3] * a + q[1] * c - q[2] * b;
   f[1] = q[3] * b + q[2] * a - q[0] * c;
@@ -49,8 +49,8 @@ POLHODE_INLINE N compute_error_norm(const N* error, const N* y0, const N* y1, N 
   const N before = sum_sizes(y0, 3), after = sum_sizes(y1, 3), size = select(before < after, after, before);
   const N e = sum_sizes(error, 3), rates = select(e == N(0.0), N(0.0), e / (rtol * size + atol));
   if constexpr (with_attitude) {
-    const N turn = (sum_sizes(error + 3, 3) + abs(error[6])) / (rtol + atol);
-    return select(rates > turn, rates, select(rates == rates, turn, rates));
+    const N angle = (sum_sizes(error + 3, 3) + abs(error[6])) / (rtol + atol);
+    return select(rates > angle, rates, select(rates == rates, angle, rates));
   } else {
     return rates;
   }

@@ -63,7 +63,7 @@ class EulerProblem {
     } else {
       compute_rate_change_skew(I_.data(), inverse_.data(), w, tau, f);
     }
-    if constexpr (with_attitude) compute_turning(q, w, f + 3);
+    if constexpr (with_attitude) compute_attitude_rate(q, w, f + 3);
   }
 
   double error_norm(const double* error, const double* y0, const double* y1, double rtol, double atol) const {

@@ -166,7 +166,7 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   void propagate_errors() {
     const int W = this->width();
     const double s = ((this->time_.hi - this->time_old_.hi) + (this->time_.lo - this->time_old_.lo)) / this->unit_old_;
-    // A body next to rest swings while it hardly turns: errors of its rates may be small at both ends of a long step.
+    // A body next to rest swings while it hardly rotates: errors of its rates may be small at both ends of a long step.
     double start[4], middle[3] = {};
     this->problem_.measure_error(this->y_old_, loss_, start);
     double* between = start[0] * std::abs(s * this->unit_old_) < least_turn ? middle : nullptr;
@@ -374,15 +374,15 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
       if (crossing.swapped != nullptr && crossing.since <= doubt) add_to_spread(crossing.swapped, doubt, this->y_);
       late_ = late_now * this->unit_;
       if (!find_jump(crossing, this->y_, jump)) return;
-      const double turn = crossing.curvature * first / std::abs(slope);
+      const double bend = crossing.curvature * first / std::abs(slope);
       // At a small angle the crossing is not certain.
-      if (!(turn < 0.5)) return add_to_spread(jump, find_stay(crossing, D), this->y_);
+      if (!(bend < 0.5)) return add_to_spread(jump, find_stay(crossing, D), this->y_);
       double* const errors[3] = {loss_, spread_, sample_};
       for (int k = 0; k < (separate_ ? 3 : 2); ++k) {
         const double late = parts[k] / slope, unsure = scale * crossing.rounding / slope;
         for (int i = 0; i < this->width(); ++i) errors[k][i] += jump[i] * (late + std::copysign(unsure, late));
       }
-      add_to_spread(jump, first * turn, this->y_);   // to second order
+      add_to_spread(jump, first * bend, this->y_);   // to second order
     }
   }
 

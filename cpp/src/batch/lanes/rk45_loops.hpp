@@ -145,7 +145,7 @@ class Rk45Lanes {
       for (int i = 0; i < 9; ++i) I[i] = load(b_.inertia[i]), inverse[i] = load(b_.inverse[i]);
       compute_rate_change_skew(I, inverse, y, tau, f);
     }
-    if constexpr (attitude) compute_turning(q, y, f + 3);
+    if constexpr (attitude) compute_attitude_rate(q, y, f + 3);
   }
 
   template <int S, int... J>

@@ -197,7 +197,7 @@ void Summary::add(std::uint64_t first, std::size_t bodies, int threads, const So
     done = std::min<std::size_t>(bodies, block - end_ % block);
     go_on(0, done);
   }
-  constexpr std::size_t at_once = 64;   // blocks, whose sums are held until their turn
+  constexpr std::size_t at_once = 64;   // blocks, whose sums are held until those before are added
   while (bodies - done >= block) {
     const std::size_t blocks = std::min(at_once, (bodies - done) / block), begin = done;
     std::vector<Sums> sums(blocks, layout.make_sums());

@@ -34,8 +34,8 @@ std::optional<Rows> find_rows(const Scene& piece) {
 Scene perturb_swing(const Scene& piece, const Vector3d& axis, const double* error) {
   SceneParts parts = piece.parts();
   const Quat& q = piece.attitude();
-  const Quat turn = conjugate(q) * Quat{error[4], error[5], error[6], error[7]};
-  const double half = axis[0] * turn.x + axis[1] * turn.y + axis[2] * turn.z;
+  const Quat apart = conjugate(q) * Quat{error[4], error[5], error[6], error[7]};
+  const double half = axis[0] * apart.x + axis[1] * apart.y + axis[2] * apart.z;
   parts.omega += axis.dot(Vector3d(error[0], error[1], error[2])) * axis;
   parts.attitude = normalized(q * Quat{half * axis[0], half * axis[1], half * axis[2], 1.0});
   return Scene(std::move(parts));

@@ -7,7 +7,7 @@
 #include "solve/form/input_error.hpp"
 #include "solve/form/parts.hpp"
 
-// A free body with rotors that turn.
+// A free body with rotors that spin.
 namespace polhode::form {
 namespace {
 

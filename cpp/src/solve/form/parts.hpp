@@ -10,7 +10,7 @@
 // What the closed forms share: the parts of a scene from which one is made, and its refusal in words.
 namespace polhode {
 
-/// The gravity of a scene in which it is the only torque; rotors may turn beside it.
+/// The gravity of a scene in which it is the only torque; rotors may spin beside it.
 const torques::Gravity* find_only_gravity(const Scene& scene);
 
 /// The symmetry axis of HeavyTop, which requires two moments equal bit for bit. A full tensor has none, because its

@@ -52,7 +52,7 @@ Vector3d compute_drive_rates(const Scene& scene) {
 /// The angle of rotation under a torque that is constant in the body. Such a torque finally spins the body up about its
 /// first or third principal axis. The angular acceleration is then the torque's component over that moment. Before, the
 /// start's rate counts. For nine in ten random blocks the result is within a factor 2 of the integrated angle.
-double turn_under_thrust(const Scene& scene, double span) {
+double angle_under_thrust(const Scene& scene, double span) {
   const InertiaTensor& inertia = scene.inertia_B();
   const Vector3d share = inertia.axes().transpose() * compute_torque(scene, scene.omega());
   const Vector3d& I = inertia.moments();
@@ -144,7 +144,7 @@ double estimate_turns(const Scene& scene, const TorqueSum& torques, double span)
   if (torques.acting == 0) return angle / (2 * std::numbers::pi);
   if (may_spin_up(scene, torques)) {
     if (!torques.uses_time && !torques.uses_attitude && !torques.uses_rates) {
-      return turn_under_thrust(scene, span) / (2 * std::numbers::pi);
+      return angle_under_thrust(scene, span) / (2 * std::numbers::pi);
     }
     // The geometric mean of two cases: a torque that averages out, and one that always accelerates.
     const double acceleration = compute_torque_scale(scene) / scene.inertia_B().moments()[0];
