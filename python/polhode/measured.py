@@ -1,4 +1,4 @@
-"""What was measured of a turning body, for :func:`polhode.fit`. NaN samples are left out and counted."""
+"""What was measured of a rotating body, for :func:`polhode.fit`. NaN samples are left out and counted."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from ._attitude.arrays import to_numbers
 from ._core import InvalidInput
-from ._sensitivity import turns
+from ._sensitivity import rotations
 
 Array = npt.NDArray[np.float64]
 
@@ -90,7 +90,7 @@ class Measurement(abc.ABC):
 
     @abc.abstractmethod
     def rows(self, omega: Array, attitude: Array, d_omega: Array, d_attitude: Array) -> Array:
-        """Return the derivatives (n, residuals, k) from those of omega and of the attitude (small turns in space)."""
+        """Return the derivatives (n, residuals, k) from those of omega and of small rotations in space."""
 
 
 def _to_whitener(sigma: Array, n: int, width: int) -> Array:
@@ -148,13 +148,13 @@ class Attitudes(Measurement):
 
     def residual(self, omega: Array, attitude: Array, bias: Array) -> Array:
         """Return the rotation vector from the measured attitude to that of the model, in body axes."""
-        return turns.log(turns.product(turns.conjugate(self.y), attitude))
+        return rotations.log(rotations.product(rotations.conjugate(self.y), attitude))
 
     def rows(self, omega: Array, attitude: Array, d_omega: Array, d_attitude: Array) -> Array:
-        """Return the derivatives of the rotation vector: the inverse right Jacobian times the small body turns."""
-        vector = turns.log(turns.product(turns.conjugate(self.y), attitude))
-        back = turns.to_matrix(attitude).transpose(0, 2, 1)
-        return turns.inverse_right_jacobian(vector) @ (back @ d_attitude)
+        """Return the derivatives of the rotation vector: the inverse right Jacobian times small body rotations."""
+        vector = rotations.log(rotations.product(rotations.conjugate(self.y), attitude))
+        back = rotations.to_matrix(attitude).transpose(0, 2, 1)
+        return rotations.inverse_right_jacobian(vector) @ (back @ d_attitude)
 
 
 class _Pairs(Measurement):
@@ -183,11 +183,11 @@ class Axis(_Pairs):
 
     def residual(self, omega: Array, attitude: Array, bias: Array) -> Array:
         """Return R axis - y."""
-        return turns.rotate(attitude, self.known) - self.y
+        return rotations.rotate(attitude, self.known) - self.y
 
     def rows(self, omega: Array, attitude: Array, d_omega: Array, d_attitude: Array) -> Array:
         """Return d theta_W x R axis."""
-        return -turns.cross_matrix(turns.rotate(attitude, self.known)) @ d_attitude
+        return -rotations.cross_matrix(rotations.rotate(attitude, self.known)) @ d_attitude
 
 
 class Direction(_Pairs):
@@ -198,12 +198,12 @@ class Direction(_Pairs):
 
     def residual(self, omega: Array, attitude: Array, bias: Array) -> Array:
         """Return R^T direction - y."""
-        return turns.rotate(turns.conjugate(attitude), self.known) - self.y
+        return rotations.rotate(rotations.conjugate(attitude), self.known) - self.y
 
     def rows(self, omega: Array, attitude: Array, d_omega: Array, d_attitude: Array) -> Array:
         """Return (R^T direction) x d theta_B."""
-        seen = turns.rotate(turns.conjugate(attitude), self.known)
-        return turns.cross_matrix(seen) @ (turns.to_matrix(attitude).transpose(0, 2, 1) @ d_attitude)
+        seen = rotations.rotate(rotations.conjugate(attitude), self.known)
+        return rotations.cross_matrix(seen) @ (rotations.to_matrix(attitude).transpose(0, 2, 1) @ d_attitude)
 
 
 class Scalar(Measurement):
@@ -244,7 +244,7 @@ class Scalar(Measurement):
         else:
             step = 1e-5
             gradient = np.stack([
-                (self._values(turns.product(turns.exp(step * axis), attitude))
-                 - self._values(turns.product(turns.exp(-step * axis), attitude))) / (2 * step)
+                (self._values(rotations.product(rotations.exp(step * axis), attitude))
+                 - self._values(rotations.product(rotations.exp(-step * axis), attitude))) / (2 * step)
                 for axis in np.eye(3)], axis=1)
         return gradient[:, None, :] @ d_attitude

@@ -241,7 +241,7 @@ def _align_exactly(a: FloatArray, b: FloatArray, weights: FloatArray, exact: Any
     across = np.cross(q, p) @ v
     along = (p * q).sum(axis=1) - (p @ v) * (q @ v)
     sine, cosine = weights @ across, weights @ along
-    # Rounding alone, as where the other vectors lie along the exact one: any turn is as good, and none is the shortest.
+    # Rounding alone, as where other vectors lie along the exact one: all rotations are as good, and none is shortest.
     if np.hypot(sine, cosine) <= 8 * np.finfo(float).eps * float(weights @ (np.linalg.norm(p, axis=1) *
                                                                           np.linalg.norm(q, axis=1))):
         warnings.warn(OPEN, UserWarning, stacklevel=4)

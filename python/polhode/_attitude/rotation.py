@@ -33,8 +33,8 @@ class Rotation:
     Examples
     --------
     >>> import polhode as ph
-    >>> turn = ph.Rotation.from_euler("ZXZ", [90, 0, 0], degrees=True)
-    >>> turn.apply([1.0, 0.0, 0.0]).round(12) + 0.0
+    >>> rotation = ph.Rotation.from_euler("ZXZ", [90, 0, 0], degrees=True)
+    >>> rotation.apply([1.0, 0.0, 0.0]).round(12) + 0.0
     array([0., 1., 0.])
     """
 
@@ -115,7 +115,7 @@ class Rotation:
         Parameters
         ----------
         seq : str
-            One to three axes, neighbours different: upper case turns about the axes as turned so far (intrinsic),
+            One to three axes, neighbours different: upper case rotates about the axes as rotated so far (intrinsic),
             lower case about the fixed axes (extrinsic). The textbook's (phi, theta, psi) are "ZXZ".
         angles : array_like, shape (..., len(seq)); also a number for one axis
             [rad], or degrees if `degrees`, in the order of the letters.
@@ -272,7 +272,7 @@ class Rotation:
     # ---- used
 
     def apply(self, vectors: ArrayLike, inverse: bool = False) -> FloatArray:
-        """Turn vectors: v_W = R_WB v_B, or v_B = R_WB^T v_W when `inverse`.
+        """Rotate vectors: v_W = R_WB v_B, or v_B = R_WB^T v_W when `inverse`.
 
         Parameters
         ----------

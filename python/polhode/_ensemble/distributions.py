@@ -18,7 +18,7 @@ Floats = npt.NDArray[np.float64]
 Path = tuple[Any, ...]   # keys and indices that lead to a number of a scene file
 
 NUMBERS = {"uniform": 2, "normal": 2, "log_uniform": 2, "truncated_normal": 4}   # parameters of one component
-TURNS = ("normal", "normal_deg")
+ROTATIONS = ("normal", "normal_deg")
 WORDS = {*NUMBERS, "sphere", "normal_deg"}
 DRAWN = ("body", "start", "torques", "rotors")   # the tables whose numbers may be drawn
 RELATIVE = "_relative"
@@ -35,7 +35,7 @@ class Quantity(NamedTuple):
     parameters: Floats
     single: bool = False            # the value is a number, not a list
     same: bool = False              # one draw for all three components
-    base: Floats | None = None      # of relative draws: what 1 + draw multiplies; of turns: the attitude in the middle
+    base: Floats | None = None      # of relative draws: what 1 + draw multiplies; of rotations: the middle attitude
     scale: float = 1.0              # of directions: the length
 
     @property
@@ -90,7 +90,7 @@ def _model() -> Any:
 
 
 def _check_attitude(table: Any) -> None:
-    one_of(table, "uniform", *TURNS)
+    one_of(table, "uniform", *ROTATIONS)
     if table.uniform is not None and table.about is not None:
         raise ValueError("about: must be left out beside uniform")
 

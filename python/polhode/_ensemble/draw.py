@@ -45,8 +45,8 @@ def _draw(quantity: Quantity, seed: int, first: int, count: int, attempt: int = 
         return quantity.scale * rows
     if quantity.kind == "turn":
         assert quantity.base is not None
-        turned: Floats = _core.attitude.product(quantity.base, rows)
-        return turned
+        rotated: Floats = _core.attitude.product(quantity.base, rows)
+        return rotated
     if quantity.same:
         rows = np.repeat(rows, 3, axis=1)
     if quantity.base is not None:

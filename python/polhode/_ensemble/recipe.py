@@ -183,7 +183,7 @@ def _sweep(data: dict[str, Any], sweep: dict[str, list[Any]], where: str) -> lis
 
 
 def _nominal_attitude(start: dict[str, Any], where: str) -> Any:
-    """Return the attitude in the middle of a drawn turn: that of `euler`, which goes, or the identity."""
+    """Return the attitude in the middle of a drawn rotation: that of `euler`, which goes, or the identity."""
     drawn = distributions.is_distribution(start.get("attitude"))
     if not drawn or "euler" not in start:
         return np.array([0.0, 0.0, 0.0, 1.0])

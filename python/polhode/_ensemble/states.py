@@ -83,10 +83,10 @@ def _free(point: Point, bodies: Bodies, inertia: Floats | InertiaTensor) -> Stat
         if not isinstance(inertia, InertiaTensor):
             inertia = inertia[:, None]
         times = point.nominal.times - point.nominal.t0
-        rates, turns = free_motion(inertia, omega[:, None], attitude[:, None], times, threads=1)
+        rates, attitudes = free_motion(inertia, omega[:, None], attitude[:, None], times, threads=1)
     bad = bodies.impossible
     count = len(bodies)
-    return States(rates, turns, np.where(bad, IMPOSSIBLE, 0).astype(np.int8), np.full(count, np.nan), ~bad,
+    return States(rates, attitudes, np.where(bad, IMPOSSIBLE, 0).astype(np.int8), np.full(count, np.nan), ~bad,
                   np.zeros(count, dtype=np.int64))
 
 

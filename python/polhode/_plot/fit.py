@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._sensitivity.turns import Array
+from .._sensitivity.rotations import Array
 from ..measured import Attitudes
 from . import style
 

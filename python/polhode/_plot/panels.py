@@ -123,14 +123,14 @@ def _momentum(axes: Any, drawing: Drawing) -> None:
 def _herpolhode(axes: Any, drawing: Drawing) -> None:
     curve, look = drawing.track.curve, drawing.look
     assert curve.attitude is not None
-    turn = Rotation.from_quat(curve.attitude)
-    momentum = turn[0].apply(compute_momentum(drawing.track.scene, curve.t[:1], curve.omega[:1])[0])
+    rotation = Rotation.from_quat(curve.attitude)
+    momentum = rotation[0].apply(compute_momentum(drawing.track.scene, curve.t[:1], curve.omega[:1])[0])
     axes.set_aspect("equal")
     axes.set_title("herpolhode: the tip of ω in space, across L")
     axes.set_xlabel("rad/s")
     if not np.linalg.norm(momentum) > 0:
         return
-    path = herpolhode(turn.apply(curve.omega), momentum)
+    path = herpolhode(rotation.apply(curve.omega), momentum)
     axes.plot(*path.T, color=look.path, linewidth=1.1)
     axes.plot(*path[0], marker="o", markersize=6, color=look.ink)
     axes.plot(0, 0, marker="+", markersize=9, color=look.quiet)
@@ -182,8 +182,8 @@ def _rates(axes: Any, drawing: Drawing) -> None:
 def _attitude(axes: Any, drawing: Drawing) -> None:
     attitude = drawing.track.curve.attitude
     assert attitude is not None
-    turned = np.cumprod(np.concatenate([[1.0], np.where(np.sum(attitude[1:] * attitude[:-1], axis=1) < 0, -1.0, 1.0)]))
-    _components(axes, drawing, attitude * turned[:, None], "xyzw")   # q and -q are one attitude: no jumps
+    signs = np.cumprod(np.concatenate([[1.0], np.where(np.sum(attitude[1:] * attitude[:-1], axis=1) < 0, -1.0, 1.0)]))
+    _components(axes, drawing, attitude * signs[:, None], "xyzw")   # q and -q are one attitude: no jumps
     axes.set_title("attitude, body to space")
     axes.set_ylabel("quaternion")
 
@@ -192,9 +192,9 @@ def angles(drawing: Drawing, axes: list[Any]) -> None:
     """Draw the z-x-z angles into three axes, or into one."""
     curve = drawing.track.curve
     assert curve.attitude is not None
-    turn = Rotation.from_quat(curve.attitude)
-    values = np.array(turn.as_euler("ZXZ"))
-    values[np.asarray(turn.gimbal_lock("ZXZ"))] = np.nan   # there phi and psi are one angle
+    rotation = Rotation.from_quat(curve.attitude)
+    values = np.array(rotation.as_euler("ZXZ"))
+    values[np.asarray(rotation.gimbal_lock("ZXZ"))] = np.nan   # there phi and psi are one angle
     one = len(axes) == 1
     for k, (name, colour) in enumerate(zip("φθψ", drawing.look.lines)):
         place = axes[0] if one else axes[k]

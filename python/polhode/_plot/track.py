@@ -15,7 +15,7 @@ from .._solve.motion import Floats, Motion
 from .._solve.solve import solve
 
 TURNS = 40        # a curve longer than this many turns is drawn up to there, or it covers itself
-FINE = 0.05       # radians of turn between two points of a curve
+FINE = 0.05       # radians of rotation between two points of a curve
 MOST = 20_000     # points of a curve
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from .._core import InvalidInput
 from .least_squares import Minimum
 from .problem import Problem, State
-from .turns import Array
+from .rotations import Array
 
 WITHIN = 25.0    # of the best chi2: five standard deviations
 LIMIT = 4.0      # standard deviations of chi2 above its mean that a motion that fits may have
@@ -32,7 +32,7 @@ class Candidate:
     inertia : ndarray, shape (3,)
         Principal moments; the largest is 1.
     nutation, precession : float
-        Periods [s]: of omega in the body, and of the mean turn about the angular momentum. inf where there is none.
+        Periods [s]: of omega in the body, and of the mean rotation about the angular momentum. inf where there is none.
     chi2 : float
         The sum of squared residuals over sigma.
     """

@@ -10,11 +10,11 @@ import numpy as np
 from .. import _core
 from .._core import InertiaTensor
 from .._scene.scene import Scene
-from . import turns
+from . import rotations
 from .driven import differentiate
 from .parameters import get, names_of, put
 from .problem import Problem, State
-from .turns import Array
+from .rotations import Array
 
 if TYPE_CHECKING:
     from ..measured import Measurement
@@ -55,7 +55,7 @@ class DrivenState(State):
 
     def values(self) -> dict[str, Array]:
         """Return the parameters as numbers, by group."""
-        return {"attitude": turns.log(self.attitude), "omega": self.omega, "inertia": self.seconds, **self.numbers,
+        return {"attitude": rotations.log(self.attitude), "omega": self.omega, "inertia": self.seconds, **self.numbers,
                 "bias": self.bias}
 
     def moved(self, step: Array, slices: dict[str, slice]) -> DrivenState:
@@ -64,7 +64,7 @@ class DrivenState(State):
         numbers = dict(self.numbers)
         for group, here in slices.items():
             if group == "attitude":
-                attitude = turns.product(turns.exp(step[here]), attitude)
+                attitude = rotations.product(rotations.exp(step[here]), attitude)
                 attitude = attitude / np.linalg.norm(attitude)
             elif group == "omega":
                 omega = omega + step[here]

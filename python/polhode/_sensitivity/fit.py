@@ -1,4 +1,4 @@
-"""Fits of a turning body to measurements."""
+"""Fits of a rotating body to measurements."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from .._attitude.arrays import is_one_of, is_whole, to_items, to_number
 from .._core import IntegrationFailure, InvalidInput
 from .._scene.scene import Scene
 from ..measured import Attitudes, Measurement, Rates
-from . import turns
+from . import rotations
 from .candidates import Pool
 from .driven_problem import DrivenProblem, DrivenState
 from .least_squares import LOSSES, Minimum, minimise
 from .problem import GROUPS, Problem, State, ratios_of
 from .result import FitResult, make_result
+from .rotations import Array
 from .start import fits
 from .starts import SPANS, grown, search_free
-from .turns import Array
 
 
 def _to_data(data: Any) -> list[Measurement]:
@@ -55,7 +55,7 @@ def _of_scene(scene: Scene | None, groups: Sequence[str], count: int) -> tuple[S
     matrix = np.asarray(tensor.matrix)
     diagonal = not (matrix - np.diag(np.diag(matrix))).any()
     moments = np.diag(matrix) if diagonal else np.asarray(tensor.principal().moments)
-    axes = np.array([0.0, 0, 0, 1]) if diagonal else turns.of_matrix(np.asarray(tensor.principal().axes))
+    axes = np.array([0.0, 0, 0, 1]) if diagonal else rotations.of_matrix(np.asarray(tensor.principal().axes))
     attitude = np.asarray(scene.attitude.as_quat() if hasattr(scene.attitude, "as_quat") else scene.attitude)
     return State(attitude, np.asarray(scene.omega, dtype=float), ratios_of(moments), axes, bias), float(moments.max())
 
@@ -84,7 +84,8 @@ def _start_driven(problem: Problem, state: State, loss: str, scale: float) -> St
         if isinstance(m, Rates) and "omega" in problem.slices:
             step[problem.slices["omega"]] = m.y[first] - state.omega
         if isinstance(m, Attitudes) and "attitude" in problem.slices:
-            step[problem.slices["attitude"]] = turns.log(turns.product(m.y[first], turns.conjugate(state.attitude)))
+            error = rotations.product(m.y[first], rotations.conjugate(state.attitude))
+            step[problem.slices["attitude"]] = rotations.log(error)
     spans = np.quantile(np.abs(problem.t), SPANS)
     best: Minimum | None = None
     for begin in (state.moved(step, problem.slices), state):

@@ -1,4 +1,4 @@
-"""Levenberg and Marquardt's method for the parameters of a turning body, with losses as SciPy's."""
+"""Levenberg and Marquardt's method for the parameters of a rotating body, with losses as SciPy's."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .._core import IntegrationFailure, InvalidInput
-from .turns import Array
+from .rotations import Array
 
 if TYPE_CHECKING:
     from .problem import Problem, State

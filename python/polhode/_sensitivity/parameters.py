@@ -9,7 +9,7 @@ import numpy as np
 from .. import _core, torques
 from .._core import InvalidInput, Rotor
 from .._scene.scene import Scene
-from .turns import Array
+from .rotations import Array
 
 
 def _inner(torque: Any) -> Any:

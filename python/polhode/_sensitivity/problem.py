@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .._core import FreeMotion, InertiaTensor
-from . import turns
-from .turns import Array
+from . import rotations
+from .rotations import Array
 
 if TYPE_CHECKING:
     from ..measured import Measurement
@@ -44,7 +44,7 @@ class State:
         def displaced(q: Array, vector: Array) -> Array:
             if not vector.any():
                 return q
-            new = turns.product(turns.exp(vector), q)
+            new = rotations.product(rotations.exp(vector), q)
             out: Array = new / np.linalg.norm(new)
             return out
 
@@ -54,17 +54,17 @@ class State:
 
     def values(self) -> dict[str, Array]:
         """Return the parameters as numbers, by group."""
-        return {"attitude": turns.log(self.attitude), "omega": self.omega, "inertia": self.ratios,
-                "axes": turns.log(self.axes), "bias": self.bias}
+        return {"attitude": rotations.log(self.attitude), "omega": self.omega, "inertia": self.ratios,
+                "axes": rotations.log(self.axes), "bias": self.bias}
 
     def motion(self) -> FreeMotion:
         """The motion in principal axes."""
         inertia = InertiaTensor.from_moments(self.moments, physical=False)
         if not self.oblique:
             return FreeMotion(inertia, self.omega, self.attitude)
-        back = turns.conjugate(self.axes)
-        attitude = turns.product(self.attitude, self.axes)
-        return FreeMotion(inertia, turns.rotate(back, self.omega), attitude / np.linalg.norm(attitude))
+        back = rotations.conjugate(self.axes)
+        attitude = rotations.product(self.attitude, self.axes)
+        return FreeMotion(inertia, rotations.rotate(back, self.omega), attitude / np.linalg.norm(attitude))
 
     @property
     def oblique(self) -> bool:
@@ -75,7 +75,7 @@ class State:
         """Return states in the given axes from those in principal axes."""
         if not self.oblique:
             return omega, attitude
-        return turns.rotate(self.axes, omega), turns.product(attitude, turns.conjugate(self.axes))
+        return rotations.rotate(self.axes, omega), rotations.product(attitude, rotations.conjugate(self.axes))
 
 
 def ratios_of(moments: Array, least: float = 1e-9) -> Array:
@@ -132,7 +132,7 @@ class Problem:
     def columns(self, state: State) -> tuple[Array, Array, Array, Array]:
         """(omega, attitude, d omega, d theta) of the parameters of the motion, small rotations in space axes."""
         s = state.motion().sensitivity(self.t, self.wrt)
-        E = turns.to_matrix(state.axes)
+        E = rotations.to_matrix(state.axes)
         n, width = self.t.size, len(self.names)
         d_omega, d_attitude = np.zeros((n, 3, width)), np.zeros((n, 3, width))
 
@@ -175,10 +175,10 @@ class Problem:
         """The derivative of `fun`."""
         x = np.asarray(x, dtype=float)
         _, jacobian = self.residuals_and_jacobian(self.base.moved(x, self.slices))
-        for group in ("attitude", "axes"):   # a step of the rotation vector turns by its left Jacobian
+        for group in ("attitude", "axes"):   # a step of the rotation vector rotates by its left Jacobian
             if group in self.slices:
                 here = self.slices[group]
-                jacobian[:, here] = jacobian[:, here] @ np.linalg.inv(turns.inverse_right_jacobian(x[here]).T)
+                jacobian[:, here] = jacobian[:, here] @ np.linalg.inv(rotations.inverse_right_jacobian(x[here]).T)
         return jacobian
 
     def with_data(self, data: Sequence[Measurement], base: State | None = None) -> Problem:

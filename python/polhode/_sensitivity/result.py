@@ -11,12 +11,12 @@ from .._attitude.rotation import Rotation
 from .._core import InertiaTensor
 from .._scene.scene import Scene
 from ..measured import Axis, Rates, Scalar
-from . import turns
+from . import rotations
 from .candidates import Candidate, Pool, aliases
 from .driven_problem import DrivenState
 from .least_squares import Minimum
 from .problem import Problem, State
-from .turns import Array
+from .rotations import Array
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -218,7 +218,7 @@ def make_result(problem: Problem, found: Minimum, scene: Scene | None, largest: 
     with np.errstate(invalid="ignore"):
         correlation = cov / stderr / stderr[:, None]
     moments = state.moments / state.moments.max() * largest
-    E = turns.to_matrix(state.axes)
+    E = rotations.to_matrix(state.axes)
     oblique = "axes" in problem.slices or bool(np.abs(state.axes[:3]).any())
     inertia: Any = InertiaTensor(E @ np.diag(moments) @ E.T, physical=False) if oblique else moments
     unobservable = [] if scene is not None else ["the scale of the inertia: a free motion does not depend on it"]

@@ -11,8 +11,8 @@ from ..measured import Attitudes, Measurement, Rates
 from .candidates import WITHIN, Pool, lattice
 from .least_squares import minimise
 from .problem import Problem, State, ratios_of
+from .rotations import Array
 from .start import costs_of
-from .turns import Array
 
 FITTED = 6         # candidates of a nutation that are fitted at most
 NEAR = 4.0         # cost over the best one's beyond which a candidate is not fitted

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .._batch.closed_forms import free_motion
-from . import turns
+from . import rotations
 from .least_squares import Minimum, minimise
 from .problem import Problem, State, ratios_of
-from .turns import Array
+from .rotations import Array
 
 if TYPE_CHECKING:
     from ..measured import Measurement
@@ -51,7 +51,7 @@ def from_rates(t: Array, y: Array, axes: bool) -> tuple[Array, Array]:
     moments, vectors = np.linalg.eigh(J)
     if np.linalg.det(vectors) < 0:
         vectors[:, 0] *= -1
-    return np.maximum(moments, 1e-3 * np.trace(J)), turns.of_matrix(vectors)
+    return np.maximum(moments, 1e-3 * np.trace(J)), rotations.of_matrix(vectors)
 
 
 def grow(problem: Problem, state: State, spans: Sequence[float] | Array, loss: str, scale: float,
@@ -72,7 +72,7 @@ def grow(problem: Problem, state: State, spans: Sequence[float] | Array, loss: s
 
 
 def wahba(pairs: list[tuple[Array, Array, float]]) -> tuple[Array, Array]:
-    """Return (cost, quaternion) of the best turn Q of each body: Q x = y for pairs (x (B, k, 3), y (k, 3), weight).
+    """Return (cost, quaternion) of the best rotation Q of each body: Q x = y for pairs (x (B, k, 3), y (k, 3), weight).
 
     Davenport's quadratic form: the largest eigenvalue gives the cost (Davenport 1968; Wahba 1965).
     """
@@ -107,9 +107,9 @@ def costs_of(data: Sequence[Measurement], omega: Array, moments: Array, until: f
         weight = float(np.mean(part.whitener[:, 0, 0] ** 2))
         if isinstance(part, (Attitudes, Axis, Direction)):
             q = free_motion(moments[:, None], omega[:, None], (0, 0, 0, 1), part.t, want="attitude")
-            R = turns.to_matrix(q)
+            R = rotations.to_matrix(q)
             if isinstance(part, Attitudes):
-                Y = turns.to_matrix(part.y)
+                Y = rotations.to_matrix(part.y)
                 pairs += [(R[..., k], Y[..., k], weight) for k in range(3)]
             elif isinstance(part, Axis):
                 pairs.append((R @ part.known, part.y, weight))

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from ..measured import Attitudes, Axis, Direction, Measurement, Rates
-from . import sparse, turns
+from . import rotations, sparse
 from .candidates import Pool
 from .least_squares import Minimum, minimise
 from .problem import Problem, State, ratios_of
+from .rotations import Array
 from .start import from_rates, grow, search, wahba
-from .turns import Array
 
 STARTS = 12     # other ratios that are tried where the linear start does not fit
 THIN = 8.0      # log of a ratio of second moments beyond which other ratios are tried too
@@ -24,10 +24,10 @@ def _first_attitude(problem: Problem, state: State) -> State:
         if not isinstance(m, (Attitudes, Axis, Direction)):
             continue
         motion = State(np.array([0.0, 0, 0, 1]), state.omega, state.ratios, state.axes, state.bias).motion()
-        q = turns.product(motion.at(m.t)[1], turns.conjugate(state.axes))
-        R = turns.to_matrix(q)
+        q = rotations.product(motion.at(m.t)[1], rotations.conjugate(state.axes))
+        R = rotations.to_matrix(q)
         if isinstance(m, Attitudes):
-            Y = turns.to_matrix(m.y)
+            Y = rotations.to_matrix(m.y)
             pairs += [(R[None, :, :, k], Y[..., k], 1.0) for k in range(3)]
         elif isinstance(m, Axis):
             pairs.append(((R @ m.known)[None], m.y, 1.0))

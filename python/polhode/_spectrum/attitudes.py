@@ -13,7 +13,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from .._sensitivity import turns
+from .._sensitivity import rotations
 from ..measured import Attitudes
 from .curve import PHASES, Curve, carried, fourier, make_curve, orders
 from .scan import BLOCK, Array, grid, largest_eigenvalue, peaks, periodogram, project, refine
@@ -42,7 +42,7 @@ def samples_of(data: Attitudes) -> Samples:
     weight = np.sqrt(np.mean(np.einsum("nii->ni", data.whitener) ** 2, axis=1))
     variance = 1 / float(np.mean(weight**2))
     weight = weight * variance**0.5
-    R = turns.to_matrix(data.y)
+    R = rotations.to_matrix(data.y)
     X = weight[:, None] * R.transpose(0, 2, 1).reshape(-1, 9)   # component a of R^T l is sum_j R_ja l_j
     return Samples(data.t - middle, middle, np.ascontiguousarray(X), weight, R, variance)
 

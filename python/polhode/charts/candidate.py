@@ -62,7 +62,7 @@ def fixed(label: str) -> Callable[[Scene], Settings]:
 
 
 def steps(scene: Scene, count: int = 11, factor: int = 2) -> Settings:
-    """Fixed steps that land on the samples: their interval over 1, 2, 4, ..., from about a radian of turn on."""
+    """Fixed steps that land on the samples: their interval over 1, 2, 4, ..., from about a radian of rotation on."""
     gaps = np.diff(np.concatenate([[scene.t0], scene.times]))
     gap = float(np.abs(gaps[gaps != 0]).min()) if gaps.any() else 1.0
     rate = float(np.linalg.norm(scene.omega))

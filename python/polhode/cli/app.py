@@ -75,7 +75,7 @@ def run(
         pathlib.Path | None, typer.Option("--plot",
                                           help="Draw polhode, angles and invariants: .png, .svg or .pdf.")] = None,
     animate: Annotated[
-        pathlib.Path | None, typer.Option(help="Write a film of the turning body: .html, .gif or .mp4.")] = None,
+        pathlib.Path | None, typer.Option(help="Write a film of the rotating body: .html, .gif or .mp4.")] = None,
     as_json: Json = False,
 ) -> int:
     """Compute the rotational motion of a scene at its sample times.

@@ -146,8 +146,8 @@ def _units(mass: float | None, com: Array | None, matrix: Array) -> Iterator[Cau
 def _axes(mass: float | None, com: Array | None, matrix: Array) -> Iterator[Cause]:
     for order in itertools.permutations(range(3)):
         for signs in ((1, 1, 1), (-1, 1, 1), (1, -1, 1), (1, 1, -1)):
-            turn = np.eye(3)[list(order)] * np.array(signs)[:, None]
-            rotated = turn @ matrix @ turn.T
+            mirror = np.eye(3)[list(order)] * np.array(signs)[:, None]
+            rotated = mirror @ matrix @ mirror.T
             if order == (0, 1, 2):
                 axis = "xyz"[signs.index(-1)] if -1 in signs else ""
                 if not axis:
@@ -161,17 +161,17 @@ def _axes(mass: float | None, com: Array | None, matrix: Array) -> Iterator[Caus
             yield Cause("axes", text + ", in the tensor", cost, single(mass, com, rotated))
             if com is not None and com.any():
                 yield Cause("axes", text + ", in tensor and centre of mass", cost + 0.5,
-                            single(mass, turn @ com, rotated))
+                            single(mass, mirror @ com, rotated))
                 if order == (0, 1, 2):   # a mirror turns one component of com, or the two others with the frame
                     yield Cause("axes", text + ", in tensor and centre of mass", cost + 0.5,
-                                single(mass, -turn @ com, rotated))
+                                single(mass, -mirror @ com, rotated))
     values, q = np.linalg.eigh(matrix)
     back = q.T @ np.diag(values) @ q
     for order in itertools.permutations(range(3)):
         for signs in ((1, 1, 1), (-1, 1, 1), (1, -1, 1), (1, 1, -1)):
-            turn = np.eye(3)[list(order)] * np.array(signs)[:, None]
+            mirror = np.eye(3)[list(order)] * np.array(signs)[:, None]
             yield Cause("axes", "the principal axes were applied transposed (R^T D R for R D R^T)", 2.0,
-                        single(mass, com, turn @ back @ turn.T))
+                        single(mass, com, mirror @ back @ mirror.T))
 
 
 def _decimals(mass: float | None, com: Array | None, matrix: Array, geometry: Geometry) -> Iterator[Cause]:

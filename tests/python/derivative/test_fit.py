@@ -7,7 +7,7 @@ import pytest
 
 import polhode as ph
 from polhode import measured
-from polhode._sensitivity import turns
+from polhode._sensitivity import rotations
 from polhode._sensitivity.least_squares import rho
 from polhode._sensitivity.problem import Problem, State, ratios_of
 from polhode._sensitivity.result import covariance
@@ -26,12 +26,12 @@ def random_body(rng):
 def seen(motion, t, kind, sigma, rng):
     """Measurements of a motion with noise."""
     omega, q = motion.at(t)
-    R = turns.to_matrix(q)
+    R = rotations.to_matrix(q)
     noise = sigma * rng.normal(size=(len(t), 3))
     if kind == "rates":
         return measured.Rates(t, omega + noise, sigma)
     if kind == "attitudes":
-        return measured.Attitudes(t, turns.product(q, turns.exp(noise)), sigma)
+        return measured.Attitudes(t, rotations.product(q, rotations.exp(noise)), sigma)
     if kind == "axis":
         return measured.Axis(t, R[:, :, 2] + noise, sigma, (0, 0, 1))
     if kind == "direction":
@@ -40,7 +40,7 @@ def seen(motion, t, kind, sigma, rng):
 
 
 def brightness(q):
-    return turns.to_matrix(q)[:, 2, 0] ** 2 + 0.5 * turns.to_matrix(q)[:, 0, 1]
+    return rotations.to_matrix(q)[:, 2, 0] ** 2 + 0.5 * rotations.to_matrix(q)[:, 0, 1]
 
 
 def motion_of(inertia=INERTIA, omega=OMEGA, attitude=START):
@@ -54,7 +54,7 @@ def test_the_jacobian_is_that_of_the_residuals(kinds):
     data = [seen(motion_of(), np.linspace(0, 3, 7), kind, 0.3, rng) for kind in kinds]
     if "rates" in kinds:
         data[0].bias = 3
-    state = State(START, OMEGA, ratios_of(INERTIA), turns.exp(np.array([0.2, -0.1, 0.4])), np.zeros(data[0].bias))
+    state = State(START, OMEGA, ratios_of(INERTIA), rotations.exp(np.array([0.2, -0.1, 0.4])), np.zeros(data[0].bias))
     problem = Problem(data, ("attitude", "omega", "inertia", "axes"), state)
     x = rng.normal(size=len(problem.names)) * 0.2
     found, step = problem.jac(x), 1e-5
@@ -181,7 +181,8 @@ def test_a_prediction_spreads_and_its_covariance_is_that_of_other_fits():
     fits = [ph.fit(seen(motion_of(), t, "attitudes", 0.02, rng), scene, start="scene").predict(later)
             for _ in range(60)]
     assert np.all(np.diff(fits[0].spread) > 0) and fits[0].unknown_after() == 300.0
-    off = np.array([turns.log(turns.product(f.attitude, turns.conjugate(motion_of().at(later)[1])))[1] for f in fits])
+    back = rotations.conjugate(motion_of().at(later)[1])
+    off = np.array([rotations.log(rotations.product(f.attitude, back))[1] for f in fits])
     assert np.sqrt((off**2).sum(axis=1).mean()) == pytest.approx(
         np.sqrt(np.mean([np.trace(f.cov_attitude[1]) for f in fits])), rel=0.3)
 

@@ -1,1 +1,1 @@
-"""Films of motions: the frames, the solid that turns, the page and the writers."""
+"""Films of motions: the frames, the solid that rotates, the page and the writers."""

@@ -89,7 +89,7 @@ def _box(scene: Scene) -> tuple[Floats, Floats, Floats]:
 
 
 def _ellipsoid(scene: Scene, rows: int = 16) -> tuple[Floats, Floats, Floats]:
-    """The uniform ellipsoid: spread = semi-axis^2 / 5. Its octants have two colours, so that its turning is seen."""
+    """The uniform ellipsoid: spread = semi-axis^2 / 5. Its octants have two colours, so that its rotation is seen."""
     spreads, axes, centre = _about_centre(scene)
     semi = _half_sides(spreads, 5.0)
     unit = sphere(rows)
@@ -145,7 +145,7 @@ def _mesh(scene: Scene, given: Any) -> tuple[Floats, Floats, Floats]:
 
 
 def make_solid(scene: Scene, body: Any = "box") -> Solid:
-    """Return what a film turns.
+    """Return what a film rotates.
 
     Parameters
     ----------

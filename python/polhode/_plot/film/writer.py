@@ -24,10 +24,10 @@ LONGEST = 12.0   # seconds of a file
 TRAIL = 0.25   # of the film that the path of the axis reaches back
 
 
-def _shade(solid: Any, turned: Floats, view: View) -> Floats:
+def _shade(solid: Any, rotated: Floats, view: View) -> Floats:
     """Return each triangle's colour in the light from above the reader."""
     light = view.towards + 0.5 * view.up
-    bright = 0.45 + 0.55 * np.clip(turned @ (light / np.linalg.norm(light)), 0, 1)
+    bright = 0.45 + 0.55 * np.clip(rotated @ (light / np.linalg.norm(light)), 0, 1)
     found: Floats = solid.colours * bright[:, None]
     return found
 
@@ -41,8 +41,8 @@ def _frames(film: Film, chosen: list[int]) -> Iterator[Floats]:
 
     view, look, solid = make_view(-60.0, 22.0), style.LIGHT, film.solid
     paper = np.stack([view.right, view.up], axis=1)
-    turns = Rotation.from_quat(film.attitude)
-    tips = turns.apply(1.15 * film.axis) @ paper
+    rotations = Rotation.from_quat(film.attitude)
+    tips = rotations.apply(1.15 * film.axis) @ paper
     panel = make_view()   # that of the polhode
     w = film.omega @ np.asarray(film.scene.carrier_inertia.axes) @ np.stack([panel.right, panel.up], axis=1)
     back = max(2, int(TRAIL * len(film.t)))
@@ -65,7 +65,7 @@ def _frames(film: Film, chosen: list[int]) -> Iterator[Floats]:
         canvas.draw()
         still = canvas.copy_from_bbox(figure.bbox)
         for frame in chosen:
-            corners = solid.corners @ turns[frame].as_matrix().T
+            corners = solid.corners @ rotations[frame].as_matrix().T
             normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
             normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
             seen = np.flatnonzero(normal @ view.towards > 0)

@@ -56,7 +56,7 @@ def candidates(given: ev.Bodies, alone: ev.Evidence, known: Known, link: LinkRec
     geometry = known.geometry if known.quality in LEFT else ev.Geometry()
     if geometry is not known.geometry:
         alone = ev.weigh(given, geometry)
-    causes = [*link.rotation_causes(), *undo(given, geometry), *_floors(given, geometry), *_turned_centre(given),
+    causes = [*link.rotation_causes(), *undo(given, geometry), *_floors(given, geometry), *_rotated_centre(given),
               *_formulas(given)]
     found = []
     if causes:
@@ -98,7 +98,7 @@ def _formulas(given: ev.Bodies) -> list[Cause]:
     return [Cause("formula", text, 1.0, given._replace(matrix=given.matrix / factor)) for factor, text in FORMULAS]
 
 
-def _turned_centre(given: ev.Bodies) -> list[Cause]:
+def _rotated_centre(given: ev.Bodies) -> list[Cause]:
     """One component of the centre of mass with the other sign."""
     found = []
     for i, name in enumerate("xyz"):

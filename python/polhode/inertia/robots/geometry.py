@@ -104,7 +104,7 @@ def mesh(surface: meshes.Surface, scale: Array, pose: Pose) -> Part:
     signs = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
     axes = np.abs(pose.rotation).max(1) > 1 - 1e-9
     vertices = signs * (surface.high - surface.low) + surface.low if axes.all() else surface.corners
-    vertices = (vertices * scale) @ pose.rotation.T + pose.place   # along the axes the box of the file turns with it
+    vertices = (vertices * scale) @ pose.rotation.T + pose.place   # along the axes the box of the file rotates with it
     low, high = vertices.min(0), vertices.max(0)
     bound = surface.solid is None
     moments = surface.hull if surface.solid is None else surface.solid

@@ -172,9 +172,9 @@ def _outer(points: Array, make: Any) -> Array:
     return rows.view(left.dtype).reshape(-1, 3)
 
 
-def placed(moments: Moments, scale: Array, turn: Array, place: Array) -> MassProperties:
-    """The body with scaled axes, turned and moved: x = turn @ (scale * x_file) + place."""
+def placed(moments: Moments, scale: Array, rotation: Array, place: Array) -> MassProperties:
+    """The body with scaled axes, rotated and moved: x = rotation @ (scale * x_file) + place."""
     volume = moments.volume * float(np.abs(scale.prod()))
     second = moments.second * np.outer(scale, scale) * float(np.abs(scale.prod()))
-    tensor = from_spread(turn @ second @ turn.T)
-    return MassProperties(volume, turn @ (scale * moments.centre) + place, (tensor + tensor.T) / 2)
+    tensor = from_spread(rotation @ second @ rotation.T)
+    return MassProperties(volume, rotation @ (scale * moments.centre) + place, (tensor + tensor.T) / 2)

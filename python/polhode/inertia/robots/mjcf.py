@@ -124,9 +124,9 @@ def _geoms(node: Node, style: str, frame: Pose, compiler: Compiler) -> Iterator[
             offset, angles = child.numbers("offset", 3, "0 0 0"), child.numbers("euler", 3, "0 0 0")
             place = np.zeros(3)
             for i in range(count):   # the angles are multiplied, each offset is in the axes of the copy before
-                turn = orientation(child, compiler, {"euler": " ".join(map(repr, (i * angles).tolist()))})
-                yield from _geoms(child, inside, frame @ Pose(turn, place), compiler)
-                place = place + turn @ offset
+                rotation = orientation(child, compiler, {"euler": " ".join(map(repr, (i * angles).tolist()))})
+                yield from _geoms(child, inside, frame @ Pose(rotation, place), compiler)
+                place = place + rotation @ offset
 
 
 def _inertial(link: Link, node: Node, compiler: Compiler) -> None:
@@ -243,12 +243,12 @@ def _mesh(node: Node, attributes: dict[str, str], kind: str, model: Model, link:
     scale = asset.convert(settings.get("scale", "1 1 1"), 3, "scale")
     if "refpos" in settings or "refquat" in settings:   # the mesh's own frame, in the file's axes
         quat = asset.convert(settings.get("refquat", "1 0 0 0"), 4, "refquat")
-        turn = orientation(asset, model.compiler, {"quat": " ".join(map(repr, quat.tolist()))}).T
+        rotation = orientation(asset, model.compiler, {"quat": " ".join(map(repr, quat.tolist()))}).T
         shift = asset.convert(settings.get("refpos", "0 0 0"), 3, "refpos")
-        if np.ptp(scale) and np.abs(turn - np.eye(3)).max() > 1e-9:
+        if np.ptp(scale) and np.abs(rotation - np.eye(3)).max() > 1e-9:
             link.leave_out(into, "asset", f"mesh {name!r} is not read (turned and stretched): not compared with it")
             return
-        place = place @ Pose(turn, -(turn @ (scale * shift)))
+        place = place @ Pose(rotation, -(rotation @ (scale * shift)))
     if "vertex" in settings:
         with link.shielded(into):
             numbers = asset.convert(settings["vertex"], None, "vertex")

@@ -131,19 +131,19 @@ def orientation(node: Node, compiler: Compiler, attributes: dict[str, str] | Non
     radians = np.pi / 180 if compiler.degrees else 1.0
     if "quat" in attributes:
         w, x, y, z = unit(numbers("quat", 4), node)   # MuJoCo's scalar comes first
-        turn = Rotation.from_quat((x, y, z, w))
+        rotation = Rotation.from_quat((x, y, z, w))
     elif "axisangle" in attributes:
         axis, angle = numbers("axisangle", 4)[:3], numbers("axisangle", 4)[3]
-        turn = Rotation.from_rotvec(unit(axis, node) * angle * radians)
-    elif "euler" in attributes:   # MuJoCo's lower case turns with the body, as SciPy's upper case does
+        rotation = Rotation.from_rotvec(unit(axis, node) * angle * radians)
+    elif "euler" in attributes:   # MuJoCo's lower case rotates with the body, as SciPy's upper case does
         angles = numbers("euler", 3) * radians
         if compiler.euler.islower() or compiler.euler.isupper():
-            turn = Rotation.from_euler(compiler.euler.swapcase(), angles)
+            rotation = Rotation.from_euler(compiler.euler.swapcase(), angles)
         else:
-            turn = Rotation.from_quat((0, 0, 0, 1))
+            rotation = Rotation.from_quat((0, 0, 0, 1))
             for letter, angle in zip(compiler.euler, angles):
                 single = Rotation.from_rotvec(np.eye(3)["xyz".index(letter.lower())] * angle)
-                turn = turn * single if letter.islower() else single * turn
+                rotation = rotation * single if letter.islower() else single * rotation
     elif "xyaxes" in attributes:
         x, y = np.split(numbers("xyaxes", 6), 2)
         x = unit(x, node)
@@ -153,7 +153,7 @@ def orientation(node: Node, compiler: Compiler, attributes: dict[str, str] | Non
         return onto(unit(numbers("zaxis", 3), node))
     else:
         return np.eye(3)
-    return np.asarray(turn.as_matrix())
+    return np.asarray(rotation.as_matrix())
 
 
 def pose(node: Node, compiler: Compiler, attributes: dict[str, str] | None = None) -> Pose:
@@ -170,7 +170,7 @@ def unit(v: Array, node: Node) -> Array:
 
 
 def onto(z: Array) -> Array:
-    """The smallest turn that takes the z axis onto this unit vector."""
+    """The smallest rotation that takes the z axis onto this unit vector."""
     v, c = np.cross((0, 0, 1), z), z[2]
     if c < -1 + 1e-12:
         return np.diag([1.0, -1.0, -1.0])

@@ -68,12 +68,12 @@ class LinkRecord:
 
     def rotation_causes(self) -> list[Cause]:
         """Rotations of the inertial frame that should not be there, or the other way round."""
-        turn, matrix = self.pose.rotation, self.matrix
+        rotation, matrix = self.pose.rotation, self.matrix
         assert matrix is not None and self.mass is not None
-        com = turn.T @ self.pose.place
-        once = turn.T @ matrix @ turn
+        com = rotation.T @ self.pose.place
+        once = rotation.T @ matrix @ rotation
         text = "the rotation of the inertial frame is "
         return [Cause("axes", text + "superfluous: the tensor is in the link's axes", 2.0,
                       ev.single(self.mass, com, once)),
                 Cause("axes", text + "the wrong way round (transposed)", 2.0,
-                      ev.single(self.mass, com, turn.T @ once @ turn))]
+                      ev.single(self.mass, com, rotation.T @ once @ rotation))]

@@ -54,8 +54,8 @@ def _pose(node: Node) -> Pose:
     origin = node.child("origin")
     if origin is None:
         return Pose()
-    turn = Rotation.from_euler("xyz", origin.numbers("rpy", 3, "0 0 0"))   # roll, pitch, yaw about fixed axes
-    return Pose(turn.as_matrix(), origin.numbers("xyz", 3, "0 0 0"))
+    rotation = Rotation.from_euler("xyz", origin.numbers("rpy", 3, "0 0 0"))   # roll, pitch, yaw about fixed axes
+    return Pose(rotation.as_matrix(), origin.numbers("xyz", 3, "0 0 0"))
 
 
 def _geometry(link: Link, into: Assembly, node: Node, file: pathlib.Path, search: Search) -> None:
