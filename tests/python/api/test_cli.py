@@ -11,27 +11,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 from commands import call, left
+from scene_files import write_scene
 
 import polhode as ph
 from polhode.cli import main
 
-SMALL = """name = "small"
-title = "a brick for a moment"
-[body]
-moments = [1.0, 2.0, 2.5]
-[start]
-omega = [1.0, 2.0, 3.0]
-[times]
-span = 2.0
-samples = 21
-"""
-
 
 @pytest.fixture
 def small(tmp_path):
-    file = tmp_path / "small.toml"
-    file.write_text(SMALL)
-    return file
+    return write_scene(tmp_path / "small.toml", times="span = 2.0\nsamples = 21",
+                       head='name = "small"\ntitle = "a brick for a moment"')
 
 
 def test_run_shows_ends_drift_cost_and_message(small):

@@ -6,6 +6,7 @@ import sys
 
 import numpy as np
 import pytest
+from scene_files import write_scene
 
 import polhode as ph
 
@@ -112,18 +113,8 @@ def test_torques_count_for_the_size_of_a_step():
 # ---- JSON
 
 def test_a_plan_beyond_float64_is_json(tmp_path):
-    file = tmp_path / "far.toml"
-    file.write_text("""[body]
-moments = [1.0, 2.0, 2.5]
-[start]
-omega = [9e18, 1e18, 1e18]
-[times]
-span = 1e290
-samples = 3
-[[torques]]
-kind = "damping"
-diagonal = [1e18, 1e18, 1e18]
-""")
+    file = write_scene(tmp_path / "far.toml", '[[torques]]\nkind = "damping"\ndiagonal = [1e18, 1e18, 1e18]',
+                       omega=(9e18, 1e18, 1e18), times="span = 1e290\nsamples = 3")
     found = subprocess.run([sys.executable, "-m", "polhode", "plan", str(file), "--json"], capture_output=True,
                            text=True)
     assert "Traceback" not in found.stderr, found.stderr

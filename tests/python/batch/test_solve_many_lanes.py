@@ -5,17 +5,15 @@ import levels
 import numpy as np
 import pytest
 from bodies import scene
+from draw import draw_bodies
 
 import polhode as ph
 
 T = ph.torques
 RNG = np.random.default_rng(11)
 N = 37
-HALF = RNG.uniform(0.1, 1, (N, 3)) ** 2
-MOMENTS = HALF.sum(axis=1, keepdims=True) - HALF
-SPINS = RNG.normal(size=(N, 3)) * RNG.uniform(0.1, 5, (N, 1))   # bodies of many steps beside bodies of few
-TURNS = ph.Rotation.from_rotvec(RNG.normal(size=(N, 3))).as_quat()
-STARTS = {"inertia": MOMENTS, "omega": SPINS, "attitude": TURNS, "method": "taylor"}
+MOMENTS, RATES, ATTITUDES = draw_bodies(RNG, N, slowest=0.1)
+STARTS = {"inertia": MOMENTS, "omega": RATES, "attitude": ATTITUDES, "method": "taylor"}
 TIMES = (0.0, 7.5, 1.0, -2.0, 3.0, -0.5, 3.0)
 TORQUES = {
     "free": [],
@@ -65,7 +63,7 @@ def test_each_is_the_motion_that_solve_finds(torques, want):
     many = ph.solve_many(one, rtol=1e-14, **STARTS)
     assert many.lanes.all() and set(many.status) == {"finished"} and (many.t_reached == 7.5).all()
     for i in range(0, N, 3):
-        body = one.replace(inertia=MOMENTS[i], omega=SPINS[i], attitude=TURNS[i])
+        body = one.replace(inertia=MOMENTS[i], omega=RATES[i], attitude=ATTITUDES[i])
         alone = ph.solve(body, method="dop853", rtol=1e-14)
         size = np.abs(alone.omega).max()
         allowed = max(2e-11 * size, 20 * movement(body))
@@ -77,7 +75,7 @@ def test_each_is_the_motion_that_solve_finds(torques, want):
 @pytest.mark.parametrize(("rtol", "bound"), [(1e-6, 1e-4), (1e-9, 1e-7), (1e-12, 1e-10), (1e-16, 3e-14)])
 def test_the_tolerance_is_kept_against_the_closed_form(rtol, bound):
     many = ph.solve_many(common(), rtol=rtol, **STARTS)
-    omega, attitude = ph.free_motion(MOMENTS[:, None], SPINS[:, None], TURNS[:, None], np.array(TIMES))
+    omega, attitude = ph.free_motion(MOMENTS[:, None], RATES[:, None], ATTITUDES[:, None], np.array(TIMES))
     sizes = np.linalg.norm(omega, axis=-1).max(axis=1)
     error = max((np.linalg.norm(many.omega - omega, axis=-1).max(axis=1) / sizes).max(),
                 distance(many.attitude, attitude))
@@ -127,7 +125,7 @@ def test_avx2_and_avx512_give_the_same_bits():
 def test_a_failing_body_leaves_its_neighbours_alone():
     wild = [T.Damping((-1, -1, -1))]   # rates grow as exp(t / I)
     huge = common([T.Constant((1e308, 1e308, 1e308))], times=(0, 1, 50))
-    tame = [common(times=(0, 1, 50)).replace(omega=SPINS[i], inertia=MOMENTS[i]) for i in range(10)]
+    tame = [common(times=(0, 1, 50)).replace(omega=RATES[i], inertia=MOMENTS[i]) for i in range(10)]
     blown = common(wild, times=(0, 1, 50)).replace(inertia=(0.01, 0.011, 0.012), omega=(1, 1, 1))
     damped = [one.replace(torques=[T.Damping((0.1, 0.1, 0.1))]) for one in tame]
     quiet = ph.solve_many(tame + damped, method="taylor", rtol=1e-9)
@@ -145,8 +143,8 @@ def test_a_failing_body_leaves_its_neighbours_alone():
 def test_too_many_steps_are_told_and_what_was_reached_is_kept():
     one = common(times=(0, 0.5, 400))
     many = ph.solve_many(one, rtol=1e-10, max_steps=30, **STARTS)
-    alone = [ph.solve(one.replace(inertia=MOMENTS[i], omega=SPINS[i], attitude=TURNS[i]), method="taylor", rtol=1e-10,
-                      max_steps=30)
+    alone = [ph.solve(one.replace(inertia=MOMENTS[i], omega=RATES[i], attitude=ATTITUDES[i]), method="taylor",
+                      rtol=1e-10, max_steps=30)
              for i in range(N)]
     assert many.status == tuple(motion.status for motion in alone) and "max_steps" in many.status
     stopped = [i for i in range(N) if many.status[i] == "max_steps"]
@@ -160,16 +158,17 @@ def test_too_many_steps_are_told_and_what_was_reached_is_kept():
 
 def test_times_in_any_order_and_at_the_start():
     free = ph.solve_many(common(times=(3, -4, 0, 3, 9, -1)), rtol=1e-13, **STARTS)
-    assert np.array_equal(free.omega[:, 2], SPINS) and np.array_equal(free.omega[:, 0], free.omega[:, 3])
-    omega, attitude = ph.free_motion(MOMENTS[:, None], SPINS[:, None], TURNS[:, None], np.array((3, -4, 0, 3, 9, -1.0)))
+    assert np.array_equal(free.omega[:, 2], RATES) and np.array_equal(free.omega[:, 0], free.omega[:, 3])
+    times = np.array((3, -4, 0, 3, 9, -1.0))
+    omega, attitude = ph.free_motion(MOMENTS[:, None], RATES[:, None], ATTITUDES[:, None], times)
     assert distance(free.attitude, attitude) < 1e-11
     still = ph.solve_many(common(times=(0.0,)), rtol=1e-13, **STARTS)
-    assert np.array_equal(still.omega[:, 0], SPINS) and (still.steps == 0).all() and set(still.status) == {"finished"}
+    assert np.array_equal(still.omega[:, 0], RATES) and (still.steps == 0).all() and set(still.status) == {"finished"}
     at_rest = ph.solve_many(common(times=(5.0,)), omega=np.zeros((3, 3)), method="taylor", rtol=1e-9)
     assert (at_rest.omega == 0).all() and set(at_rest.status) == {"finished"}
     later = ph.solve_many(common(times=(12.0, 8.0), t0=10.0), rtol=1e-13, **STARTS)
     assert np.array_equal(later.omega.shape, (N, 2, 3)) and distance(
-        later.attitude, ph.free_motion(MOMENTS[:, None], SPINS[:, None], TURNS[:, None],
+        later.attitude, ph.free_motion(MOMENTS[:, None], RATES[:, None], ATTITUDES[:, None],
                                        np.array((2.0, -2.0)))[1]) < 1e-11
 
 
@@ -177,7 +176,7 @@ def test_times_in_any_order_and_at_the_start():
 def test_units_make_no_difference(scale):
     many = ph.solve_many(common(), rtol=1e-10, **STARTS)
     fast = ph.solve_many(common(times=tuple(t / scale for t in TIMES)),
-                         **{**STARTS, "omega": SPINS * scale, "rtol": 1e-10})
+                         **{**STARTS, "omega": RATES * scale, "rtol": 1e-10})
     assert distance(many.attitude, fast.attitude) < 1e-8
     heavy = ph.solve_many(common(), **{**STARTS, "inertia": MOMENTS * scale, "rtol": 1e-10})
     assert distance(many.attitude, heavy.attitude) < 1e-8

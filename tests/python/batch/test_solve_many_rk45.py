@@ -5,16 +5,14 @@ import levels
 import numpy as np
 import pytest
 from bodies import scene
+from draw import draw_bodies
 
 import polhode as ph
 
 T = ph.torques
 RNG = np.random.default_rng(45)
 N = 21
-HALF = RNG.uniform(0.1, 1, (N, 3)) ** 2
-MOMENTS = HALF.sum(axis=1, keepdims=True) - HALF
-SPINS = RNG.normal(size=(N, 3)) * RNG.uniform(0.05, 5, (N, 1))   # bodies of many steps beside bodies of few
-TURNS = ph.Rotation.from_rotvec(RNG.normal(size=(N, 3))).as_quat()
+MOMENTS, RATES, ATTITUDES = draw_bodies(RNG, N, slowest=0.05)
 TIMES = (0.0, 7.5, 1.0, -2.0, 3.0, -0.5, 3.0, 1e-4)
 SPACE = T.Constant((0, 0.02, 0.1), frame="space")
 TORQUES = {
@@ -34,7 +32,7 @@ TORQUES = {
 def make_scenes(torques, times=TIMES, want=("omega", "attitude"), skew=False, scale=1.0, **parts):
     """One scene a body; `skew`: products of inertia, other ones for each."""
     found = []
-    for moments, spin, turn, other in zip(MOMENTS, SPINS, TURNS, np.roll(TURNS, 1, axis=0), strict=True):
+    for moments, spin, turn, other in zip(MOMENTS, RATES, ATTITUDES, np.roll(ATTITUDES, 1, axis=0), strict=True):
         inertia = ph.InertiaTensor.from_moments(moments * scale)
         found.append(ph.Scene(inertia=inertia.rotated(ph.Rotation(other)) if skew else inertia, omega=spin,
                               attitude=turn,
@@ -86,8 +84,8 @@ def test_each_body_has_torques_of_its_own():
 @pytest.mark.parametrize(("rtol", "bound"), [(1e-4, 2e-2), (1e-8, 1e-6), (1e-12, 1e-10)])
 def test_the_tolerance_is_kept_against_the_closed_form(rtol, bound):
     many = ph.solve_many(make_scenes([]), rtol=rtol)   # rk45 is what solve() takes where only a tolerance is given
-    omega, attitude = ph.free_motion(MOMENTS[:, None], SPINS[:, None], TURNS[:, None], np.array(TIMES))
-    rates = np.linalg.norm(many.omega - omega, axis=-1).max(axis=1) / np.linalg.norm(SPINS, axis=1)
+    omega, attitude = ph.free_motion(MOMENTS[:, None], RATES[:, None], ATTITUDES[:, None], np.array(TIMES))
+    rates = np.linalg.norm(many.omega - omega, axis=-1).max(axis=1) / np.linalg.norm(RATES, axis=1)
     turns = np.minimum(np.linalg.norm(many.attitude - attitude, axis=-1),
                        np.linalg.norm(many.attitude + attitude, axis=-1))
     assert many.lanes.all() and rates.max() < bound and 2 * turns.max() < bound

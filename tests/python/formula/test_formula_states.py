@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scene_files import write_scene
 
 import polhode as ph
 from polhode.formula import norm, to_body, to_space
@@ -150,15 +151,7 @@ def test_states_in_tables_files_events_and_scenes(tmp_path):
 
 
 def test_scene_files_with_states_and_potentials(tmp_path):
-    path = tmp_path / "own.toml"
-    path.write_text("""
-[body]
-moments = [1, 2, 2.5]
-[start]
-omega = [0.3, 1, -0.2]
-[times]
-span = 5
-samples = 3
+    path = write_scene(tmp_path / "own.toml", omega=(0.3, 1, -0.2), times="span = 5\nsamples = 3", tables="""
 [[torques]]
 kind = "formula"
 torque = "-k * s * omega"

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from measures import attitude_error, rates_error
 
 import polhode as ph
 from polhode.formula import friction, to_body
@@ -62,11 +63,7 @@ def scene(torques, inertia=BLOCK, **more):
 
 def find_errors(motion, rows):
     """Of the rates relative to the largest one, and of the attitude as an angle."""
-    w, q = rows[:, :3], rows[:, 3:]
-    size = max(np.linalg.norm(w, axis=1).max(), np.linalg.norm(START["omega"]))
-    sign = np.sign(np.sum(q * motion.attitude, axis=1))[:, None]
-    return (np.linalg.norm(motion.omega - w, axis=1).max() / size,
-            2 * np.linalg.norm(motion.attitude - sign * q, axis=1).max())
+    return rates_error(motion.omega, rows[:, :3], START["omega"]), attitude_error(motion.attitude, rows[:, 3:])
 
 
 @pytest.mark.parametrize("case", TRUTH["cases"], ids=lambda case: f"{case['law']}-{case['inertia'][0][1]}")

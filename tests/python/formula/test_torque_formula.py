@@ -7,6 +7,7 @@ import pickle
 import numpy as np
 import pytest
 from laws import pd
+from scene_files import write_scene
 from scipy.integrate import solve_ivp
 
 import polhode as ph
@@ -237,20 +238,12 @@ def test_formulas_in_motions_windows_rotors_and_many(tmp_path):
 
 
 def test_a_scene_file_holds_a_formula(tmp_path):
-    file = tmp_path / "pd.toml"
-    file.write_text("""
-[body]
-moments = [1.0, 2.0, 2.5]
-[start]
-omega = [0.4, -0.7, 1.1]
+    file = write_scene(tmp_path / "pd.toml", omega=(0.4, -0.7, 1.1), tables="""
 [[torques]]
 kind = "formula"
 torque = "turn - kd * omega"
 let = { turn = "-kp * attitude.xyz * attitude.w" }
 parameters = { kp = 0.2, kd = [0.5, 0.5, 0.4] }
-[times]
-span = 5.0
-samples = 11
 """)
     assert ph.Scene.load(file).torques[0] == Formula(pd, kp=0.2, kd=(0.5, 0.5, 0.4))
     file.write_text(file.read_text().replace("kd = [", "kz = ["))

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from measures import attitude_error, error, rates_error, truth
 from mpmath import mpf
+from scene_files import write_scene
 from scipy.integrate import solve_ivp
 
 import polhode as ph
@@ -250,11 +251,7 @@ def test_gravity_gradient_refuses_free_rotors_with_an_inertia():
             scene(torques=[torque], rotors=[ph.Rotor((0, 0, 1), inertia=0.1, speed=1, free=True)])
 
 
-FILE = """
-[body]
-moments = [0.2, 0.4, 0.52]
-[start]
-omega = [1.0, 2.0, 3.0]
+ROTORS = """
 [[rotors]]
 axis = [0.0, 3.0, 4.0]
 momentum = 0.5
@@ -262,22 +259,21 @@ during = [[0.0, 1.0]]
 [[rotors]]
 axis = [0.0, 0.0, 1.0]
 {rotor}
-[times]
-values = [0.0, 1.0]
 """
 
 
 def test_rotors_of_scene_files(tmp_path):
-    file = tmp_path / "wheel.toml"
-    file.write_text(FILE.format(rotor="inertia = 0.1\nspeed = 2.0\nfree = true"))
-    held, free = ph.Scene.load(file).rotors
+    def write(rotor):
+        return write_scene(tmp_path / "wheel.toml", ROTORS.format(rotor=rotor), times="values = [0.0, 1.0]")
+
+    held, free = ph.Scene.load(write("inertia = 0.1\nspeed = 2.0\nfree = true")).rotors
     assert held == ph.Rotor((0, 0.6, 0.8), momentum=0.5, during=(0, 1))
     assert free == ph.Rotor((0, 0, 1), inertia=0.1, speed=2, free=True)
     for rotor, words in (("inertia = -1.0\nspeed = 1.0", "wheel.toml: rotors[1]: Rotor.inertia: must be positive"),
                          ("speed = 1.0", "wheel.toml: rotors[1]: Rotor.inertia: must be given"),
                          ("moment = 1.0", "wheel.toml: rotors.1.moment: unknown key, did you mean 'moments'?"),
                          ("momentum = nan", "wheel.toml: rotors.1.momentum: must be a finite number")):
-        file.write_text(FILE.format(rotor=rotor))
+        file = write(rotor)
         with pytest.raises(ph.InvalidInput) as failure:
             ph.Scene.load(file)
         assert str(failure.value).startswith(words) and "\n" not in str(failure.value)

@@ -7,6 +7,7 @@ import pickle
 import numpy as np
 import pytest
 from bodies import BLOCK
+from scene_files import write_scene
 
 import polhode as ph
 from polhode.torques import Constant, Custom, Damping, During, Gravity, GravityGradient
@@ -59,11 +60,7 @@ def test_what_is_no_torque_is_refused():
         During(lambda t, w, q: (0, 0, 1), [(0, 1)])
 
 
-FILE = """
-[body]
-moments = [0.20, 0.40, 0.52]
-[start]
-omega = [0.1, 0.2, 0.3]
+FIRED = """
 [[torques]]
 kind = "constant"
 torque = [0.05, -0.02, 0.03]
@@ -71,18 +68,18 @@ during = {windows}
 [[torques]]
 kind = "damping"
 diagonal = [0.1, 0.1, 0.1]
-[times]
-span = 60.0
-samples = 61
 """
 
 
+def write_windows(folder, windows):
+    return write_scene(folder / "fired.toml", FIRED.format(windows=windows), moments=(0.20, 0.40, 0.52),
+                       omega=(0.1, 0.2, 0.3), times="span = 60.0\nsamples = 61")
+
+
 def test_a_scene_file_has_windows(tmp_path):
-    file = tmp_path / "fired.toml"
-    file.write_text(FILE.format(windows="[[0, 10], [30.0, inf]]"))
+    file = write_windows(tmp_path, "[[0, 10], [30.0, inf]]")
     assert ph.Scene.load(file) == scene(During(FIRING, [(0, 10), (30, INF)]), Damping((0.1, 0.1, 0.1)))
-    file.write_text(FILE.format(windows="[]"))
-    assert ph.Scene.load(file).torques[0] == During(FIRING, [])
+    assert ph.Scene.load(write_windows(tmp_path, "[]")).torques[0] == During(FIRING, [])
 
 
 @pytest.mark.parametrize(("windows", "words"), [
@@ -92,8 +89,7 @@ def test_a_scene_file_has_windows(tmp_path):
     ("[[0, 10], [5, 7]]", "apart from each other"),
 ])
 def test_bad_windows_in_a_file(tmp_path, windows, words):
-    file = tmp_path / "fired.toml"
-    file.write_text(FILE.format(windows=windows))
+    file = write_windows(tmp_path, windows)
     with pytest.raises(ph.InvalidInput) as error:
         ph.Scene.load(file)
     assert words in str(error.value) and str(error.value).startswith("fired.toml") and "\n" not in str(error.value)
