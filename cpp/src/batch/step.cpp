@@ -19,7 +19,7 @@ namespace polhode {
 namespace {
 
 constexpr std::size_t grain = 64;         // bodies; a multiple of every block of lanes
-constexpr std::size_t round_work = 65536;   // steps of bodies between two looks for Ctrl-C
+constexpr std::size_t round_work = 65536;   // steps of bodies between two checks for Ctrl-C
 
 const StepKernels& choose_kernels() {
   static constinit std::atomic<const StepKernels*> chosen{nullptr};

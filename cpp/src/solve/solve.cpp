@@ -62,7 +62,7 @@ Motion run_divided(std::shared_ptr<const Decision> decision, const SolveOptions&
   ode::Counts before;
   int runs = 0;
   for (int divisions = 0;; ++divisions) {
-    breaks.insert(breaks.end(), decision->looks.breaks.begin(), decision->looks.breaks.end());
+    breaks.insert(breaks.end(), decision->probes.breaks.begin(), decision->probes.breaks.end());
     Motion motion = execute(*decision, options);
     motion.stats += before;
     motion.runs += runs;

@@ -100,9 +100,9 @@ class Certifier {
     for (int round = 0;; ++round) {
       Attempt attempt = pair.run(coarse, std::max(coarse / ratio_, least));
       const double error = attempt.error;
-      if (decision_.may_cut && !pair.looks().breaks.empty()) {
+      if (decision_.may_cut && !pair.probes().breaks.empty()) {
         best_ = std::move(attempt);
-        best_.motion.found_breaks = pair.looks().breaks;
+        best_.motion.found_breaks = pair.probes().breaks;
         return finish();
       }
       const bool done = !attempt.finished() || error <= accuracy_;
@@ -114,7 +114,7 @@ class Certifier {
       coarse = std::max(coarse / std::clamp(math::fast_pow(2 * error / accuracy_, 1.2), 3.0, 1e4), ratio_ * least);
     }
     pair.drop_added_times(best_.motion);
-    looks_ = pair.looks();
+    probes_ = pair.probes();
     return conclude();
   }
 
@@ -218,7 +218,7 @@ class Certifier {
   }
 
   bool jumps_within_steps() const {
-    return decision_.crosses_switches || !std::isnan(looks_.state_jump) || looks_.too_many || !looks_.breaks.empty();
+    return decision_.crosses_switches || !std::isnan(probes_.state_jump) || probes_.too_many || !probes_.breaks.empty();
   }
 
   std::string describe_jump() const {
@@ -227,8 +227,8 @@ class Certifier {
              "formula; taylor ends its steps there and bounds it";
     const std::string end = ": a coarser run estimates the error, and no step ends at a jump; it would "
                             "with np.where in a Formula, or with During";
-    if (std::isnan(looks_.state_jump)) return "your torque jumps or kinks at many times" + end;
-    return "your torque jumps with the state, as near t = " + to_text(looks_.state_jump) + " s" + end;
+    if (std::isnan(probes_.state_jump)) return "your torque jumps or kinks at many times" + end;
+    return "your torque jumps with the state, as near t = " + to_text(probes_.state_jump) + " s" + end;
   }
 
   std::string describe_limit() const {
@@ -279,7 +279,7 @@ class Certifier {
   double safety_ = 1.5, ratio_ = pair_ratio;
   double underflow_ = 0.0;   ///< a part of the error
   Attempt best_;
-  Looks looks_;
+  Probes probes_;
 };
 
 }  // namespace

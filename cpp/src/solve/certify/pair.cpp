@@ -52,16 +52,16 @@ PairCertificate::PairCertificate(CountedRuns& runs, double safety)
     times.insert(times.end(), more.begin(), more.end());
     longer_ = with_times(scene, std::move(times));
   }
-  must_look_ = calls_custom(scene) && runs.decision().facts.span() > 0 && !runs.decision().looked;
-  if (runs.decision().looked) looks_ = runs.decision().looks;
+  must_probe_ = calls_custom(scene) && runs.decision().facts.span() > 0 && !runs.decision().probed;
+  if (runs.decision().probed) probes_ = runs.decision().probes;
   perturbed_ = perturb(longer_ ? *longer_ : scene, perturbed_units);
 }
 
 Scene PairCertificate::add_looks(const Scene& scene) const {
   SceneParts parts = scene.parts();
   const auto [least, most] = std::minmax_element(parts.times.begin(), parts.times.end());
-  const std::vector<double> looks = spread_looks(std::min(*least, scene.t0()), std::max(*most, scene.t0()));
-  parts.times.insert(parts.times.end(), looks.begin(), looks.end());
+  const std::vector<double> probes = spread_probes(std::min(*least, scene.t0()), std::max(*most, scene.t0()));
+  parts.times.insert(parts.times.end(), probes.begin(), probes.end());
   parts.want = {true, parts.want.attitude || runs_.decision().facts.torques.uses_attitude};
   return Scene(std::move(parts));
 }
@@ -70,9 +70,9 @@ Scene PairCertificate::add_looks(const Scene& scene) const {
 void PairCertificate::look_after_failure() {
   const Scene scene = add_looks(runs_.decision().scene);
   const Motion motion = runs_.run(scene, comparison_options_, failed_look_rtol);
-  must_look_ = false;
+  must_probe_ = false;
   if (motion.status != Status::finished) return;
-  looks_ = look(runs_.decision().scene, motion, runs_.decision().scene.times().size(), 1.0);
+  probes_ = probe(runs_.decision().scene, motion, runs_.decision().scene.times().size(), 1.0);
 }
 
 /// The factor between a difference and the error of the finer run. If the error falls by r from one run to the other,
@@ -96,21 +96,21 @@ Attempt PairCertificate::run(double coarse, double fine) {
   Motion& motion = attempt.motion;
   motion.rtol_used = fine;
   const double formulas = std::isnan(motion.error) ? 0.0 : motion.error;   // of the pieces with closed forms
-  if (must_look_ && motion.status == Status::failed) look_after_failure();
+  if (must_probe_ && motion.status == Status::failed) look_after_failure();
   if (!attempt.finished() || motion.t.empty()) return attempt;
   // After a terminal event the remaining times have no samples: they are not compared.
   const bool whole = motion.t.size() == perturbed_->times().size();
   const Scene compared = whole ? *perturbed_ : with_times(*perturbed_, motion.t);
   const Motion other =
-      runs_.run(must_look_ ? add_looks(compared) : compared, comparison_options_, coarse, true);
+      runs_.run(must_probe_ ? add_looks(compared) : compared, comparison_options_, coarse, true);
   if (other.status == Status::stopped) {
     motion.status = Status::stopped;
     motion.message = "stopped by the progress callback before the error was certified";
   } else if (other.status == Status::finished) {
-    if (must_look_) looks_ = look(scene, other, motion.t.size(), accuracy);
-    must_look_ = false;
+    if (must_probe_) probes_ = probe(scene, other, motion.t.size(), accuracy);
+    must_probe_ = false;
     double factor = find_factor(motion, other);
-    if (!std::isnan(looks_.state_jump) || looks_.too_many) factor = std::max(factor, jump_factor);
+    if (!std::isnan(probes_.state_jump) || probes_.too_many) factor = std::max(factor, jump_factor);
     if (fine < rounding_rtol) factor = std::max(factor, rounding_factor);
     double difference = find_difference(scene.omega().norm(), motion, other);
     // Runs with the same steps share their error, and so may stiff ones. A run by another method does not.

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "solve/certify/runs.hpp"
-#include "solve/ground/custom_looks.hpp"
+#include "solve/ground/custom_probes.hpp"
 
 namespace polhode {
 
@@ -17,13 +17,13 @@ class PairCertificate {
   Attempt run(double coarse, double fine);
 
   /// What the first runs found of the user's own torques.
-  const Looks& looks() const { return looks_; }
+  const Probes& probes() const { return probes_; }
 
   /// Removes the rows of times that were added for the comparison.
   void drop_added_times(Motion& motion) const;
 
  private:
-  /// The scene of the comparison run, with the times of the looks behind its own.
+  /// The scene of the comparison run, with the times of the probes behind its own.
   Scene add_looks(const Scene& scene) const;
   void look_after_failure();
   double find_factor(const Motion& fine, const Motion& coarse) const;
@@ -32,8 +32,8 @@ class PairCertificate {
   double safety_;
   SolveOptions comparison_options_;
   std::optional<Scene> longer_, perturbed_;
-  bool must_look_;
-  Looks looks_;
+  bool must_probe_;
+  Probes probes_;
 };
 
 }  // namespace polhode

@@ -11,16 +11,16 @@
 namespace polhode {
 namespace {
 
-struct Look {
+struct Probe {
   double t;
   Vector3d omega;
   Quat attitude;
 };
 
-Vector3d call(const torques::Custom& torque, const Look& look, const Matrix3d& I_B) {
-  const double q[4] = {look.attitude.x, look.attitude.y, look.attitude.z, look.attitude.w};
+Vector3d call(const torques::Custom& torque, const Probe& probe, const Matrix3d& I_B) {
+  const double q[4] = {probe.attitude.x, probe.attitude.y, probe.attitude.z, probe.attitude.w};
   double tau[3] = {0.0, 0.0, 0.0};
-  torque.add(TorqueInput{look.t, look.omega.data(), q, I_B}, tau);
+  torque.add(TorqueInput{probe.t, probe.omega.data(), q, I_B}, tau);
   return {tau[0], tau[1], tau[2]};
 }
 
@@ -67,10 +67,10 @@ void require_true_claims(const Scene& scene) {
     // The start, and three states over the first eighth of the span.
     for (int i = 0; i < 4; ++i) {
       const double s = i / 24.0;
-      const Look here{scene.t0() + s * span, scene.omega() + s * size * Vector3d{1.0, -0.5, 0.7},
+      const Probe here{scene.t0() + s * span, scene.omega() + s * size * Vector3d{1.0, -0.5, 0.7},
                       normalized(scene.attitude() * Quat{2.3 * s, -1.7 * s, 1.1 * s, 1.0})};
       const Vector3d tau = call(*custom, here, scene.inertia_B().matrix());
-      const auto check = [&](bool seen, const char* claim, const char* changed, const Look& other) {
+      const auto check = [&](bool seen, const char* claim, const char* changed, const Probe& other) {
         if (seen) return;
         const Vector3d then = call(*custom, other, scene.inertia_B().matrix());
         if (then == tau || !then.allFinite() || !tau.allFinite()) return;
@@ -79,7 +79,7 @@ void require_true_claims(const Scene& scene) {
                            text(tau) + " and " + text(then) + " N m at t = " + to_text(here.t) + " s",
                            "a false claim gives a wrong motion; leave it out when in doubt");
       };
-      Look other = here;
+      Probe other = here;
       other.t += 0.3 * (1 - s) * span;
       check(claims.uses_time, "uses_time", "time", other);
       other = here;

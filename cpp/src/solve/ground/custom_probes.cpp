@@ -1,4 +1,4 @@
-#include "solve/ground/custom_looks.hpp"
+#include "solve/ground/custom_probes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@ namespace polhode {
 namespace {
 
 constexpr int look_count = 1280;
-constexpr double least_gap_spread = 0.2;  // of an interval, by which looks are moved at random
+constexpr double least_gap_spread = 0.2;  // of an interval, by which probes are moved at random
 constexpr std::size_t look_neighbours = 4;         // neighbours on each side that a difference is compared with
 constexpr double look_outlier = 8.0;           // times their median
 constexpr std::size_t most_breaks = 64;   // that are located
@@ -32,7 +32,7 @@ Place between(const Place& a, const Place& b, double s) {
            l * a.attitude.z + r * b.attitude.z, l * a.attitude.w + r * b.attitude.w}};
 }
 
-/// The looks between two known edges, in the order of time.
+/// The probes between two known edges, in the order of time.
 class Stretch {
  public:
   Stretch(const Scene& scene, std::vector<Place> places) : scene_(scene), places_(std::move(places)) {
@@ -45,7 +45,7 @@ class Stretch {
     return size;
   }
 
-  void find(double floor, Looks& looks) const {
+  void find(double floor, Probes& probes) const {
     const std::size_t n = places_.size();
     if (n < 2 * look_neighbours) return;
     std::vector<double> change(n - 1), bend(n - 1, 0.0);
@@ -55,19 +55,19 @@ class Stretch {
     std::vector<unsigned char> jumps(n, 0);
     for (std::size_t i = 0; i + 1 < n; ++i) {
       if (!(change[i] > floor + look_outlier * typical(change, i, 0))) continue;
-      if (looks.breaks.size() >= most_breaks) {
-        looks.too_many = true;
+      if (probes.breaks.size() >= most_breaks) {
+        probes.too_many = true;
         return;
       }
-      jumps[i] = jumps[i + 1] = locate_jump(i, change[i], looks);
+      jumps[i] = jumps[i + 1] = locate_jump(i, change[i], probes);
     }
     for (std::size_t i = 1; i + 1 < n; ++i) {
       if (jumps[i] || jumps[i - 1] || !(bend[i] > floor + look_outlier * typical(bend, i, 1))) continue;
-      if (looks.breaks.size() >= most_breaks) {
-        looks.too_many = true;
+      if (probes.breaks.size() >= most_breaks) {
+        probes.too_many = true;
         return;
       }
-      if (locate_kink(i, looks)) ++i;   // the next bend is the same one
+      if (locate_kink(i, probes)) ++i;   // the next bend is the same one
     }
   }
 
@@ -121,26 +121,26 @@ class Stretch {
     }
   }
 
-  /// True if the torque jumps between two looks, with the time or with the state.
-  bool locate_jump(std::size_t i, double change, Looks& looks) const {
+  /// True if the torque jumps between two probes, with the time or with the state.
+  bool locate_jump(std::size_t i, double change, Probes& probes) const {
     const Place &here = places_[i], &next = places_[i + 1];
     const double by_time = (call(here, next.t) - torque_[i]).norm();
     if (by_time > kept_jump * change) {
       double low = here.t, high = next.t;
       if (!bisect(low, high, 0.0, [&](double t) { return call(here, t); })) return false;
-      looks.breaks.push_back(high);
+      probes.breaks.push_back(high);
       return true;
     }
     double low = 0.0, high = 1.0;
     const auto along = [&](double s) { return call(between(here, next, s), here.t); };
     if (!((along(high) - along(low)).norm() > kept_jump * change) || !bisect(low, high, 1e-9, along)) return false;
-    looks.state_jump = here.t;
+    probes.state_jump = here.t;
     return true;
   }
 
-  /// Halves the three points around a look towards the largest second difference. It halves with the interval at a
+  /// Halves the three points around a probe towards the largest second difference. It halves with the interval at a
   /// kink, and is quartered elsewhere.
-  bool locate_kink(std::size_t i, Looks& looks) const {
+  bool locate_kink(std::size_t i, Probes& probes) const {
     const Place& here = places_[i];
     double a = places_[i - 1].t, b = places_[i + 1].t, m = 0.5 * (a + b);
     const auto at = [&](double t) { return call(here, t); };
@@ -164,7 +164,7 @@ class Stretch {
       if (k == 5 && !(bend > 0.2 / 64 * whole)) return false;
     }
     if (!(b - a < (places_[i + 1].t - places_[i - 1].t) / 64)) return false;
-    looks.breaks.push_back(m);
+    probes.breaks.push_back(m);
     return true;
   }
 
@@ -175,7 +175,7 @@ class Stretch {
 
 }  // namespace
 
-std::vector<double> spread_looks(double begin, double end) {
+std::vector<double> spread_probes(double begin, double end) {
   constexpr double golden = 0.6180339887498949;
   std::vector<double> times;
   for (int i = 0; i < look_count; ++i) {
@@ -185,9 +185,9 @@ std::vector<double> spread_looks(double begin, double end) {
   return times;
 }
 
-Looks look(const Scene& scene, const Trajectory& motion, std::size_t first, double accuracy) {
-  Looks looks;
-  if (motion.omega.empty() || motion.t.size() <= first + 1) return looks;
+Probes probe(const Scene& scene, const Trajectory& motion, std::size_t first, double accuracy) {
+  Probes probes;
+  if (motion.omega.empty() || motion.t.size() <= first + 1) return probes;
   std::vector<double> edges;
   const Pieces pieces = cut(scene);
   for (const Piece* piece : pieces.all()) edges.insert(edges.end(), {piece->begin, piece->end});
@@ -214,9 +214,9 @@ Looks look(const Scene& scene, const Trajectory& motion, std::size_t first, doub
   double largest = 0.0;
   for (const Stretch& stretch : stretches) largest = std::max(largest, stretch.largest());
   const double floor = std::max(look_rounding * largest, negligible_jump * accuracy * momentum / span);
-  for (const Stretch& stretch : stretches) stretch.find(floor, looks);
-  std::sort(looks.breaks.begin(), looks.breaks.end());
-  return looks;
+  for (const Stretch& stretch : stretches) stretch.find(floor, probes);
+  std::sort(probes.breaks.begin(), probes.breaks.end());
+  return probes;
 }
 
 }  // namespace polhode

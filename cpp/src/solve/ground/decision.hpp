@@ -7,7 +7,7 @@
 #include "polhode/ode/problem.hpp"
 #include "polhode/solve/closed_form.hpp"
 #include "polhode/solve/plan.hpp"
-#include "solve/ground/custom_looks.hpp"
+#include "solve/ground/custom_probes.hpp"
 #include "solve/ground/pieces.hpp"
 
 namespace polhode {
@@ -21,8 +21,8 @@ struct Decision {
   std::shared_ptr<const ClosedForm> form = {};   ///< of the whole span
   std::size_t slow_forms = 0;              ///< pieces whose closed form holds, but takes longer than steps
   double turns = 0.0;                      ///< revolutions of all pieces together
-  bool looked = false;                     ///< the pilot run looked at the user's own torques over the whole span
-  Looks looks = {};                        ///< what it found; the span is divided at its breaks
+  bool probed = false;                     ///< the pilot run probed the user's own torques over the whole span
+  Probes probes = {};                      ///< what it found; the span is divided at its breaks
   bool crosses_switches = false;           ///< the method steps over the switches of a formula
   bool may_cut = true;                     ///< a run may end early where a torque of the user's own is found to jump
   std::vector<std::string> recognised = {};   ///< what the formulas are that are torques of the list

@@ -66,9 +66,9 @@ Decision decide(const Scene& scene, const SolveOptions& options) {
     }
   }
   pilot_custom(decision, options);
-  if (!decision.looks.breaks.empty()) {
-    Decision divided = decide(add_breaks(scene, decision.looks.breaks), options);
-    divided.looks = std::move(decision.looks);
+  if (!decision.probes.breaks.empty()) {
+    Decision divided = decide(add_breaks(scene, decision.probes.breaks), options);
+    divided.probes = std::move(decision.probes);
     divided.pilot += decision.pilot;
     return divided;
   }

@@ -17,17 +17,17 @@ namespace {
 
 constexpr double custom_rtol = 1e-3;       // of the pilot run; a tighter one costs too much at loose accuracies
 constexpr int intervals = 32;             // of the span, to count the revolutions
-constexpr std::size_t pilot_stride = 4;         // samples between two looks at the damping
+constexpr std::size_t pilot_stride = 4;         // samples between two probes at the damping
 constexpr long most_pilot_steps = 300;    // some 4000 calls
 constexpr double usual_steps = 1.4;       // steps at this tolerance over their forecast, by benchmarks/planner
 constexpr double stiff_steps = 100.0;     // explicit steps of stability from which the pilot run is implicit
 constexpr double followed_decay = 30.0;   // e-foldings until a rate is negligible, as in the forecast of steps
 constexpr int timed_calls = 4;            // the first may compile the function, and any may be interrupted
 
-/// Looks at the torques along a run whose first rows, `first` of them, are others. Removes the rows of the looks.
-void take_looks(Decision& decision, std::size_t first, double accuracy, Trajectory& run) {
-  decision.looked = run.status == Status::finished;
-  if (decision.looked) decision.looks = look(decision.scene, run, first, accuracy);
+/// Probes the torques along a run whose first rows, `first` of them, are others. Removes the rows of the probes.
+void take_probes(Decision& decision, std::size_t first, double accuracy, Trajectory& run) {
+  decision.probed = run.status == Status::finished;
+  if (decision.probed) decision.probes = probe(decision.scene, run, first, accuracy);
   run.t.resize(first), run.omega.resize(3 * first);
   if (!run.attitude.empty()) run.attitude.resize(4 * first);
 }
@@ -37,8 +37,8 @@ void take_looks(Decision& decision, std::size_t first, double accuracy, Trajecto
 void measure_decay(const Scene& scene, const std::vector<double>& times, const Trajectory& run, Decision& decision) {
   Facts& facts = decision.facts;
   double sum = facts.decay;
-  int looks = 1;
-  for (std::size_t i = pilot_stride; i < times.size(); i += pilot_stride, ++looks) {
+  int probes = 1;
+  for (std::size_t i = pilot_stride; i < times.size(); i += pilot_stride, ++probes) {
     const std::size_t row = std::min(i, run.t.size() - 1);
     SceneParts parts = scene.parts();
     parts.t0 = times[i];
@@ -54,7 +54,7 @@ void measure_decay(const Scene& scene, const std::vector<double>& times, const T
     sum += decay;
     facts.decay = std::max(facts.decay, decay);
   }
-  facts.stiffness = sum / looks * facts.span();
+  facts.stiffness = sum / probes * facts.span();
 }
 
 }  // namespace
@@ -92,8 +92,8 @@ void pilot_custom(Decision& decision, const SolveOptions& options) {
   SceneParts parts = scene.parts();
   const std::vector<double> times = spread_times(decision.scene, decision.facts, intervals);
   parts.times = times;
-  const std::vector<double> looks = spread_looks(times.front(), times.back());
-  parts.times.insert(parts.times.end(), looks.begin(), looks.end());
+  const std::vector<double> probes = spread_probes(times.front(), times.back());
+  parts.times.insert(parts.times.end(), probes.begin(), probes.end());
   parts.want = {true, facts.torques.uses_attitude};
   SolveOptions limited;
   limited.max_steps = std::min(most_pilot_steps, options.max_steps);
@@ -108,7 +108,7 @@ void pilot_custom(Decision& decision, const SolveOptions& options) {
   decision.pilot.derivatives += timed_calls;
   std::size_t reached = 0;
   while (reached < std::min(run.t.size(), times.size()) && run.t[reached] == times[reached]) ++reached;
-  take_looks(decision, reached, get_accuracy(options), run);
+  take_probes(decision, reached, get_accuracy(options), run);
   if (run.t.empty() || run.status == Status::stopped) return;
   const double sampled = static_cast<double>(run.t.size() - 1) / intervals;
   const double share = std::clamp(std::max(sampled, std::abs(run.t_reached - scene.t0()) / facts.span()), 1e-12, 1.0);
