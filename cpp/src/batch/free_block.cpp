@@ -109,7 +109,7 @@ void FreeBlock::add_singles(std::size_t count) {
     const std::size_t i = left_[k];
     if (failed_[i]) continue;
     try {
-      singles_.emplace_back(i, single(begin_ + i));
+      singles_.emplace_back(i, make_motion(b_, begin_ + i));
       // At the edge of the range: what evaluate() would refuse.
       if (!b_.refuse && std::isfinite(reach_[i])) singles_.back().second.at(reach_[i]);
     } catch (const InvalidInput&) {
@@ -136,12 +136,12 @@ bool FreeBlock::is_single(std::size_t i) const {
   return std::ranges::binary_search(singles_, i, {}, &Single::first);
 }
 
-FreeMotion FreeBlock::single(std::size_t body) const {
-  const double *w = b_.omega + 3 * body, *q = b_.attitude + 4 * body;
+FreeMotion make_motion(const FreeMotionBatch& batch, std::size_t body) {
+  const double *w = batch.omega + 3 * body, *q = batch.attitude + 4 * body;
   const Vector3d omega{w[0], w[1], w[2]};
   const Quat attitude{q[0], q[1], q[2], q[3]};
-  if (b_.tensor) return {*b_.tensor, omega, attitude};
-  const double* I = b_.moments + 3 * body;
+  if (batch.tensor) return {*batch.tensor, omega, attitude};
+  const double* I = batch.moments + 3 * body;
   return {InertiaTensor::from_moments({I[0], I[1], I[2]}), omega, attitude};
 }
 

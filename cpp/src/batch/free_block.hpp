@@ -14,6 +14,9 @@ namespace polhode {
 constexpr std::size_t kept_block = 64;   ///< bodies that are set up together, so that their constants stay in the cache
 constexpr std::size_t free_block = 512;  ///< bodies at one time each, so that the few near the separatrix fill lanes
 
+/// The motion of one body of a batch.
+FreeMotion make_motion(const FreeMotionBatch& batch, std::size_t body);
+
 /// Starts of a block of bodies with one tensor, in its principal axes P.
 class PrincipalStarts {
  public:
@@ -96,7 +99,6 @@ class FreeBlock {
   bool is_carried(std::size_t i) const;
   bool passes(std::size_t i) const;
   void add_singles(std::size_t count);
-  FreeMotion single(std::size_t body) const;
 
   const FreeMotionBatch& b_;
   std::size_t begin_ = 0, n_ = 0;

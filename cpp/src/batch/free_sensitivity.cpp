@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "batch/free_block.hpp"
 #include "batch/parallel.hpp"
 #include "batch/rows.hpp"
 #include "exact/free_frame.hpp"
@@ -32,14 +33,7 @@ class ColumnsRun {
     evaluate(columns, 0, first, last);
   }
 
-  FreeMotion motion(std::size_t body) const {
-    const double *w = b_.omega + 3 * body, *q = b_.attitude + 4 * body;
-    const Vector3d omega{w[0], w[1], w[2]};
-    const Quat attitude{q[0], q[1], q[2], q[3]};
-    if (b_.tensor) return {*b_.tensor, omega, attitude};
-    const double* I = b_.moments + 3 * body;
-    return {InertiaTensor::from_moments({I[0], I[1], I[2]}), omega, attitude};
-  }
+  FreeMotion motion(std::size_t body) const { return make_motion(b_, body); }
 
   /// Whether free_motion computed the body: it leaves NaN in all rows of one that it cannot.
   bool is_good(std::size_t body) const {
