@@ -12,13 +12,14 @@ namespace {
 
 Distribution to_distribution(const std::string& name) {
   constexpr const char* names[] = {"uniform", "normal",   "log_uniform", "truncated_normal",
-                                   "sphere",  "attitude", "turn"};
+                                   "sphere",  "attitude", "rotation"};
   int found = 0;
   for (const char* known : names) {
     if (name == known) return static_cast<Distribution>(found);
     ++found;
   }
-  throw InvalidInput("kind", "a distribution: uniform, normal, log_uniform, truncated_normal, sphere, attitude or turn",
+  throw InvalidInput("kind",
+                     "a distribution: uniform, normal, log_uniform, truncated_normal, sphere, attitude or rotation",
                      name);
 }
 

@@ -95,8 +95,8 @@ Draw::Draw(Distribution distribution, const double* parameters, std::size_t rows
   using enum Distribution;
   const std::size_t needed = columns_of(distribution);
   if (distribution == sphere) width_ = 3;
-  if (distribution == attitude || distribution == turn) width_ = 4;
-  const bool own = needed == 0 || distribution == turn;
+  if (distribution == attitude || distribution == rotation) width_ = 4;
+  const bool own = needed == 0 || distribution == rotation;
   if (own ? rows * columns != needed : columns != needed || rows == 0 || rows > DrawStream::words) {
     throw InvalidInput("parameters", "of shape (" + std::string(own ? "1" : "components up to 8") + ", " +
                                          std::to_string(needed) + ") for this distribution",
@@ -130,7 +130,7 @@ Draw::Draw(Distribution distribution, const double* parameters, std::size_t rows
       for (std::size_t j = 0; j < 2 && c.b > 0.0; ++j)
         c.lower[j] = math::upper_normal_tail(-bounds[j]), c.upper[j] = math::upper_normal_tail(bounds[j]);
     }
-    if (distribution == turn) {
+    if (distribution == rotation) {
       for (std::size_t j = 0; j < 3; ++j)
         if (!(p[j] >= 0.0)) refuse_draw(i, "standard deviations of 0 or more", to_text(p[j]));
       c.low = p[2];
@@ -173,7 +173,7 @@ void Draw::operator()(const DrawStream& stream, std::uint64_t first, std::size_t
       draw_direction(words, values);
     } else if (distribution_ == Distribution::attitude) {
       draw_attitude(words, values);
-    } else if (distribution_ == Distribution::turn) {
+    } else if (distribution_ == Distribution::rotation) {
       const double deviation[] = {components_[0].a, components_[0].b, components_[0].low};
       draw_rotation(deviation, words, values);
     } else {

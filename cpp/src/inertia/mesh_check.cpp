@@ -47,7 +47,7 @@ std::string text_of(const Faults& faults, const Corners& corners, const Mesh& me
     found += fault.text(what);
   };
   add(faults.open, " open edges");
-  add(faults.turned, " edges between faces wound against each other");
+  add(faults.reversed, " edges between faces wound against each other");
   add(faults.crowded, " edges shared by more than two faces");
   const std::size_t repeated = found.empty() ? 0 : count_repeated(corners, mesh.face_count);
   if (repeated > 0) found += ", " + std::to_string(repeated) + " faces given again";
@@ -148,7 +148,7 @@ MeshReport examine_mesh(const Mesh& mesh, double weld) {
   }
   const Faults& faults = judged.faults;
   report.open_edges = faults.open.count();
-  report.turned_edges = faults.turned.count();
+  report.turned_edges = faults.reversed.count();
   report.crowded_edges = faults.crowded.count();
   report.degenerate = faults.degenerate;
   const std::vector<Surface> surfaces = inertia::measure(judged.corners, mesh, judged.roots);

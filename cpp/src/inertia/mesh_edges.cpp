@@ -13,7 +13,7 @@ void classify_edge(std::uint32_t low, const std::uint64_t* begin, const std::uin
   const auto face = [](std::uint64_t side) { return static_cast<std::uint32_t>(side & 0xffffffffu) >> 1; };
   const std::uint32_t first = face(begin[0]), second = face(end[-1]);
   if (end - begin == 2 && ((begin[0] ^ begin[1]) & 1) == 1) return surfaces.join(first, second);
-  (end - begin == 1 ? faults.open : end - begin == 2 ? faults.turned : faults.crowded).add(first, second);
+  (end - begin == 1 ? faults.open : end - begin == 2 ? faults.reversed : faults.crowded).add(first, second);
   int net = 0;
   for (const std::uint64_t* side = begin; side != end; ++side) net += (*side & 1) == 1 ? 1 : -1;
   faults.edges.push_back({low, static_cast<std::uint32_t>(*begin >> 32), net});

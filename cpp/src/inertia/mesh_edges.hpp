@@ -31,11 +31,11 @@ struct FaultyEdge {
 };
 
 struct Faults {
-  Fault open, turned, crowded;
+  Fault open, reversed, crowded;
   std::size_t degenerate = 0;
   std::vector<FaultyEdge> edges;
 
-  std::size_t count() const { return open.count() + turned.count() + crowded.count(); }
+  std::size_t count() const { return open.count() + reversed.count() + crowded.count(); }
   std::vector<std::uint32_t> vertices() const;  ///< the ends of the edges, ascending
 };
 

@@ -48,7 +48,7 @@ class Quantity(NamedTuple):
         """The value in the middle of the distribution, as it stands in a scene file; None without one."""
         if self.kind in ("sphere", "attitude"):
             return None
-        if self.kind == "turn":
+        if self.kind == "rotation":
             assert self.base is not None
             return self.base.tolist()
         rows = np.array([_middle(self.kind, row) for row in self.parameters])
@@ -132,7 +132,7 @@ def _attitude(table: Any, path: Path, where: str, nominal: Any) -> Quantity:
     if (deviations < 0).any():
         raise InvalidInput(f"{where}: must have deviations of 0 or more, got {deviations.min():g}")
     about = nominal if entry.about is None else np.asarray(entry.about, dtype=float)
-    return Quantity(path, "turn", np.array(deviations, dtype=float).reshape(1, 3), base=about)
+    return Quantity(path, "rotation", np.array(deviations, dtype=float).reshape(1, 3), base=about)
 
 
 def _width(path: Path, data: dict[str, Any]) -> int:

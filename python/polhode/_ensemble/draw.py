@@ -43,7 +43,7 @@ def _draw(quantity: Quantity, seed: int, first: int, count: int, attempt: int = 
     rows = _core._draw(quantity.kind, seed, quantity.key, first, count, quantity.parameters, attempt)
     if quantity.kind == "sphere":
         return quantity.scale * rows
-    if quantity.kind == "turn":
+    if quantity.kind == "rotation":
         assert quantity.base is not None
         rotated: Floats = _core.attitude.product(quantity.base, rows)
         return rotated

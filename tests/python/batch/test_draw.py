@@ -14,7 +14,7 @@ EMPTY = np.empty((0, 0))
 PARAMETERS = {"uniform": [[-1.0, 3.0], [0.5, 0.5]], "normal": [[0.0, 1.0], [2.0, 0.25], [1.0, 0.0]],
               "log_uniform": [[1e-5, 1e-3], [2.0, 2.0]],
               "truncated_normal": [[0.0, 1.0, -1.0, 2.0], [1.0, 0.5, 3.0, 4.0]],
-              "sphere": EMPTY, "attitude": EMPTY, "turn": [[0.05, 0.1, 0.0]]}
+              "sphere": EMPTY, "attitude": EMPTY, "rotation": [[0.05, 0.1, 0.0]]}
 
 
 def draw(kind, first=0, count=1000, seed=8, key="start.omega", parameters=None, attempt=0):
@@ -109,10 +109,10 @@ def test_truncated_normal_numbers_are_exact():
     assert 30.0 <= far.min() < 30.001 and 0.031 < far.mean() - 30.0 < 0.0345   # the mean excess is about 1/30
 
 
-def test_directions_and_turns_are_exact():
+def test_directions_and_rotations_are_exact():
     count = 200
     _, u = fractions("start.omega", count)
-    sphere, attitude, turn = draw("sphere", count=count), draw("attitude", count=count), draw("turn", count=count)
+    sphere, attitude, rotation = (draw(kind, count=count) for kind in ("sphere", "attitude", "rotation"))
     normal = draw("normal", count=count, parameters=[[0.0, 0.05], [0.0, 0.1], [0.0, 0.0]])
     with mpmath.workdps(40):
         for i in range(count):
@@ -125,7 +125,7 @@ def test_directions_and_turns_are_exact():
                      mpmath.sqrt(a) * mpmath.sinpi(2 * c), mpmath.sqrt(a) * mpmath.cospi(2 * c)]
             assert max(abs(float(x - y)) for x, y in zip(attitude[i], exact, strict=True)) < 2.5e-16
     exact = ph.Rotation.from_rotvec(normal).as_quat()
-    assert np.abs(turn - exact).max() < 2e-16
+    assert np.abs(rotation - exact).max() < 2e-16
     assert np.abs(np.linalg.norm(attitude, axis=1) - 1).max() < 5e-16
 
 
@@ -178,7 +178,7 @@ def test_the_bits_are_the_same_at_every_level():
     ("uniform", [[0.0, 1.0]] * 9, "up to 8"), ("normal", [[0.0, -1.0]], "deviation"),
     ("normal", [[0.0, np.nan]], "finite"), ("log_uniform", [[0.0, 1.0]], "positive"),
     ("truncated_normal", [[0.0, 1.0, 40.0, 41.0]], "within 37"), ("truncated_normal", [[0.0, 0.0, 1.0, 2.0]], "within"),
-    ("turn", [[0.1, -0.1, 0.0]], "0 or more"), ("turn", [[0.1, 0.1]], "shape"), ("sphere", [[1.0]], "shape"),
+    ("rotation", [[0.1, -0.1, 0.0]], "0 or more"), ("rotation", [[0.1, 0.1]], "shape"), ("sphere", [[1.0]], "shape"),
     ("beta", [[1.0, 2.0]], "a distribution"), ("normal", [0.0, 1.0], "two axes")])
 def test_what_is_no_distribution_is_refused(kind, parameters, words):
     with pytest.raises(ph.InvalidInput, match=words):

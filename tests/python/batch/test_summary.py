@@ -17,8 +17,8 @@ TIMES = np.linspace(0.0, 30.0, 13)
 def bodies(n, first=0):
     moments = _core._draw("uniform", 3, "moments", first, n, [[0.02, 0.03], [0.03, 0.04], [0.035, 0.045]])
     omega = _core._draw("normal", 3, "omega", first, n, [[0.0, 0.1], [0.0, 0.1], [1.0, 0.1]])
-    turn = _core._draw("turn", 3, "attitude", first, n, [[0.05, 0.05, 0.05]])
-    return moments, omega, turn
+    rotation = _core._draw("rotation", 3, "attitude", first, n, [[0.05, 0.05, 0.05]])
+    return moments, omega, rotation
 
 
 def nominal(times=TIMES):

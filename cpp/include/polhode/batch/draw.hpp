@@ -32,7 +32,7 @@ enum class Distribution {
   truncated_normal,  ///< (mean, standard deviation, low, high): between bounds, which may be inf
   sphere,            ///< no parameters: a unit vector
   attitude,          ///< no parameters: a unit quaternion (x, y, z, w), uniform on the rotations
-  turn,              ///< one row of three standard deviations [rad]: the quaternion of a rotation vector drawn normal
+  rotation,          ///< one row of three standard deviations [rad]: the quaternion of a rotation vector drawn normal
 };
 
 /// A distribution, checked once.
@@ -44,7 +44,7 @@ class Draw {
   std::size_t width() const { return width_; }   ///< the components of one draw
 
   /// Writes (count, width): the draws of bodies first, first + 1, ... Component i uses word i of the body, and those of
-  /// sphere, attitude and turn words 0 to 2. Only + - * / and roots take part: the bits are the same everywhere.
+  /// sphere, attitude and rotation words 0 to 2. Only + - * / and roots take part: the bits are the same everywhere.
   void operator()(const DrawStream& stream, std::uint64_t first, std::size_t count, double* values) const;
 
  private:

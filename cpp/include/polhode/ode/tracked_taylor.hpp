@@ -112,7 +112,7 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   static constexpr double most_enlarged = 1e-5;
   static constexpr double continuous = 1e-13;   // of a derivative: so small a jump at a surface is rounding
   static constexpr double least_enlarged = 0x1p-32;   // before it is made smaller by 2^-10
-  static constexpr double least_turn = 0.25;     // of a step [rad]
+  static constexpr double least_angle = 0.25;     // of a step [rad]
   static constexpr double join_rounding = 0x1p-51;   // of a state that one run hands to the next
   using Base = Taylor::Stepper<P>;
 
@@ -169,7 +169,7 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     // A body next to rest swings while it hardly rotates: errors of its rates may be small at both ends of a long step.
     double start[4], middle[3] = {};
     this->problem_.measure_error(this->y_old_, loss_, start);
-    double* between = start[0] * std::abs(s * this->unit_old_) < least_turn ? middle : nullptr;
+    double* between = start[0] * std::abs(s * this->unit_old_) < least_angle ? middle : nullptr;
     propagate(lost_, signed_terms, s, loss_, between);
     propagate(perturbed_, error_terms, s, spread_, between);
     if (separate_) propagate(sampled_, error_terms, s, sample_, between);
