@@ -2,7 +2,7 @@
 
 The direction l of the angular momentum is constant in space, so R^T l is periodic in the body. Its component along the
 encircled axis has the even harmonics of the nutation alone (dn), the two others the odd ones (cn and sn). A sum of
-squares of what these harmonics leave is a quadratic form in l. Its least eigenvalue tells whether a trial frequency is
+squares of what these harmonics leave is a quadratic form in l. Its least eigenvalue shows whether a trial frequency is
 right, whatever the phase, the body and the precession are.
 """
 

@@ -1,6 +1,8 @@
-"""Comments and private docstrings are plain: short sentences on average, and without private idioms."""
+"""Comments and private docstrings are plain: short sentences, no private idioms. A turn is a revolution."""
 
+import io
 import re
+import tokenize
 from pathlib import Path
 
 import comments
@@ -18,6 +20,12 @@ IDIOM = re.compile(
     r"\b(told|tells|nobody|whatever|heard|worth|birth|dear|poor|poisons?|poisoned|crew|landed|seat|scout|shake|"
     r"at the door|loose run|asked for|by itself|what is no number|anyhow|hand(s|ed)? over)\b", re.IGNORECASE)
 
+# Names in which a turn is a revolution; `turns` counts them. A rotation, an angle and a vector have these names.
+TURNS = re.compile(r"a_turn|full_turn|inverse_turn|quarter_turn|turn_of|TURN|\w*_?per_turn\w*|PER_TURN|steps_a_turn"
+                   r"|turned_edges", re.ASCII)
+# Folders with names that wait for their change; none is added.
+OLD = re.compile(r"src/derivative/|src/solve/proof/|src/batch/lanes/|series/body_series|polhode/_judge/")
+
 
 def read(language):
     return [text for path in FILES[language] for text in READ[language](path.read_text(encoding="utf-8"))]
@@ -32,6 +40,28 @@ def test_sentences_of_comments_are_short_on_average(language):
 def test_no_idiom_comes_back():
     found = [(idiom[0], text) for language in FILES for text in read(language) for idiom in IDIOM.finditer(text)]
     assert not found, "say it in the field's words"
+
+
+def list_names(path, text):
+    """The names of the code, without comments and texts."""
+    if path.suffix == ".py":
+        return [token.string for token in tokenize.generate_tokens(io.StringIO(text).readline)
+                if token.type == tokenize.NAME]
+    return re.findall(r"[A-Za-z_]\w*", re.sub(r'R"\((.*?)\)"|//[^\n]*|"(\\.|[^"\\\n])*"', " ", text, flags=re.DOTALL))
+
+
+def find_turns(names):
+    """Names with turn, turned or turning as a word, which is no revolution."""
+    words = re.compile(r"(?:(?:^|_)[Tt]|(?<=[a-z])T)urn(?:ed|ing)?(?=_|[A-Z]|$)")
+    return sorted({name for name in names if words.search(name) and not TURNS.fullmatch(name)})
+
+
+def test_a_turn_is_a_revolution():
+    assert find_turns(["turn_by", "TurnSide", "return_it", "turned", "turns", "error_per_turn"]) == [
+        "TurnSide", "turn_by", "turned"]
+    found = {str(path): names for language in FILES for path in FILES[language] if not OLD.search(path.as_posix())
+             if (names := find_turns(list_names(path, path.read_text(encoding="utf-8"))))}
+    assert not found, "say rotation, rotate, angle or what it is"
 
 
 def test_comments_are_found():
