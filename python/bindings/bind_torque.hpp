@@ -102,15 +102,6 @@ void bind_traits(py::class_<T>& type) {
   }, "dict: uses_time, uses_attitude, uses_rates, has_potential.");
 }
 
-inline bool uses_inertia(const AnyTorque& torque) {
-  const auto* during = std::get_if<torques::During>(&torque);
-  const auto is_one = [](const auto& any) {
-    return std::holds_alternative<torques::GravityGradient>(any) ||
-           std::holds_alternative<torques::AngularDamping>(any);
-  };
-  return during != nullptr ? is_one(during->torque()) : is_one(torque);
-}
-
 inline Array compute_value(const AnyTorque& torque, py::handle t, py::handle omega, py::handle attitude,
                            py::handle inertia, py::handle states) {
   Matrix3d I_B = Matrix3d::Identity();
@@ -124,7 +115,8 @@ inline Array compute_value(const AnyTorque& torque, py::handle t, py::handle ome
   const double q[4] = {unit.x, unit.y, unit.z, unit.w};
   Vector3d tau = Vector3d::Zero();
   const TorqueInput in{to_real(t, "t"), w.data(), q, I_B};
-  const auto* formula = std::get_if<torques::Formula>(&torque);
+  const bool in_windows = std::holds_alternative<torques::During>(torque);
+  const torques::Formula* formula = in_windows ? nullptr : find_formula(torque);
   if (formula != nullptr && !formula->states().empty()) {
     const std::vector<double> outputs = formula->compute(in, to_state_numbers(formula->states(), states));
     return from_vector3(Vector3d(outputs[0], outputs[1], outputs[2]));

@@ -28,31 +28,29 @@ void put(Row* rows, int lane, const double* values, int n) {
 /// The kind of a torque of a scene, and its numbers if `values` is given; nothing for a torque that lanes do not have.
 std::optional<LaneTorque::Kind> describe(const Scene& scene, const AnyTorque& torque, double* values = nullptr) {
   using Kind = LaneTorque::Kind;
+  using Known = formula::KnownTorque::Kind;
   const auto give = [values](const double* numbers, int n) {
     if (values != nullptr) std::copy_n(numbers, n, values);
   };
-  if (const auto* constant = std::get_if<torques::Constant>(&torque)) {
-    give(constant->torque().data(), 3);
-    return constant->frame() == torques::Constant::Frame::space ? Kind::space_constant : Kind::body_constant;
+  const std::optional<formula::KnownTorque> known = find_known(torque);
+  if (!known) return std::nullopt;
+  if (const auto C_B = find_damping(torque, scene.inertia_B().matrix())) {
+    give(C_B->data(), 9);
+    return Kind::damping;
   }
-  if (const auto* gravity = std::get_if<torques::Gravity>(&torque)) {
-    give(gravity->moment().data(), 3);
-    return Kind::weight;
-  }
-  if (const auto* gradient = std::get_if<torques::GravityGradient>(&torque)) {
-    const double numbers[3] = {gradient->mean_motion(), gradient->phase(), gradient->strength()};
+  if (known->kind == Known::gravity_gradient) {
+    const double numbers[3] = {known->rate, known->phase, 3 * known->rate * known->rate};
     give(numbers, 3);
     return Kind::gradient;
   }
-  if (const auto* damping = std::get_if<torques::Damping>(&torque)) {
-    give(damping->matrix().data(), 9);
-    return Kind::damping;
+  give(known->vector.data(), 3);
+  switch (known->kind) {
+    case Known::constant_in_body: return Kind::body_constant;
+    case Known::constant_in_space: return Kind::space_constant;
+    case Known::gravity: return Kind::weight;
+    case Known::rotors: return Kind::rotors;
+    default: return std::nullopt;
   }
-  if (const auto* angular = std::get_if<torques::AngularDamping>(&torque)) {
-    give(angular->compute_matrix(scene.inertia_B().matrix()).data(), 9);
-    return Kind::damping;
-  }
-  return std::nullopt;
 }
 
 /// Euler's equations, in the form of run_euler().

@@ -43,11 +43,6 @@ int find_number(const Program& law, const ColumnCause& cause, const LastingTorqu
   return number;
 }
 
-bool follows_inertia(const AnyTorque& torque) {
-  return std::holds_alternative<torques::GravityGradient>(torque) ||
-         std::holds_alternative<torques::AngularDamping>(torque);
-}
-
 /// J d' = dN - d x (J w + h) - w x J d - w x (dJ w) - w x dh - dJ w', turn' = d - w x turn, and of states
 /// dx' = d(rate), all in principal axes.
 class EquationsBuilder {
@@ -222,9 +217,20 @@ class EquationsBuilder {
       const Matrix3d dJ = frame_.is_rotated() ? Matrix3d(R.transpose() * cause.inertia * R) : cause.inertia;
       const Vec<Expr, 3> w_dot = take(graph, slopes_, 0);
       rate = rate - divide(cross(w_, formula::apply_matrix(dJ, w_)) + formula::apply_matrix(dJ, w_dot));
-      for (const AnyTorque& torque : piece_.torques())
-        if (follows_inertia(torque))
-          rate = rate + laws.accelerate(take(graph, laws.add(make_bound_law(torque, cause.inertia)), 0));
+      for (const AnyTorque& torque : piece_.torques()) {
+        if (!uses_inertia(torque)) continue;
+        const Program slope = make_inertia_slope(torque, piece_.inertia_B().matrix(), cause.inertia);
+        const std::vector<Form> outputs = laws.add(slope);
+        rate = rate + laws.accelerate(take(graph, outputs, 0));
+        std::size_t next = 3;
+        for (const formula::Input& state : slope.states) {
+          const formula::Place own = formula::find_place(states_, state.name);
+          for (int i = 0; i < own.count; ++i) {
+            Form& force = forces[place(6 + own.first + i)];
+            force = force + outputs[next++];
+          }
+        }
+      }
     }
     if (!cause.rotor_momentum.isZero(0.0)) {
       const Vector3d dh = frame_.is_rotated() ? Vector3d(R.transpose() * cause.rotor_momentum) : cause.rotor_momentum;
@@ -238,7 +244,8 @@ class EquationsBuilder {
       next += 3;
       for (const formula::Input& state : law.states) {
         const formula::Place own = formula::find_place(states_, state.name);
-        for (int i = 0; i < own.count; ++i) forces[place(6 + own.first + i)] = outputs[next++];
+        for (int i = 0; i < own.count; ++i, ++next)
+          forces[place(6 + own.first + i)] = forces[place(6 + own.first + i)] + outputs[next];
       }
     }
     for (std::size_t i = 0; i < 3; ++i) forces[i] = rate[i].form();

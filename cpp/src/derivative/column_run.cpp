@@ -192,7 +192,7 @@ std::vector<double> ColumnRun::find_state_rates(const Moment& at, const std::vec
   const Quat& q = at.state.attitude;
   const double attitude[4] = {q.x, q.y, q.z, q.w};
   for (const AnyTorque& torque : now) {
-    const auto* formula = std::get_if<torques::Formula>(&torque);
+    const torques::Formula* formula = find_formula(torque);
     if (formula == nullptr || formula->states().empty()) continue;
     const std::vector<double> outputs =
         formula->compute({at.state.t, at.state.omega.data(), attitude, scene_.inertia_B().matrix()},

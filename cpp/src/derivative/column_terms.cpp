@@ -9,8 +9,8 @@ namespace {
 
 using Source = ForceSource;
 
-/// Collects the terms. Each torque has three functions: its derivative by the state, by one of its numbers, and by the
-/// inertia.
+/// Collects the terms. Each torque with kernels has three functions: its derivative by the state, by one of its numbers,
+/// and by the inertia. The compiler asks for them; all other torques have ColumnEquations.
 class TermsBuilder {
  public:
   TermsBuilder(const Matrix3d& R_BP, const Vector3d& J, ColumnTerms& terms)
@@ -27,8 +27,8 @@ class TermsBuilder {
     for (int i = 0; i < 3; ++i) terms_.tidal[i] += torque.strength() * (J_[next_axis(next_axis(i))] - J_[next_axis(i)]);
     terms_.orbit_rate = torque.mean_motion();
   }
-  void add(const torques::Custom& torque) { refuse_custom(torque.name()); }
-  void add(const torques::Formula&) { refuse_custom("Formula"); }
+  template <class Torque>
+  void add(const Torque& torque) requires(!torques::HasKernel<Torque>) { refuse(torque.record().name); }
 
   void add_rotors(const Vector3d& h_B) {   // -d x h
     const Vector3d h = R_PB_ * h_B;
@@ -68,8 +68,10 @@ class TermsBuilder {
       put(column, i, field == 0 ? Source::timed_pairs : Source::turned_pairs, i, torque.strength() * gap);
     }
   }
-  void force(int, const torques::Custom& torque, int, int) { refuse_custom(torque.name()); }
-  void force(int, const torques::Formula&, int, int) { refuse_custom("Formula"); }
+  template <class Torque>
+  void force(int, const Torque& torque, int, int) requires(!torques::HasKernel<Torque>) {
+    refuse(torque.record().name);
+  }
 
   // -- the derivative by the inertia --------------------------------------------------------------------------------
   void force_inertia(int column, const Matrix3d& dJ_B) {
@@ -86,8 +88,10 @@ class TermsBuilder {
   void force_inertia(int, const torques::Constant&, const Matrix3d&) {}
   void force_inertia(int, const torques::Gravity&, const Matrix3d&) {}
   void force_inertia(int, const torques::Damping&, const Matrix3d&) {}
-  void force_inertia(int, const torques::Custom&, const Matrix3d&) {}
-  void force_inertia(int, const torques::Formula&, const Matrix3d&) {}
+  template <class Torque>
+  void force_inertia(int, const Torque& torque, const Matrix3d&) requires(!torques::HasKernel<Torque>) {
+    refuse(torque.record().name);
+  }
 
   void force_rotors(int column, const Vector3d& dh_B) {   // dh x w
     const Vector3d h = R_PB_ * dh_B;
@@ -98,10 +102,10 @@ class TermsBuilder {
   }
 
  private:
-  [[noreturn]] static void refuse_custom(std::string_view name) {
+  /// Other torques than those with kernels have ColumnEquations.
+  [[noreturn]] static void refuse(std::string_view name) {
     throw InvalidInput("sensitivity", "left out for a scene with a torque of the user's own", name,
-                       name == "Custom" ? "a function has no formula that could be differentiated"
-                                        : "a formula that is no torque of the list is not differentiated yet");
+                       "a function has no formula that could be differentiated");
   }
 
   void put(int column, int component, Source source, int part, double torque) {

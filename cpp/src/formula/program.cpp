@@ -186,6 +186,31 @@ Program bind_parameters(const Program& program, const std::vector<double>& value
   return rewrite(made);
 }
 
+Program bind_some(const Program& program, int first, const std::vector<double>& values) {
+  const int count = static_cast<int>(values.size());
+  Program made = rewrite(program, [&](int node, Graph& graph) -> std::optional<Form> {
+    const Node& n = program.graph[node];
+    if (n.op != Op::parameter || n.index < first) return std::nullopt;
+    if (n.index >= first + count) return graph.parameter(n.index - count);
+    return Form(values[static_cast<std::size_t>(n.index - first)]);
+  });
+  made.parameters.clear();
+  int number = 0;
+  for (const Input& input : program.parameters) {
+    if (number < first || number >= first + count) made.parameters.push_back(input);
+    number += static_cast<int>(input.values.size());
+  }
+  return rewrite(made);
+}
+
+bool uses_parameters_from(const Program& program, int first) {
+  const std::vector<bool> live = find_live(program.graph, program.outputs);
+  for (int i = 0; i < program.graph.size(); ++i)
+    if (live[static_cast<std::size_t>(i)] && program.graph[i].op == Op::parameter && program.graph[i].index >= first)
+      return true;
+  return false;
+}
+
 Program make_body_equations(const Program& torque, const Matrix3d& inertia_B) {
   Program made = torque;
   made.outputs.clear();

@@ -110,7 +110,7 @@ bool jumps_with_time(const Scene& scene, const State& state) {
 std::string explain_singular(const Scene& scene, const State& state) {
   constexpr double near = 1e-6;
   if (!std::isfinite(norm(state.attitude))) return "";
-  const std::string found = find_singular(scene.torques(), state, near);
+  const std::string found = find_singular(scene.torques(), scene.inertia_B().matrix(), state, near);
   if (found.empty()) return "";
   return "; the formula has no derivatives there, by " + found + ", which goes to 0; for a norm write norm(v, smooth=1e-6)";
 }

@@ -4,11 +4,10 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <variant>
 
 #include "polhode/core/error.hpp"
-#include "polhode/math/detail/double_double.hpp"
 #include "polhode/math/detail/functions.hpp"
+#include "reference/law_series.hpp"
 #include "solve/ground/formulas.hpp"
 #include "solve/ground/pieces.hpp"
 
@@ -40,23 +39,15 @@ Real find_root(Real x, int n) {
   return std::ldexp(Real(std::floor(256 * math::fast_exp2(log - whole))), static_cast<int>(whole) - 8);
 }
 
-/// sin and cos from double-double: those of the system's library differ between processors.
-std::array<Real, 2> compute_sincos(Real angle) {
-  const double high = static_cast<double>(angle);
-  const math::SinCos found = math::sincos(math::DD(high, static_cast<double>(angle - high)));
-  return {Real(found.sin.hi) + found.sin.lo, Real(found.cos.hi) + found.cos.lo};
-}
-
 /// The Taylor series of a body's motion about one time. Each function here works on coefficient n.
 class LongDoubleSeries {
  public:
-  LongDoubleSeries(const Scene& scene, int order) : scene_(&scene), order_(order) {
-    for (Vector* v : {&w_, &L_, &row_x_, &row_y_, &row_z_})
+  LongDoubleSeries(const Scene& scene, int order) : order_(order) {
+    for (Vector* v : {&w_, &L_})
       for (Series& s : *v) s.assign(static_cast<std::size_t>(order) + 1, 0);
     for (Series& s : q_) s.assign(static_cast<std::size_t>(order) + 1, 0);
-    for (const AnyTorque& torque : scene.torques()) {
-      if (std::holds_alternative<torques::GravityGradient>(torque)) orbits_.push_back({q_[0], q_[0], w_, w_});
-    }
+    for (const AnyTorque& torque : scene.torques())
+      laws_.emplace_back(make_open_law(torque, scene.inertia_B().matrix()), order);
     const Matrix3d& I = scene.inertia_B().matrix();
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) I_[i][j] = I(i, j);
@@ -78,10 +69,12 @@ class LongDoubleSeries {
         const auto j = index((i + 1) % 3), k = index((i + 2) % 3);
         tau[i] = multiply(L_[j], w_[k], n) - multiply(L_[k], w_[j], n);
       }
-      if (scene_->torque_sum().uses_attitude) expand_rows(n);
-      orbit_ = orbits_.begin();
-      for (const AnyTorque& torque : scene_->torques())
-        std::visit([&](const auto& acting) { add(acting, t, n, tau); }, torque);
+      const Series* const states[7] = {&w_[0], &w_[1], &w_[2], &q_[0], &q_[1], &q_[2], &q_[3]};
+      for (LawSeries& law : laws_) {
+        Real own[3];
+        law.expand(t, n, states, own);
+        for (int i = 0; i < 3; ++i) tau[i] += own[i];
+      }
       for (int i = 0; i < 3; ++i)
         w_[index(i)][next] = (inverse_[i][0] * tau[0] + inverse_[i][1] * tau[1] + inverse_[i][2] * tau[2]) / (n + 1);
       // q' = q (w, 0) / 2
@@ -142,95 +135,12 @@ class LongDoubleSeries {
       for (int j = 0; j < 3; ++j) inverse_[index(i)][index(j)] = cofactor(j, i) / det;
   }
 
-  /// Coefficient n of the rows of R_WB.
-  void expand_rows(int n) {
-    const Series &x = q_[0], &y = q_[1], &z = q_[2], &s = q_[3];
-    const Real xx = multiply(x, x, n), yy = multiply(y, y, n), zz = multiply(z, z, n), ss = multiply(s, s, n);
-    const Real xy = multiply(x, y, n), xz = multiply(x, z, n), yz = multiply(y, z, n);
-    const Real sx = multiply(s, x, n), sy = multiply(s, y, n), sz = multiply(s, z, n);
-    const Real rows[3][3] = {{ss + xx - yy - zz, 2 * (xy - sz), 2 * (xz + sy)},
-                             {2 * (xy + sz), ss - xx + yy - zz, 2 * (yz - sx)},
-                             {2 * (xz - sy), 2 * (yz + sx), ss - xx - yy + zz}};
-    for (int i = 0; i < 3; ++i) {
-      row_x_[index(i)][index(n)] = rows[0][i];
-      row_y_[index(i)][index(n)] = rows[1][i];
-      row_z_[index(i)][index(n)] = rows[2][i];
-    }
-  }
-
-  void add(const torques::Constant& torque, Real, int n, Real* tau) const {
-    const Vector3d& v = torque.torque();
-    const auto at = index(n);
-    for (int i = 0; i < 3; ++i) {
-      const auto k = index(i);
-      if (torque.frame() == torques::Constant::Frame::space) {
-        tau[i] += v[0] * row_x_[k][at] + v[1] * row_y_[k][at] + v[2] * row_z_[k][at];
-      } else if (n == 0) {
-        tau[i] += v[i];
-      }
-    }
-  }
-
-  void add(const torques::Gravity& torque, Real, int n, Real* tau) const {
-    for (int i = 0; i < 3; ++i) {   // -m g r x (row z)
-      const int j = (i + 1) % 3, k = (i + 2) % 3;
-      const Vector3d& r = torque.arm();
-      tau[i] -= torque.weight() * (r[j] * row_z_[index(k)][index(n)] - r[k] * row_z_[index(j)][index(n)]);
-    }
-  }
-
-  void add(const torques::GravityGradient& torque, Real t, int n, Real* tau) {
-    const Real rate = torque.mean_motion();
-    const auto at = index(n);
-    auto& [cos, sin, u, Iu] = *orbit_++;
-    if (n == 0) {
-      const auto [s, c] = compute_sincos(rate * t + torque.phase());
-      sin[0] = s, cos[0] = c;
-    } else {
-      cos[at] = -rate * sin[at - 1] / n;
-      sin[at] = rate * cos[at - 1] / n;
-    }
-    for (int i = 0; i < 3; ++i) {
-      u[index(i)][at] = multiply(cos, row_x_[index(i)], n) + multiply(sin, row_y_[index(i)], n);
-    }
-    for (int i = 0; i < 3; ++i) Iu[index(i)][at] = apply(I_, i, u, n);
-    for (int i = 0; i < 3; ++i) {
-      const auto j = index((i + 1) % 3), k = index((i + 2) % 3);
-      tau[i] += 3 * rate * rate * (multiply(u[j], Iu[k], n) - multiply(u[k], Iu[j], n));
-    }
-  }
-
-  void add(const torques::Damping& torque, Real, int n, Real* tau) const {
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) tau[i] -= Real(torque.matrix()(i, j)) * w_[index(j)][index(n)];
-  }
-
-  void add(const torques::AngularDamping& torque, Real, int n, Real* tau) const {
-    for (int i = 0; i < 3; ++i)   // of the body's own momentum: h stays
-      tau[i] -= Real(torque.rate()) * (L_[index(i)][index(n)] - (n == 0 ? h_[index(i)] : 0));
-  }
-
-  void add(const torques::Custom&, Real, int, Real*) const {
-    throw InvalidInput("torques", "without Custom torques, which have no series", "Custom");
-  }
-  void add(const torques::Formula&, Real, int, Real*) const {
-    throw InvalidInput("torques", "without a Formula that is no torque of the list", "Formula",
-                       "its series are not used yet");
-  }
-  void add(const torques::During&, Real, int, Real*) const {}   // pieces have none
-
-  const Scene* scene_;
   int order_;
   Square I_{}, inverse_{};
   std::array<Real, 3> h_{};     // of the rotors
-  Vector w_, L_, row_x_, row_y_, row_z_;
+  Vector w_, L_;
   std::array<Series, 4> q_;
-  struct Orbit {
-    Series cos, sin;
-    Vector u, Iu;
-  };
-  std::vector<Orbit> orbits_;   // one for each gravity gradient, in the order of the torques
-  std::vector<Orbit>::iterator orbit_;
+  std::vector<LawSeries> laws_;   // of the torques
 };
 
 /// Integrates from t0 through the times in the order of `visit`, all on one side of t0. Continues with the next piece

@@ -135,7 +135,7 @@ int Scene::count_states() const {
 void set_starts(std::vector<AnyTorque>& torques, const std::vector<double>& starts) {
   const std::vector<formula::Input> states = list_states(torques);
   for (AnyTorque& torque : torques) {
-    const auto* formula = std::get_if<torques::Formula>(&torque);
+    const torques::Formula* formula = find_formula(torque);
     if (formula == nullptr || formula->states().empty()) continue;
     std::vector<double> own;
     for (const formula::Input& state : formula->states()) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "checks.hpp"
+#include "polhode/core/error.hpp"
 
 namespace polhode::torques {
 Custom::Custom(Function function, void* data, const Claims& claims, Potential potential,

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "polhode/core/error.hpp"
+#include "polhode/torque/torques.hpp"
 
 namespace polhode::torques {
 namespace {
@@ -42,7 +43,8 @@ std::vector<Window> arrange(std::vector<Window> windows, std::string_view where)
 
 During::During(LastingTorque torque, std::vector<Window> windows)
     : torque_(std::move(torque)), windows_(arrange(std::move(windows), "During.windows")) {
-  const auto* formula = std::get_if<Formula>(&torque_);
+  const AnyTorque inner = to_any(torque_);
+  const Formula* formula = find_formula(inner);
   if (formula == nullptr || formula->states().empty()) return;
   throw InvalidInput("During.torque", "a torque without states", "a Formula with the state " + formula->states()[0].name,
                      "its states go on outside the windows: write the window into the formula");

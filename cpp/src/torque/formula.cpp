@@ -11,6 +11,7 @@
 #include "polhode/core/error.hpp"
 #include "polhode/formula/derivative.hpp"
 #include "polhode/formula/facts.hpp"
+#include "polhode/torque/detail/law_arguments.hpp"
 
 namespace polhode::torques {
 namespace {
@@ -39,26 +40,30 @@ void replace(std::vector<formula::Input>& inputs, const std::vector<double>& num
 }  // namespace
 
 struct Formula::Parts {
-  explicit Parts(const formula::Program& given)
+  /// @param of_law  the last parameter is the inertia, if it has that name
+  explicit Parts(const formula::Program& given, bool of_law = false)
       : text(formula::print(given)),
+        open_law(of_law ? std::optional(given) : std::nullopt),
+        own_numbers(count_own(given, of_law)),
         potential(is_potential(given) ? std::optional(bind(given)) : std::nullopt),
-        program(bind(potential ? formula::derive_torque(given) : given)),
+        program(of_law ? bind_own(given, own_numbers) : bind(potential ? formula::derive_torque(given) : given)),
         potential_evaluator(potential ? std::optional<formula::Evaluator>(*potential) : std::nullopt),
         facts(formula::find_facts(program)),
         evaluator(program) {}
 
-  void compute(double t, const double* omega, const double* attitude, const double* states, double* outputs) const {
-    evaluate(program, evaluator, t, omega, attitude, states, outputs);
+  /// @param in  with an attitude of unit length
+  void compute(const TorqueInput& in, const double* states, double* outputs) const {
+    evaluate(program, evaluator, in, states, outputs);
   }
 
-  void compute_rate_slopes(double t, const double* omega, const double* attitude, const double* states,
-                           double* outputs) const {
+  void compute_rate_slopes(const TorqueInput& in, const double* states, double* outputs) const {
     std::call_once(differentiated, [this] { rate_slopes = std::make_unique<const Slopes>(program); });
-    evaluate(rate_slopes->program, rate_slopes->evaluator, t, omega, attitude, states, outputs);
+    evaluate(rate_slopes->program, rate_slopes->evaluator, in, states, outputs);
   }
 
-  void evaluate(const formula::Program& of, const formula::Evaluator& by, double t, const double* omega,
-                const double* attitude, const double* states, double* outputs) const {
+  void evaluate(const formula::Program& of, const formula::Evaluator& by, const TorqueInput& in, const double* states,
+                double* outputs) const {
+    const double *omega = in.omega, *attitude = in.attitude, *inertia = in.inertia_B.data();   // it is symmetric
     std::array<double, formula::first_extra + most_states> y;
     std::copy_n(omega, 3, y.begin());
     std::copy_n(attitude, 4, y.begin() + formula::first_attitude);
@@ -66,12 +71,23 @@ struct Formula::Parts {
     constexpr int few = 256;
     if (of.graph.size() <= few) {
       std::array<double, few> values;
-      by.evaluate(t, y.data(), nullptr, values.data(), outputs);
+      by.evaluate(in.t, y.data(), inertia, values.data(), outputs);
     } else {
       std::vector<double> values(static_cast<std::size_t>(of.graph.size()));
-      by.evaluate(t, y.data(), nullptr, values.data(), outputs);
+      by.evaluate(in.t, y.data(), inertia, values.data(), outputs);
     }
   }
+
+  static std::size_t count_own(const formula::Program& given, bool of_law) {
+    const std::size_t all = formula::list_values(given.parameters).size();
+    return of_law && !given.parameters.empty() && given.parameters.back().name == inertia_input ? all - 9 : all;
+  }
+  static formula::Program bind_own(const formula::Program& given, std::size_t count) {
+    std::vector<double> values = formula::list_values(given.parameters);
+    values.resize(count);
+    return formula::bind_some(given, 0, values);
+  }
+  bool is_open() const { return !program.parameters.empty(); }
 
   static bool is_potential(const formula::Program& given) { return given.outputs.size() == 1 && given.states.empty(); }
   static formula::Program bind(const formula::Program& given) {
@@ -99,6 +115,8 @@ struct Formula::Parts {
   };
 
   formula::Text text;
+  std::optional<formula::Program> open_law;   // of the library, as it was given
+  std::size_t own_numbers;                    // of its parameters but the inertia
   std::optional<formula::Program> potential;
   formula::Program program;
   std::optional<formula::Evaluator> potential_evaluator;   // of the potential above
@@ -127,7 +145,26 @@ const formula::Program& Formula::program() const { return parts_->program; }
 
 const std::vector<formula::Input>& Formula::states() const { return parts_->text.states; }
 
+Formula Formula::of_law(const formula::Program& open_law) {
+  require_states(open_law);
+  return Formula(std::make_shared<const Parts>(open_law, true), false);
+}
+
+formula::Program Formula::program(const Matrix3d& inertia_B) const {
+  if (!parts_->is_open()) return parts_->program;
+  return formula::bind_some(parts_->program, 0, {inertia_B.data(), inertia_B.data() + 9});
+}
+
+formula::Program Formula::given() const {
+  return parts_->open_law ? *parts_->open_law : formula::parse(parts_->text);
+}
+
 Formula Formula::with_starts(const std::vector<double>& starts) const {
+  if (parts_->open_law) {
+    formula::Program law = *parts_->open_law;
+    replace(law.states, starts);
+    return of_law(law);
+  }
   formula::Text text = parts_->text;
   replace(text.states, starts);
   return Formula(text, recognise_);
@@ -145,8 +182,10 @@ Formula Formula::as_given() const {
   return other;
 }
 
-formula::Program Formula::law(const Matrix3d&) const {
-  const formula::Program given = formula::parse(parts_->text);
+formula::Program Formula::law(const Matrix3d& inertia_B) const {
+  const formula::Program given = this->given();
+  if (parts_->is_open())
+    return formula::bind_some(given, static_cast<int>(parts_->own_numbers), {inertia_B.data(), inertia_B.data() + 9});
   return parts_->potential ? formula::derive_torque(given) : given;
 }
 
@@ -168,7 +207,7 @@ std::vector<double> Formula::compute(const TorqueInput& in, const std::vector<do
   const double s = 1.0 / std::sqrt(d);
   const double unit[4] = {s * q[0], s * q[1], s * q[2], s * q[3]};
   std::vector<double> outputs(parts_->program.outputs.size());
-  parts_->compute(in.t, in.omega, d == 1.0 ? q : unit, states.data(), outputs.data());
+  parts_->compute({in.t, in.omega, d == 1.0 ? q : unit, in.inertia_B}, states.data(), outputs.data());
   return outputs;
 }
 
@@ -179,7 +218,7 @@ void Formula::add(const TorqueInput& in, double* tau_B) const {
   const double unit[4] = {s * q[0], s * q[1], s * q[2], s * q[3]};
   std::array<double, 3 + most_states> outputs;
   const std::vector<double> starts = formula::list_values(states());
-  parts_->compute(in.t, in.omega, d == 1.0 ? q : unit, starts.data(), outputs.data());
+  parts_->compute({in.t, in.omega, d == 1.0 ? q : unit, in.inertia_B}, starts.data(), outputs.data());
   for (std::size_t i = 0; i < 3; ++i) tau_B[i] += outputs[i];
 }
 
@@ -187,7 +226,7 @@ void Formula::add_rate_slopes(const TorqueInput& in, Matrix3d& slopes) const {
   const Quat unit = normalized({in.attitude[0], in.attitude[1], in.attitude[2], in.attitude[3]});
   const double q[4] = {unit.x, unit.y, unit.z, unit.w};
   Matrix3d found;
-  parts_->compute_rate_slopes(in.t, in.omega, q, formula::list_values(states()).data(), found.data());
+  parts_->compute_rate_slopes({in.t, in.omega, q, in.inertia_B}, formula::list_values(states()).data(), found.data());
   slopes += found;
 }
 
@@ -202,12 +241,14 @@ double Formula::compute_potential(const TorqueInput& in) const {
   return potential;
 }
 
-Custom Formula::as_custom() const {
+Custom Formula::as_custom(const Matrix3d& inertia_B) const {
+  if (parts_->is_open()) return Formula(program(inertia_B), false).as_custom(inertia_B);
   if (!states().empty())
     throw InvalidInput("Formula", "without states of its own", "states " + states()[0].name, "taylor integrates them");
   const TorqueTraits traits = this->traits();
   const Custom::Function call = [](double t, const double* omega, const double* attitude, double* torque, void* data) {
-    static_cast<const Parts*>(data)->compute(t, omega, attitude, nullptr, torque);
+    static const Matrix3d none = Matrix3d::Zero();   // it has no inertia
+    static_cast<const Parts*>(data)->compute({t, omega, attitude, none}, nullptr, torque);
   };
   Custom custom(call, const_cast<Parts*>(parts_.get()),
                 {.uses_time = traits.uses_time, .uses_attitude = traits.uses_attitude, .uses_rates = traits.uses_rates},

@@ -3,10 +3,26 @@
 #include <algorithm>
 
 #include "polhode/core/error.hpp"
+#include "polhode/formula/derivative.hpp"
 #include "polhode/formula/program.hpp"
 #include "polhode/formula/singular.hpp"
 
 namespace polhode {
+
+namespace {
+
+/// Calls a function with the torque that acts in windows, or with the torque itself.
+auto visit_lasting(const auto& use, const AnyTorque& torque) {
+  return std::visit([&]<class T>(const T& one) {
+    if constexpr (std::is_same_v<T, torques::During>) {
+      return std::visit(use, one.torque());
+    } else {
+      return use(one);
+    }
+  }, torque);
+}
+
+}  // namespace
 
 void SeveralTorques::add(const TorqueInput& in, double* tau_B) const {
   for (const AnyTorque& torque : torques) std::visit([&](const auto& one) { one.add(in, tau_B); }, torque);
@@ -16,7 +32,7 @@ void SeveralTorques::add(const TorqueInput& in, double* tau_B) const {
 std::vector<formula::Input> list_states(std::span<const AnyTorque> torques) {
   std::vector<formula::Input> all;
   for (std::size_t i = 0; i < torques.size(); ++i) {
-    const auto* formula = std::get_if<torques::Formula>(&torques[i]);
+    const torques::Formula* formula = find_formula(torques[i]);
     if (formula == nullptr) continue;
     for (const formula::Input& state : formula->states()) {
       const auto same = std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.name == state.name; });
@@ -48,14 +64,78 @@ LastingTorque drop_windows(const AnyTorque& torque) {
 }
 
 const torques::Formula* find_formula(const AnyTorque& torque) {
-  const auto* during = std::get_if<torques::During>(&torque);
-  return during != nullptr ? std::get_if<torques::Formula>(&during->torque()) : std::get_if<torques::Formula>(&torque);
+  return visit_lasting([]<class T>(const T& one) -> const torques::Formula* {
+    if constexpr (std::is_same_v<T, torques::Formula>) {
+      return &one;
+    } else if constexpr (requires { one.formula(); }) {
+      return &one.formula();
+    } else {
+      return nullptr;
+    }
+  }, torque);
 }
 
-std::string find_singular(std::span<const AnyTorque> torques, const State& state, double near) {
+std::optional<formula::KnownTorque> find_known(const AnyTorque& torque) {
+  return std::visit([]<class T>(const T& one) -> std::optional<formula::KnownTorque> {
+    if constexpr (torques::HasKernel<T>) return one.known();
+    return std::nullopt;
+  }, torque);
+}
+
+std::optional<Matrix3d> find_damping(const AnyTorque& torque, const Matrix3d& inertia_B) {
+  using Kind = formula::KnownTorque::Kind;
+  const std::optional<formula::KnownTorque> known = find_known(torque);
+  if (known && known->kind == Kind::damping) return known->matrix;
+  if (known && known->kind == Kind::angular_damping) return known->rate * inertia_B;
+  return std::nullopt;
+}
+
+bool uses_inertia(const AnyTorque& torque) {
+  return visit_lasting([](const auto& one) {
+    if constexpr (requires { one.open_law(); }) {
+      const std::vector<formula::Input> inputs = one.open_law().parameters;
+      return !inputs.empty() && inputs.back().name == torques::inertia_input;
+    }
+    return false;
+  }, torque);
+}
+
+formula::Program make_inertia_slope(const AnyTorque& torque, const Matrix3d& inertia_B, const Matrix3d& dI_B) {
+  return visit_lasting([&](const auto& one) -> formula::Program {
+    if constexpr (requires { one.open_law(); }) {
+      formula::Program law = one.open_law();
+      std::vector<double> own = formula::list_values(law.parameters);
+      if (!own.empty() && law.parameters.back().name == torques::inertia_input) own.resize(own.size() - 9);
+      law = formula::bind_some(law, 0, own);
+      const std::size_t outputs = law.outputs.size();
+      std::vector<formula::Variable> by;
+      std::vector<double> change;
+      for (int i = 0; i < 9 && !law.parameters.empty(); ++i) {
+        if (dI_B(i / 3, i % 3) == 0.0) continue;
+        by.push_back({formula::Variable::Kind::parameter, i}), change.push_back(dI_B(i / 3, i % 3));
+      }
+      const formula::Program slopes = formula::differentiate(law, by);
+      formula::Program made = slopes;
+      made.outputs.assign(outputs, {});
+      for (std::size_t k = 0; k < by.size(); ++k)
+        for (std::size_t i = 0; i < outputs; ++i)
+          made.outputs[i] = made.outputs[i] + slopes.outputs[outputs * (1 + k) + i] * change[k];
+      const std::size_t left = formula::list_values(law.parameters).size();   // nine of the inertia, which is symmetric
+      return formula::bind_parameters(made, {inertia_B.data(), inertia_B.data() + left});
+    } else {
+      formula::Program none;
+      none.outputs.assign(3, {});
+      return none;
+    }
+  }, torque);
+}
+
+std::string find_singular(std::span<const AnyTorque> torques, const Matrix3d& inertia_B, const State& state,
+                          double near) {
   const std::vector<formula::Input> all = list_states(torques);
   for (const AnyTorque& torque : torques) {
-    const auto* formula = std::get_if<torques::Formula>(&torque);
+    const bool in_windows = std::holds_alternative<torques::During>(torque);
+    const torques::Formula* formula = in_windows ? nullptr : find_formula(torque);
     if (formula == nullptr) continue;
     const Vector3d& w = state.omega;
     const Quat& q = state.attitude;
@@ -64,7 +144,7 @@ std::string find_singular(std::span<const AnyTorque> torques, const State& state
       const formula::Place place = formula::find_place(all, one.name);
       y.insert(y.end(), state.states.begin() + place.first, state.states.begin() + place.first + place.count);
     }
-    std::string found = formula::find_singular(formula->program(), state.t, y.data(), near);
+    std::string found = formula::find_singular(formula->program(inertia_B), state.t, y.data(), near);
     if (!found.empty()) return found;
   }
   return "";
@@ -84,8 +164,21 @@ formula::Program make_law(const AnyTorque& torque, const Matrix3d& inertia_B) {
       torque);
 }
 
+formula::Program make_open_law(const AnyTorque& torque, const Matrix3d& inertia_B) {
+  return visit_lasting([&]<class T>(const T& one) -> formula::Program {
+    if constexpr (requires { one.open_law(); }) {
+      formula::Program law = one.open_law();
+      if (!law.parameters.empty() && law.parameters.back().name == torques::inertia_input)
+        law.parameters.back().values.assign(inertia_B.data(), inertia_B.data() + 9);   // it is symmetric
+      return law;
+    } else {
+      return make_law(torque, inertia_B);
+    }
+  }, torque);
+}
+
 formula::Program make_bound_law(const AnyTorque& torque, const Matrix3d& inertia_B) {
-  if (const auto* formula = std::get_if<torques::Formula>(&torque)) return formula->program();
+  if (const torques::Formula* formula = find_formula(torque)) return formula->program(inertia_B);
   const formula::Program law = make_law(torque, inertia_B);
   return formula::bind_parameters(law, formula::list_values(law.parameters));
 }

@@ -134,6 +134,40 @@ Vec<T, 3> cross(const Vec<T, 3>& a, const Vec<T, 3>& b) {
 template <class T, std::size_t n>
 T norm(const Vec<T, n>& v, double smooth = 0.0) { return sqrt(dot(v, v) + T(smooth * smooth)); }
 
+/// A matrix of nine numbers, by rows.
+template <class T>
+struct Mat {
+  std::array<T, 9> entries{};
+
+  const T& operator()(std::size_t i, std::size_t j) const { return entries[3 * i + j]; }
+};
+
+template <class T>
+Mat<T> make_matrix(const Matrix3d& M) {
+  Mat<T> made;
+  for (int i = 0; i < 9; ++i) made.entries[static_cast<std::size_t>(i)] = T(M(i / 3, i % 3));
+  return made;
+}
+inline Vector3d to_eigen(const Vec<double, 3>& v) { return {v[0], v[1], v[2]}; }
+inline Matrix3d to_eigen(const Mat<double>& m) {
+  Matrix3d made;
+  for (int i = 0; i < 9; ++i) made(i / 3, i % 3) = m.entries[static_cast<std::size_t>(i)];
+  return made;
+}
+
+template <class T>
+Vec<T, 3> operator*(const Mat<T>& M, const Vec<T, 3>& v) {
+  Vec<T, 3> out;
+  for (std::size_t i = 0; i < 3; ++i) out[i] = M(i, 0) * v[0] + M(i, 1) * v[1] + M(i, 2) * v[2];
+  return out;
+}
+template <class T>
+Mat<T> operator*(const T& a, const Mat<T>& M) {
+  Mat<T> out;
+  for (std::size_t i = 0; i < 9; ++i) out.entries[i] = a * M.entries[i];
+  return out;
+}
+
 template <class T>
 Vec<T, 3> make_vector(const Vector3d& v) { return {{T(v[0]), T(v[1]), T(v[2])}}; }
 

@@ -73,6 +73,10 @@ bool is_same(const Program& a, const Program& b);
 Program rewrite(const Program& program, const Change& change = {});
 /// Parameters become numbers: one value for each number of all parameters.
 Program bind_parameters(const Program& program, const std::vector<double>& values);
+/// The same for `values.size()` numbers from a number on. Other parameters stay, and follow each other.
+Program bind_some(const Program& program, int first, const std::vector<double>& values);
+/// Whether an output needs a parameter with this number or one behind it.
+bool uses_parameters_from(const Program& program, int first);
 /// Components of R_WB^T v become polynomials in the attitude.
 /// @param but_carried  not those of a vector that a tape carries
 Program expand_rotations(const Program& program, bool but_carried = false);

@@ -1,37 +1,38 @@
 #pragma once
 
-#include "polhode/torque/formulas.hpp"
-#include "polhode/torque/record.hpp"
+#include "polhode/torque/law.hpp"
 
 namespace polhode::torques {
 
+template <class T>
+struct AngularDampingNumbers {
+  T rate;
+  static auto list(auto& of) { return std::tie(of.rate); }
+};
+
 /// Damping proportional to the angular momentum: tau_B = -c I w_B. Beside the gyroscopic term, w' = ... - c w.
-class AngularDamping {
+class AngularDamping : public Law<AngularDamping, AngularDampingNumbers> {
  public:
+  static constexpr TorqueParameter parameters[] = {
+      {"rate", TorqueParameter::Kind::real, "1/s",
+       "c, the rate at which the angular momentum decays; a negative rate drives the body"},
+  };
+  static constexpr TorqueRecord about{"AngularDamping", "angular_damping",
+                                      "Damping proportional to the angular momentum: tau_B = -c I w_B.",
+                                      "angularDamping of the physics engines; docs/damped_free.md", parameters};
+
+  using Law::Law;
   /// @param rate  c [1/s]; a negative rate drives the body
-  explicit AngularDamping(double rate);
+  explicit AngularDamping(double rate) : Law(AngularDampingNumbers<double>{rate}) {}
 
-  static const TorqueRecord& record();
-  static AngularDamping from_values(std::span<const TorqueValue> values);
-  TorqueValues values() const { return {rate_}; }
+  static auto compute(const auto& in, const auto& p) { return -((p.rate * in.inertia()) * in.omega); }
 
-  double rate() const { return rate_; }
+  double rate() const { return numbers().rate; }
   /// c I, the matrix of the same torque as Damping [N m s]
-  Matrix3d compute_matrix(const Matrix3d& inertia_B) const { return rate_ * inertia_B; }
+  Matrix3d compute_matrix(const Matrix3d& inertia_B) const { return rate() * inertia_B; }
 
-  /// The same torque as a formula of its parameters.
-  formula::Program law(const Matrix3d& inertia_B) const;
-
-  TorqueTraits traits() const { return {.uses_rates = true, .vanishes = rate_ == 0.0}; }
-
-  void add(const TorqueInput& in, double* tau_B) const {
-    add_damping(compute_matrix(in.inertia_B).data(), in.omega, tau_B);
-  }
-
-  double compute_potential(const TorqueInput&) const { return 0.0; }   ///< it has none: see traits()
-
- private:
-  double rate_;
+  TorqueTraits traits() const { return {.uses_rates = true, .vanishes = rate() == 0.0}; }
+  formula::KnownTorque known() const { return {.kind = formula::KnownTorque::Kind::angular_damping, .rate = rate()}; }
 };
 
 }  // namespace polhode::torques

@@ -1,45 +1,51 @@
 #pragma once
 
-#include "polhode/torque/record.hpp"
-#include "polhode/torque/vertical.hpp"
+#include "polhode/torque/law.hpp"
 
 namespace polhode::torques {
 
+template <class T>
+struct ConstantNumbers {
+  Vec<T, 3> torque;
+  Choice frame;
+  static auto list(auto& of) { return std::tie(of.torque, of.frame); }
+};
+
 /// A torque whose components are constant, in body axes (a thruster) or in space axes.
-class Constant {
+class Constant : public Law<Constant, ConstantNumbers> {
  public:
   enum class Frame { body, space };
 
-  explicit Constant(const Vector3d& torque, Frame frame = Frame::body);
+  static constexpr TorqueParameter parameters[] = {
+      {"torque", TorqueParameter::Kind::vector, "N m", "its components in the frame named"},
+      {"frame", TorqueParameter::Kind::choice, "", "the axes in which the components are constant", "body",
+       "body|space"},
+  };
+  static constexpr TorqueRecord about{
+      "Constant", "constant", "A torque with constant components, in body axes (a thruster) or in space axes.",
+      "Goldstein, Poole, Safko 2002, Classical Mechanics, sec. 5.5", parameters};
 
-  static const TorqueRecord& record();
-  static Constant from_values(std::span<const TorqueValue> values);
-  TorqueValues values() const;
+  using Law::Law;
+  explicit Constant(const Vector3d& torque, Frame frame = Frame::body)
+      : Law(ConstantNumbers<double>{formula::make_vector<double>(torque), {static_cast<int>(frame)}}) {}
 
-  const Vector3d& torque() const { return torque_; }
-  Frame frame() const { return frame_; }
+  static auto compute(const auto& in, const auto& p) {
+    return p.frame.number == static_cast<int>(Frame::body) ? p.torque : in.to_body(p.torque);
+  }
 
-  /// The same torque as a formula of its parameters.
-  formula::Program law(const Matrix3d& inertia_B) const;
+  Vector3d torque() const { return to_eigen(numbers().torque); }
+  Frame frame() const { return static_cast<Frame>(numbers().frame.number); }
 
   TorqueTraits traits() const {
-    return {.uses_attitude = frame_ == Frame::space,
-            .keeps_vertical = frame_ == Frame::space && torque_[2] == 0.0,
-            .vanishes = torque_.isZero(0.0)};
+    const bool in_space = frame() == Frame::space;
+    return {.uses_attitude = in_space,
+            .keeps_vertical = in_space && torque()[2] == 0.0,
+            .vanishes = torque().isZero(0.0)};
   }
-
-  /// tau_B += the torque [N m]
-  void add(const TorqueInput& in, double* tau_B) const {
-    double v[3] = {torque_[0], torque_[1], torque_[2]};
-    if (frame_ == Frame::space) to_body(in.attitude, torque_.data(), v);
-    for (int i = 0; i < 3; ++i) tau_B[i] += v[i];
+  formula::KnownTorque known() const {
+    using Kind = formula::KnownTorque::Kind;
+    return {.kind = frame() == Frame::body ? Kind::constant_in_body : Kind::constant_in_space, .vector = torque()};
   }
-
-  double compute_potential(const TorqueInput&) const { return 0.0; }   ///< it has none: see traits()
-
- private:
-  Vector3d torque_;
-  Frame frame_;
 };
 
 }  // namespace polhode::torques

@@ -1,33 +1,35 @@
 #pragma once
 
-#include "polhode/torque/formulas.hpp"
-#include "polhode/torque/record.hpp"
+#include "polhode/torque/law.hpp"
 
 namespace polhode::torques {
 
+template <class T>
+struct DampingNumbers {
+  Mat<T> matrix;
+  static auto list(auto& of) { return std::tie(of.matrix); }
+};
+
 /// Linear damping: tau_B = -C w_B with any constant matrix C.
-class Damping {
+class Damping : public Law<Damping, DampingNumbers> {
  public:
+  static constexpr TorqueParameter parameters[] = {
+      {"matrix", TorqueParameter::Kind::matrix, "N m s",
+       "C in body axes; three numbers stand for a diagonal matrix"},
+  };
+  static constexpr TorqueRecord about{"Damping", "damping", "Linear damping: tau_B = -C w_B.",
+                                      "Hughes 1986, Spacecraft Attitude Dynamics, sec. 5.2", parameters};
+
+  using Law::Law;
   /// @param matrix  C, body axes [N m s]
-  explicit Damping(const Matrix3d& matrix);
+  explicit Damping(const Matrix3d& matrix) : Law(DampingNumbers<double>{formula::make_matrix<double>(matrix)}) {}
 
-  static const TorqueRecord& record();
-  static Damping from_values(std::span<const TorqueValue> values);
-  TorqueValues values() const { return {matrix_}; }
+  static auto compute(const auto& in, const auto& p) { return -(p.matrix * in.omega); }
 
-  const Matrix3d& matrix() const { return matrix_; }
+  Matrix3d matrix() const { return to_eigen(numbers().matrix); }
 
-  /// The same torque as a formula of its parameters.
-  formula::Program law(const Matrix3d& inertia_B) const;
-
-  TorqueTraits traits() const { return {.uses_rates = true, .vanishes = matrix_.isZero(0.0)}; }
-
-  void add(const TorqueInput& in, double* tau_B) const { add_damping(matrix_.data(), in.omega, tau_B); }
-
-  double compute_potential(const TorqueInput&) const { return 0.0; }   ///< it has none: see traits()
-
- private:
-  Matrix3d matrix_;
+  TorqueTraits traits() const { return {.uses_rates = true, .vanishes = matrix().isZero(0.0)}; }
+  formula::KnownTorque known() const { return {.kind = formula::KnownTorque::Kind::damping, .matrix = matrix()}; }
 };
 
 }  // namespace polhode::torques

@@ -32,11 +32,18 @@ class Formula {
     return Formula(formula::trace(callable, std::move(parameters), std::move(states)), recognise);
   }
 
+  /// The formula of a law of the library. Its last parameter may be the inertia, which each call then gives.
+  static Formula of_law(const formula::Program& open_law);
+
   static const TorqueRecord& record();
 
   const formula::Text& text() const;                      ///< parse() makes an equal formula of it
   const std::vector<formula::Input>& parameters() const;
-  const formula::Program& program() const;                ///< with the parameters as numbers
+  /// With the parameters as numbers. The inertia is left, where a law has it.
+  const formula::Program& program() const;
+  formula::Program program(const Matrix3d& inertia_B) const;
+  /// As it was given: with its parameters, or as a potential.
+  formula::Program given() const;
   const std::vector<formula::Input>& states() const;      ///< with their starts
   /// A copy whose states start from other numbers, in their order.
   Formula with_starts(const std::vector<double>& starts) const;
@@ -61,13 +68,14 @@ class Formula {
 
   /// The same torque as a compiled function with these dependencies, which steppers without series integrate.
   /// @throws InvalidInput for one with states
-  Custom as_custom() const;
+  Custom as_custom(const Matrix3d& inertia_B) const;
 
   /// The same operations and parameters.
   friend bool operator==(const Formula& a, const Formula& b);
 
  private:
   struct Parts;
+  Formula(std::shared_ptr<const Parts> parts, bool recognise) : parts_(std::move(parts)), recognise_(recognise) {}
 
   std::shared_ptr<const Parts> parts_;
   bool recognise_;

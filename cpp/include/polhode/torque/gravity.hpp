@@ -1,46 +1,47 @@
 #pragma once
 
-#include "polhode/torque/formulas.hpp"
-#include "polhode/torque/record.hpp"
+#include "polhode/torque/law.hpp"
 
 namespace polhode::torques {
 
+template <class T>
+struct GravityNumbers {
+  T weight;
+  Vec<T, 3> arm;
+  static auto list(auto& of) { return std::tie(of.weight, of.arm); }
+};
+
 /// Uniform gravity along -z of space, on a body held at a pivot: tau_B = r x (-m g R_WB^T e_z).
-class Gravity {
+class Gravity : public Law<Gravity, GravityNumbers> {
  public:
+  static constexpr TorqueParameter parameters[] = {
+      {"weight", TorqueParameter::Kind::real, "N", "m g; gravity points along -z of space"},
+      {"arm", TorqueParameter::Kind::vector, "m", "from the pivot to the centre of mass, in body axes"},
+  };
+  static constexpr TorqueRecord about{
+      "Gravity", "gravity", "Uniform gravity on a body held at a pivot: tau_B = arm x (-weight R_WB^T e_z).",
+      "Goldstein, Poole, Safko 2002, Classical Mechanics, sec. 5.7", parameters};
+
+  explicit Gravity(const GravityNumbers<double>& numbers) : Law(numbers) {
+    detail::require_finite("Gravity: weight times arm", moment().data(), 3);
+  }
   /// @param weight  m g [N]
   /// @param arm     r, from the pivot to the centre of mass, body axes [m]
-  Gravity(double weight, const Vector3d& arm);
+  Gravity(double weight, const Vector3d& arm)
+      : Gravity(GravityNumbers<double>{weight, formula::make_vector<double>(arm)}) {}
 
-  static const TorqueRecord& record();
-  static Gravity from_values(std::span<const TorqueValue> values);
-  TorqueValues values() const { return {weight_, arm_}; }
+  static auto compute(const auto& in, const auto& p) { return -cross(p.weight * p.arm, in.vertical()); }
+  /// m g times the height of the centre of mass above the pivot
+  static auto potential(const auto& in, const auto& p) { return dot(p.weight * p.arm, in.vertical()); }
 
-  double weight() const { return weight_; }
-  const Vector3d& arm() const { return arm_; }
-
-  /// The same torque as a formula of its parameters.
-  formula::Program law(const Matrix3d& inertia_B) const;
+  double weight() const { return numbers().weight; }
+  Vector3d arm() const { return to_eigen(numbers().arm); }
+  Vector3d moment() const { return weight() * arm(); }   ///< m g r [N m]
 
   TorqueTraits traits() const {
-    return {.uses_attitude = true, .has_potential = true, .keeps_vertical = true, .vanishes = moment_.isZero(0.0)};
+    return {.uses_attitude = true, .has_potential = true, .keeps_vertical = true, .vanishes = moment().isZero(0.0)};
   }
-
-  const Vector3d& moment() const { return moment_; }   ///< m g r [N m]
-
-  void add(const TorqueInput& in, double* tau_B) const { add_weight(moment_.data(), in.attitude, tau_B); }
-
-  /// m g times the height of the centre of mass above the pivot [J]
-  double compute_potential(const TorqueInput& in) const {
-    double g[3];
-    compute_vertical(in.attitude, g);
-    return moment_[0] * g[0] + moment_[1] * g[1] + moment_[2] * g[2];
-  }
-
- private:
-  double weight_;
-  Vector3d arm_;
-  Vector3d moment_;
+  formula::KnownTorque known() const { return {.kind = formula::KnownTorque::Kind::gravity, .vector = moment()}; }
 };
 
 }  // namespace polhode::torques

@@ -1,75 +1,59 @@
 #pragma once
 
-#include <cmath>
-
-#include "polhode/math/detail/functions.hpp"
-#include "polhode/math/detail/sincos_unfused.hpp"
-#include "polhode/torque/formulas.hpp"
-#include "polhode/torque/record.hpp"
+#include "polhode/torque/law.hpp"
 
 namespace polhode::torques {
 
+template <class T>
+struct GravityGradientNumbers {
+  T mean_motion;
+  T phase;
+  static auto list(auto& of) { return std::tie(of.mean_motion, of.phase); }
+};
+
 /// Gravity gradient on a circular orbit about space z: tau_B = 3 n^2 u x (I u), u = R_WB^T (cos a, sin a, 0), a = n t +
 /// phase.
-class GravityGradient {
+class GravityGradient : public Law<GravityGradient, GravityGradientNumbers> {
  public:
+  static constexpr TorqueParameter parameters[] = {
+      {"mean_motion", TorqueParameter::Kind::real, "rad/s",
+       "n, the rate of the circular orbit, which lies in the plane z = 0 of space"},
+      {"phase", TorqueParameter::Kind::real, "rad", "the orbit angle from space x at t = 0", "0"},
+  };
+  static constexpr TorqueRecord about{
+      "GravityGradient", "gravity_gradient",
+      "Gravity gradient on a circular orbit: tau_B = 3 n^2 u x (I u), u = R_WB^T (cos a, sin a, 0), a = n t + phase.",
+      "Hughes 1986, Spacecraft Attitude Dynamics, sec. 8.1", parameters};
+
+  using Law::Law;
   /// @param mean_motion  n, the orbit's angular rate [rad/s]
   /// @param phase        the orbit angle at t = 0 [rad]
-  explicit GravityGradient(double mean_motion, double phase = 0.0);
+  explicit GravityGradient(double mean_motion, double phase = 0.0)
+      : Law(GravityGradientNumbers<double>{mean_motion, phase}) {}
 
-  static const TorqueRecord& record();
-  static GravityGradient from_values(std::span<const TorqueValue> values);
-  TorqueValues values() const { return {mean_motion_, phase_}; }
+  static auto compute(const auto& in, const auto& p) {
+    return in.cross_inertia(3.0 * p.mean_motion * p.mean_motion, in.radial(p.mean_motion * in.t + p.phase));
+  }
+  /// Up to the constant -n^2 tr(I)/2.
+  static auto potential(const auto& in, const auto& p) {
+    const auto u = in.radial(p.mean_motion * in.t + p.phase);
+    return 1.5 * p.mean_motion * p.mean_motion * dot(u, in.inertia() * u);
+  }
 
-  double mean_motion() const { return mean_motion_; }
-  double phase() const { return phase_; }
-  double strength() const { return 3 * mean_motion_ * mean_motion_; }   ///< 3 n^2 [1/s^2]
-
-  /// The same torque as a formula of its parameters.
-  formula::Program law(const Matrix3d& inertia_B) const;
+  double mean_motion() const { return numbers().mean_motion; }
+  double phase() const { return numbers().phase; }
+  double strength() const { return 3 * mean_motion() * mean_motion(); }   ///< 3 n^2 [1/s^2]
 
   TorqueTraits traits() const {
     return {.uses_time = true,
             .uses_attitude = true,
             .has_potential = true,
-            .pattern_rate = mean_motion_,
-            .vanishes = mean_motion_ == 0.0};
+            .pattern_rate = mean_motion(),
+            .vanishes = mean_motion() == 0.0};
   }
-
-  void add(const TorqueInput& in, double* tau_B) const {
-    double u[3];
-    compute_radial(in, u);
-    if (in.principal) {
-      add_gradient<true>(strength(), in.inertia_B.data(), u, tau_B);
-    } else {
-      add_gradient<false>(strength(), in.inertia_B.data(), u, tau_B);
-    }
+  formula::KnownTorque known() const {
+    return {.kind = formula::KnownTorque::Kind::gravity_gradient, .rate = mean_motion(), .phase = phase()};
   }
-
-  /// (3/2) n^2 u . I u, up to the constant -n^2 tr(I)/2 [J]
-  double compute_potential(const TorqueInput& in) const {
-    double u[3];
-    compute_radial(in, u);
-    const double* I = in.inertia_B.data();
-    return 1.5 * mean_motion_ * mean_motion_ *
-           (u[0] * row_product(I, 0, u) + u[1] * row_product(I, 1, u) + u[2] * row_product(I, 2, u));
-  }
-
- private:
-  void compute_radial(const TorqueInput& in, double* u_B) const {
-    const double angle = mean_motion_ * in.t + phase_;
-    double sine, cosine;
-    if (std::abs(angle) <= math::most_unfused_angle) {
-      math::sincos_unfused(angle, sine, cosine);   // the same bits for bodies in lanes
-    } else {
-      const math::SinCosPair far = math::sincos(angle);
-      sine = far.sin, cosine = far.cos;
-    }
-    polhode::compute_radial(cosine, sine, in.attitude, u_B);
-  }
-
-  double mean_motion_;
-  double phase_;
 };
 
 }  // namespace polhode::torques

@@ -12,7 +12,7 @@
 
 namespace polhode {
 
-/// The list of torques. To add a torque, write its file and name it here; bindings, scene files and tests follow.
+/// The list of torques. To add a torque, write its law and name it here; all else follows.
 using LastingTorque = std::variant<torques::Constant,         //
                                    torques::Gravity,          //
                                    torques::GravityGradient,  //

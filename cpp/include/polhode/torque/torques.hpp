@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -7,6 +8,7 @@
 
 #include "polhode/core/state.hpp"
 #include "polhode/formula/program.hpp"
+#include "polhode/formula/recognise.hpp"
 #include "polhode/torque/during.hpp"
 #include "polhode/torque/list.hpp"
 
@@ -54,15 +56,28 @@ AnyTorque to_any(const LastingTorque& torque);
 /// The torque without its windows.
 LastingTorque drop_windows(const AnyTorque& torque);
 
-/// The formula that a torque is, or that acts in its windows; null for others.
+/// The formula that a torque is, or that acts in its windows; null for torques with kernels, and for a Custom.
 const torques::Formula* find_formula(const AnyTorque& torque);
 
 /// The operation of a formula that has no derivatives at a state, in words; "" if there is none. Windows are left out.
 /// @param near  how close to 0 an operand counts as 0
-std::string find_singular(std::span<const AnyTorque> torques, const State& state, double near);
+std::string find_singular(std::span<const AnyTorque> torques, const Matrix3d& inertia_B, const State& state,
+                          double near);
+
+/// What a torque with kernels is, by its numbers; nothing for others, and for a torque with windows.
+std::optional<formula::KnownTorque> find_known(const AnyTorque& torque);
+/// C_B of a torque with kernels that is -C_B w_B.
+std::optional<Matrix3d> find_damping(const AnyTorque& torque, const Matrix3d& inertia_B);
+/// Whether the law of a torque depends on the inertia.
+bool uses_inertia(const AnyTorque& torque);
+/// The derivative of a law's outputs by the inertia, for a change dI_B, with its parameters as numbers.
+formula::Program make_inertia_slope(const AnyTorque& torque, const Matrix3d& inertia_B, const Matrix3d& dI_B);
 
 /// A torque of the list as a formula of its parameters, without its windows. @throws InvalidInput for a Custom
 formula::Program make_law(const AnyTorque& torque, const Matrix3d& inertia_B);
+
+/// The same with the values of its parameters and of the inertia as the values of inputs: nothing is rounded together.
+formula::Program make_open_law(const AnyTorque& torque, const Matrix3d& inertia_B);
 
 /// The same with its parameters as numbers.
 formula::Program make_bound_law(const AnyTorque& torque, const Matrix3d& inertia_B);

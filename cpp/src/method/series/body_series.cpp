@@ -24,19 +24,17 @@ Vector3d to_body(const double* q, const Vector3d& v_W) { return rotate({-q[0], -
 }  // namespace
 
 std::string compute_series_refusal(const Scene& scene) {
-  const torques::GravityGradient* first = nullptr;
+  std::optional<formula::KnownTorque> first;
   for (const AnyTorque& torque : scene.torques()) {
     const auto* custom = std::get_if<torques::Custom>(&torque);
     if (custom != nullptr) return "a Custom torque, which has no Taylor series (dop853 and rk45 integrate it)";
-    if (const auto* gradient = std::get_if<torques::GravityGradient>(&torque)) {
-      if (first != nullptr &&
-          (gradient->mean_motion() != first->mean_motion() || gradient->phase() != first->phase())) {
-        return "gravity gradients of two orbits (dop853 and rk45 integrate them)";
-      }
-      first = gradient;
-    }
+    const std::optional<formula::KnownTorque> known = find_known(torque);
+    if (!known || known->kind != formula::KnownTorque::Kind::gravity_gradient) continue;
+    if (first && (known->rate != first->rate || known->phase != first->phase))
+      return "gravity gradients of two orbits (dop853 and rk45 integrate them)";
+    first = known;
   }
-  if (const std::string singular = find_singular(scene.torques(), scene.start(), 0.0); !singular.empty())
+  if (const std::string singular = find_singular(scene.torques(), scene.inertia_B().matrix(), scene.start(), 0.0); !singular.empty())
     return "a Formula without derivatives at the start, by " + singular + ", which is 0 (for a norm write "
            "norm(v, smooth=1e-6)" + (scene.states().empty() ? "; dop853 and rk45 integrate it)" : ")");
   return "";
@@ -143,27 +141,34 @@ void BodySeries::add_acceleration(double* column, const Vector3d& a) const {
 }
 
 void BodySeries::add_torques(const Scene& scene) {
+  using Kind = formula::KnownTorque::Kind;
   const Matrix3d R_PB = R_BP_.transpose();
   Vector3d moment = Vector3d::Zero(), space = Vector3d::Zero();
   for (const AnyTorque& torque : scene.torques()) {
-    if (const auto* constant = std::get_if<torques::Constant>(&torque)) {
-      if (constant->frame() == torques::Constant::Frame::space) {
-        space += constant->torque();
-      } else {
-        set_column(terms_.torque, R_PB * constant->torque());
+    const std::optional<formula::KnownTorque> known = find_known(torque);
+    if (!known) continue;   // FormulaSeries expands it
+    switch (known->kind) {
+      case Kind::constant_in_body: set_column(terms_.torque, R_PB * known->vector); break;
+      case Kind::constant_in_space: space += known->vector; break;
+      case Kind::gravity: moment += known->vector; break;
+      case Kind::damping: {
+        const Matrix3d C_P = R_PB * known->matrix * R_BP_;
+        for (int j = 0; j < 3; ++j) set_column(terms_.damping[j], -C_P.col(j));
+        terms_.damped = true;
+        break;
       }
-    } else if (const auto* gravity = std::get_if<torques::Gravity>(&torque)) {
-      moment += gravity->weight() * gravity->arm();
-    } else if (const auto* damping = std::get_if<torques::Damping>(&torque)) {
-      const Matrix3d C_P = R_PB * damping->matrix() * R_BP_;
-      for (int j = 0; j < 3; ++j) set_column(terms_.damping[j], -C_P.col(j));
-      terms_.damped = true;
-    } else if (const auto* angular = std::get_if<torques::AngularDamping>(&torque)) {
-      for (int j = 0; j < 3; ++j) add_acceleration(terms_.damping[j], -angular->rate() * Vector3d::Unit(j));
-      terms_.damped = true;
-    } else if (const auto* gradient = std::get_if<torques::GravityGradient>(&torque)) {
-      ++gradients_;
-      orbit_rate_ = gradient->mean_motion(), orbit_phase_ = gradient->phase();
+      case Kind::angular_damping:
+        for (int j = 0; j < 3; ++j) add_acceleration(terms_.damping[j], -known->rate * Vector3d::Unit(j));
+        terms_.damped = true;
+        break;
+      case Kind::rotors:
+        for (int j = 0; j < 3; ++j) set_column(terms_.damping[j], (R_PB * known->vector).cross(Vector3d::Unit(j)));
+        terms_.damped = true;
+        break;
+      case Kind::gravity_gradient:
+        ++gradients_;
+        orbit_rate_ = known->rate, orbit_phase_ = known->phase;
+        break;
     }
   }
   if (const Vector3d h_P = R_PB * scene.rotor_momentum(); !h_P.isZero(0.0)) {

@@ -49,12 +49,10 @@ class Body {
     }
     start_[3] = q_WP.x, start_[4] = q_WP.y, start_[5] = q_WP.z, start_[6] = q_WP.w;
     for (const AnyTorque& torque : scene.torques()) {
-      if (const auto* damping = std::get_if<torques::Damping>(&torque)) {
-        add_damping(R_BP.transpose() * damping->matrix() * R_BP);
-      } else if (const auto* angular = std::get_if<torques::AngularDamping>(&torque)) {
-        add_damping(angular->compute_matrix(I.asDiagonal()));
+      if (const auto C_B = find_damping(torque, I_B_)) {
+        add_damping(R_BP.transpose() * *C_B * R_BP);
       } else {
-        linear_ = linear_ && (std::holds_alternative<torques::Formula>(torque) || !traits(torque).uses_rates);
+        linear_ = linear_ && (find_formula(torque) != nullptr || !traits(torque).uses_rates);
       }
     }
     if (!h.isZero(0.0)) add_damping(R_BP.transpose() * C_h * R_BP);
@@ -166,12 +164,10 @@ class Body {
   /// What the torque's derivative by w_B is, or that it is unknown.
   void add_slopes_of(const AnyTorque& torque) {
     if (!traits(torque).uses_rates) return;
-    if (const auto* formula = std::get_if<torques::Formula>(&torque)) {
+    if (const auto C_B = find_damping(torque, I_B_)) {
+      C_B_ += *C_B;
+    } else if (const torques::Formula* formula = find_formula(torque)) {
       formulas_.push_back(*formula);
-    } else if (const auto* damping = std::get_if<torques::Damping>(&torque)) {
-      C_B_ += damping->matrix();
-    } else if (const auto* angular = std::get_if<torques::AngularDamping>(&torque)) {
-      C_B_ += angular->compute_matrix(I_B_);
     } else {
       differentiable_ = false;
     }

@@ -157,7 +157,7 @@ Scene resolve_formulas(const Scene& scene, AsCustom as_custom, Recognitions& rec
     const auto& known = recognitions.find(*formula, scene);
     if (!known) {
       const bool steps_over = as_custom == AsCustom::yes && formula->has_switches() && formula->states().empty();
-      if (steps_over) torques[i] = with_window(torque, formula->as_custom());
+      if (steps_over) torques[i] = with_window(torque, formula->as_custom(scene.inertia_B().matrix()));
       continue;
     }
     std::string names;

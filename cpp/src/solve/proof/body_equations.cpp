@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "polhode/formula/facts.hpp"
-#include "polhode/formula/parser.hpp"
 #include "polhode/math/detail/number.hpp"
 #include "solve/proof/body_constants.hpp"
 #include "solve/proof/formula_step.hpp"
@@ -36,9 +35,9 @@ double nearest_power(double x) { return std::ldexp(1.0, std::clamp(std::ilogb(x)
 
 /// Whether the attitude stands in a torque's formula, be it multiplied by a number that is 0.
 bool names_attitude(const AnyTorque& torque) {
-  const auto* formula = std::get_if<torques::Formula>(&torque);
+  const torques::Formula* formula = find_formula(torque);
   if (formula == nullptr) return traits(torque).uses_attitude;
-  const formula::Program given = formula::parse(formula->text());
+  const formula::Program given = formula->given();
   return given.outputs.size() == 1 || formula::find_facts(given).uses_attitude;
 }
 
@@ -92,7 +91,7 @@ void BodyEquations::choose_units() {
       fastest = std::max(fastest, std::abs(gradient->mean_motion()));
     if (const auto* brake = std::get_if<torques::Damping>(&torque))
       damping = std::max(damping, brake->matrix().cwiseAbs().maxCoeff() / least);
-    if (const auto* formula = std::get_if<torques::Formula>(&torque)) {
+    if (const torques::Formula* formula = find_formula(torque)) {
       const Quat& q = scene_.attitude();
       const double attitude[4] = {q.x, q.y, q.z, q.w};
       Vector3d tau = Vector3d::Zero();
@@ -138,8 +137,8 @@ std::vector<Interval> BodyEquations::start() const {
   return y;
 }
 
-/// Adds the terms of a body in units of 1 / rate, torque by torque. A new torque needs its overload of add(): the
-/// compiler asks for it.
+/// Adds the terms of a body in units of 1 / rate, torque by torque. A torque with kernels needs its overload of add():
+/// the compiler asks for it.
 class BodyEquations::Maker {
  public:
   explicit Maker(const BodyEquations& body)
@@ -249,9 +248,9 @@ class BodyEquations::Maker {
     add_gyroscopic(body_.orbit_index(to_index(orbit - orbits.begin())), Interval(3.0) * n * n);
   }
 
-  void add(const torques::Custom&) {}    // calls_custom() finds it
-  void add(const torques::Formula&) {}   // it needs a FormulaSystem
-  void add(const torques::During&) {}    // pieces have no windows
+  // Torques without kernels need a FormulaSystem, and pieces have no windows.
+  template <class Torque>
+  void add(const Torque&) requires(!torques::HasKernel<Torque>) {}
 
   /// v' = v x w of a vector fixed in space, as seen from the body
   void add_turning(int first) {

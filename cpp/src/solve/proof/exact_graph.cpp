@@ -58,8 +58,8 @@ Expr ExactGraph::number(const Interval& value) {
   return {graph_, value.is_zero() ? Form() : make(graph_, value)};
 }
 
-std::vector<Form> ExactGraph::copy(const Program& law, Graph& to, const std::vector<Form>& states) {
-  const std::vector<double> parameters = formula::list_values(law.parameters);
+std::vector<Form> ExactGraph::copy(const Program& law, Graph& to, const std::vector<Form>& states,
+                                   const std::vector<Interval>& parameters) {
   formula::Rewriter* own = nullptr;
   const auto scale = [&](const Form& form, double factor) {
     return is_power_of_two(factor) ? form * factor : to.multiply(form, make(to, Interval(factor)));
@@ -73,7 +73,10 @@ std::vector<Form> ExactGraph::copy(const Program& law, Graph& to, const std::vec
     const Node& n = law.graph[node];
     switch (n.op) {
       case Op::constant: return make(graph, Interval(n.constant));
-      case Op::parameter: return make(graph, Interval(parameters[static_cast<std::size_t>(n.index)]));
+      case Op::parameter: {
+        const Interval& value = parameters[static_cast<std::size_t>(n.index)];
+        return value.is_zero() ? Form() : make(graph, value);
+      }
       case Op::state: return states[static_cast<std::size_t>(n.index)];
       case Op::linear: return sum(law.graph.linear(node));
       case Op::power: {
@@ -94,8 +97,9 @@ std::vector<Form> ExactGraph::copy(const Program& law, Graph& to, const std::vec
   return outputs;
 }
 
-std::vector<Expr> ExactGraph::add(const Program& law, const std::vector<Expr>& states) {
-  return list_expressions(graph_, copy(formula::expand_rotations(law), graph_, list_forms(states)));
+std::vector<Expr> ExactGraph::add(const Program& law, const std::vector<Expr>& states,
+                                  const std::vector<Interval>& parameters) {
+  return list_expressions(graph_, copy(formula::expand_rotations(law), graph_, list_forms(states), parameters));
 }
 
 std::vector<Expr> ExactGraph::add_potential(const Program& potential, const std::vector<Expr>& states) {
@@ -103,7 +107,9 @@ std::vector<Expr> ExactGraph::add_potential(const Program& potential, const std:
   Program exact;
   std::vector<Form> own;
   for (std::size_t i = 0; i < states.size(); ++i) own.push_back(exact.graph.state(static_cast<int>(i)));
-  exact.outputs = copy(formula::expand_rotations(potential), exact.graph, own);
+  std::vector<Interval> parameters;
+  for (const double value : formula::list_values(potential.parameters)) parameters.emplace_back(value);
+  exact.outputs = copy(formula::expand_rotations(potential), exact.graph, own, parameters);
   const Program torque = formula::derive_torque(exact);
   // Its parameters are numbers of this graph already, and its factors exact.
   std::vector<Form> forms = formula::embed(torque, graph_, list_forms(states), nullptr);

@@ -20,9 +20,11 @@ class ExactGraph {
   /// A number; the form 0 for an exact 0.
   formula::Expr number(const math::Interval& value);
 
-  /// The outputs of a program of a law, whose parameters have their own values.
+  /// The outputs of a program of a law.
   /// @param states  as embed() takes them, with factors that are powers of two
-  std::vector<formula::Expr> add(const formula::Program& law, const std::vector<formula::Expr>& states);
+  /// @param parameters  the values of its parameters
+  std::vector<formula::Expr> add(const formula::Program& law, const std::vector<formula::Expr>& states,
+                                 const std::vector<math::Interval>& parameters);
 
   /// The torque -dV(q exp(e_i a / 2))/da of a potential.
   std::vector<formula::Expr> add_potential(const formula::Program& potential,
@@ -33,7 +35,8 @@ class ExactGraph {
 
  private:
   std::vector<formula::Form> copy(const formula::Program& law, formula::Graph& to,
-                                  const std::vector<formula::Form>& states);
+                                  const std::vector<formula::Form>& states,
+                                  const std::vector<math::Interval>& parameters);
   formula::Form make(formula::Graph& to, const math::Interval& value);
 
   formula::Graph graph_;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "polhode/formula/derivative.hpp"
-#include "polhode/formula/parser.hpp"
+#include "polhode/torque/detail/law_arguments.hpp"
 #include "solve/proof/exact_graph.hpp"
 #include "solve/proof/index.hpp"
 
@@ -34,7 +34,7 @@ class Builder {
     add_products(w_, -rate * per_pace_);
     for (std::size_t i = 0; i < rotating.size(); ++i)
       if (rotating[i]) add_rotor(scene_.rotors()[i]);
-    for (const AnyTorque& torque : torques) std::visit([this](const auto& acting) { add(acting); }, torque);
+    for (const AnyTorque& torque : torques) add(torque);
 
     Program program;
     std::vector<formula::Variable> variables;
@@ -88,30 +88,22 @@ class Builder {
     for (int axis = 0; axis < 3; ++axis) accelerate(axis, tau_B[to_index(axis)], torque_unit());
   }
 
-  template <class Torque>
-  void add(const Torque& torque) {
-    const Program law = torque.law(scene_.inertia_B().matrix());
-    add_torque(exact_.add(law, body_));
+  void add(const AnyTorque& torque) {
+    const torques::Formula* formula = find_formula(torque);
+    const Program law = formula != nullptr ? formula->given() : make_open_law(torque, scene_.inertia_B().matrix());
+    const bool is_potential = law.outputs.size() == 1 && law.states.empty();
+    if (is_potential) return add_torque(exact_.add_potential(law, body_));
+    // The inertia that the body has without its free rotors is known up to the rounding of its making.
+    std::vector<Interval> values;
+    for (const formula::Input& input : law.parameters) {
+      if (input.name == torques::inertia_input && &input == &law.parameters.back()) {
+        for (std::size_t i = 0; i < 9; ++i) values.push_back(I_[i / 3][i % 3] / part_);
+      } else {
+        for (const double value : input.values) values.emplace_back(value);
+      }
+    }
+    add_torque(exact_.add(law, body_, values));
   }
-  void add(const torques::Formula& formula) {
-    const Program given = formula::parse(formula.text());
-    const bool is_potential = given.outputs.size() == 1 && given.states.empty();
-    add_torque(is_potential ? exact_.add_potential(given, body_) : exact_.add(given, body_));
-  }
-  // The laws of these two hold the inertia, whose differences they would round.
-  void add(const torques::AngularDamping& damping) {
-    const Interval part = -Interval(damping.rate()) * per_pace_;
-    for (std::size_t i = 0; i < 3; ++i) change_[i] = change_[i] + exact_.number(part) * w_[i];
-  }
-  void add(const torques::GravityGradient& gradient) {
-    const Interval n(gradient.mean_motion());
-    const Expr time(exact_.graph(), exact_.graph().time());
-    const Expr angle = exact_.number(n) * time + exact_.number(Interval(gradient.phase()));
-    add_products(formula::rotate_to_body(q_, Vec<Expr, 3>{{cos(angle), sin(angle), 0.0}}),
-                 Interval(3.0) * n * n * per_pace_ / Interval(units_.rate));
-  }
-  void add(const torques::Custom&) {}    // it is refused before
-  void add(const torques::During&) {}    // pieces have no windows
 
   const Scene& scene_;
   const Units units_;
