@@ -46,8 +46,11 @@ class LongDoubleSeries {
     for (Vector* v : {&w_, &L_})
       for (Series& s : *v) s.assign(static_cast<std::size_t>(order) + 1, 0);
     for (Series& s : q_) s.assign(static_cast<std::size_t>(order) + 1, 0);
-    for (const AnyTorque& torque : scene.torques())
+    for (const AnyTorque& torque : scene.torques()) {
+      if (std::holds_alternative<torques::Custom>(torque))
+        throw InvalidInput("torques", "without Custom torques, which have no series", "Custom");
       laws_.emplace_back(make_open_law(torque, scene.inertia_B().matrix()), order);
+    }
     const Matrix3d& I = scene.inertia_B().matrix();
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) I_[i][j] = I(i, j);
