@@ -47,7 +47,7 @@ class LongDoubleSeries {
       for (Series& s : *v) s.assign(static_cast<std::size_t>(order) + 1, 0);
     for (Series& s : q_) s.assign(static_cast<std::size_t>(order) + 1, 0);
     for (const AnyTorque& torque : scene.torques()) {
-      if (std::holds_alternative<torques::Custom>(torque))
+      if (std::holds_alternative<torques::Custom>(drop_windows(torque)))
         throw InvalidInput("torques", "without Custom torques, which have no series", "Custom");
       laws_.emplace_back(make_open_law(torque, scene.inertia_B().matrix()), order);
     }

@@ -1,4 +1,4 @@
-"""The reference in long double takes any smooth law: against steps without series, and against the torques of the list."""
+"""The reference in long double takes any smooth law: against steps without series, and torques of the list."""
 
 import numpy as np
 import pytest
