@@ -36,12 +36,17 @@ Custom Custom::between(double begin, double end) const {
   Custom other = *this;
   other.breaks_.clear();
   if (!(begin < end)) return other;
+  const double next = std::nextafter(begin, end), last = std::nextafter(end, begin);
+  if (next == end) {   // no time lies between: a window contains its begin
+    other.begin_ = other.end_ = begin;
+    return other;
+  }
   const double most = (end - begin) / 1024;
   const auto step = [most](double t) {
     return std::min(most, std::max(units * std::abs(t), std::numeric_limits<double>::min()));
   };
-  other.begin_ = begin + step(begin);
-  other.end_ = end - step(end);
+  other.begin_ = std::max(begin + step(begin), next);
+  other.end_ = std::min(end - step(end), last);
   return other;
 }
 

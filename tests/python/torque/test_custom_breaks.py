@@ -64,6 +64,36 @@ def test_a_break_belongs_to_the_side_of_its_piece(less_or_equal):
     assert apart(motion, truth) <= motion.error <= 1e-10 and motion.stats["rejected"] < 10
 
 
+@pytest.mark.parametrize("less_or_equal", [False, True])
+@pytest.mark.parametrize("units", [1, 2, 3, 5])
+@pytest.mark.parametrize("begin", [1.0, -1.0, 3.3])
+def test_pieces_of_some_units_in_the_last_place(begin, units, less_or_equal):
+    """A start or a second break some units from a break: the function has one side's value within the piece."""
+    width, height = 2.0**-23, 1e9
+    near = [begin, begin + width]
+    for edge in (0, 1):
+        for side in (-1, 1):
+            near.append(near[edge])
+            for _ in range(units):
+                near[-1] = np.nextafter(near[-1], side * 9)
+
+    def pulse(t, omega, attitude):
+        inside = begin < t <= begin + width if less_or_equal else begin <= t < begin + width
+        return (0.0, 0.0, height if inside else 0.0)
+
+    times = [begin - width, *near, begin + 2 * width]
+    torque = ph.torques.During(ph.torques.Constant((0, 0, height)), [(begin, begin + width)])
+    for t0 in near:
+        scene = ph.Scene(inertia=(2, 1.5, 1), omega=(0, 0, 0.5), t0=t0, times=times,
+                         torques=[ph.torques.Custom(pulse, breaks=near)])
+        exact = ph.solve(scene.replace(torques=[torque]), 1e-9, method="taylor").omega[:, 2]
+        motion = ph.solve(scene.replace(torques=[ph.torques.Custom(pulse, breaks=near[:2])]), 1e-9)
+        assert motion.status == "finished", motion.message
+        # a piece of one unit may be of either side
+        assert np.abs(motion.omega[:, 2] - exact).max() < 1.01 * np.spacing(abs(begin)) * height
+        assert ph.solve(scene, 1e-9).status == "finished"
+
+
 def test_the_knots_of_a_table_are_found():
     knots, values = np.linspace(0, 20, 14), np.random.default_rng(3).normal(size=14)
 
