@@ -187,7 +187,7 @@ def make(cause, family, seed):
         if family == "separatrix":
             scene = scene.replace(omega=[0.7, 1.5, 0.9])
         factor = 1.0 if cause == "no gyroscopic term" else 2.0
-        extra = ph.torques.Formula(lambda t, w, q, p: factor * np.cross(w, tensor @ w))
+        extra = ph.torques.Custom(lambda t, w, q: factor * np.cross(w, tensor @ w))
         case.omega, case.attitude = exact(scene, torques=(*scene.torques, extra))
         if scene.torques:
             case.words = {"scene": scene}

@@ -8,23 +8,18 @@ import sys
 from .. import _files
 from .._core import InvalidInput
 from ..inertia import robots
-from ..inertia.codes import LEVELS
 from ..inertia.robots.ignore import rules
 from ..inertia.robots.paths import Search
 from ..inertia.robots.report import Report, check, check_file, to_dict
-from . import formats, show_robots
+from . import show_robots, writers
+from .formats import RULES, content
 from .robot_options import STDIN, Options
 from .streams import say, write_json
-
-FORMATS = ("text", "json", "sarif", "junit", "github")
 
 
 def run(files: list[str], options: Options) -> int:
     """Check files and folders, print what was found, and return the exit status."""
-    if options.form not in FORMATS:
-        raise InvalidInput(f"--format: must be one of {', '.join(FORMATS)}; got {options.form!r}")
-    if options.fail_on not in LEVELS:
-        raise InvalidInput(f"--fail-on: must be error, warning or remark; got {options.fail_on!r}")
+    writers.require(options.form, options.fail_on)
     excuses = rules(options.ignore)
     packages = dict(_package(text) for text in options.package)
     if STDIN in files:
@@ -93,11 +88,11 @@ def _print(reports: list[Report], options: Options, alone: bool) -> None:
         contents = [to_dict(report, options.fail_on) for report in reports]
         write_json(contents[0] if alone else contents)
     elif options.form == "sarif":
-        write_json(formats.sarif(reports))
+        write_json(writers.sarif(map(content, reports), RULES))
     elif options.form == "junit":
-        print(formats.junit(reports, options.fail_on))
+        print(writers.junit(map(content, reports), "inertia", options.fail_on))
     elif options.form == "github":
-        for line in formats.github(reports):
+        for line in writers.github(map(content, reports)):
             print(line)
     elif alone:
         show_robots.robot(to_dict(reports[0], options.fail_on))

@@ -18,7 +18,7 @@ from polhode import _wings
 ROOT = pathlib.Path(__file__).parents[3]
 # What wings may use beside the names of polhode and of its public modules.
 NEUTRAL = {"_core.attitude", "_files", "_folders", "_workers", "_xml", "_wings", "_plot.style", "_plot.text",
-           "cli.files", "cli.options", "cli.robot_options", "cli.show", "cli.streams"}
+           "cli.files", "cli.options", "cli.robot_options", "cli.show", "cli.streams", "cli.writers"}
 WINGS = {wing.name: wing for wing in _wings.WINGS
          if _wings.is_there(wing.name) and all((ROOT / name).exists() for name in wing.outside)}
 
