@@ -132,6 +132,32 @@ def write(path: pathlib.Path, content: str | bytes, follow: bool = True) -> None
         draft.write_bytes(content.encode() if isinstance(content, str) else content)
 
 
+def require_free(path: pathlib.Path) -> None:
+    """Refuse a name that something has, a link without an end too."""
+    if os.path.lexists(path):
+        raise InvalidInput(f"{path}: is not written: something stands there, and nothing is overwritten")
+
+
+def create(path: pathlib.Path, content: str | bytes) -> None:
+    """Write a new file whole or not at all. What has the name already stays, and is never followed."""
+    require_free(path)
+    draft = path.with_name(draft_of(path.name))
+    try:
+        draft.write_bytes(content.encode() if isinstance(content, str) else content)
+        with open(draft, "rb+") as written:
+            os.fsync(written.fileno())
+        try:
+            os.link(draft, path)   # fails where a file came since the look, which a rename would replace
+        except FileExistsError:
+            require_free(path)
+        except OSError:   # a file system without links
+            require_free(path)
+            os.rename(draft, path)
+    finally:
+        with contextlib.suppress(OSError):
+            draft.unlink()
+
+
 def require_replaceable(path: pathlib.Path, handle: int | None = None) -> None:
     """Refuse to write where a link or what is no regular file stands; `handle` is the folder of a bare name."""
     name = path if handle is None else path.name

@@ -71,7 +71,9 @@ WINGS = (
                      "_plot.poinsot": "View family make_view",
                      "_plot.track": "Track",
                      "_solve.motion": "Floats"}),
-    Wing("judge", ("_judge",), names={"Judgement": "_judge.judgement", "judge": "_judge.run"}),
+    Wing("judge", ("_judge", "cli/judge.py"),
+         names={"Judgement": "_judge.judgement", "judge": "_judge.run"},
+         commands={"judge": "cli.judge"}),
     Wing("web", (), outside=("web",)),
 )
 HOME = pathlib.Path(__file__).parent

@@ -15,9 +15,10 @@ from .law import Law
 from .laws import Variant, choose
 from .read import Samples
 from .shooting import Data, Track
-from .states import Array, conjugate, multiply, rms, turn
+from .states import Array, conjugate, difference, multiply, rms, to_body, turn
 
-MOST_FITTED = 300
+MOST_FITTED, MOST_FOLLOWED = 300, 100
+NEAR = 0.05  # of the rates, and rad
 
 
 def to_data(samples: Samples) -> Data:
@@ -37,6 +38,19 @@ def to_data(samples: Samples) -> Data:
             attitude[k + 1] = multiply(attitude[k], step)
         return Data(t, samples.omega, attitude, has_attitude=False)
     return Data(t, samples.omega, samples.attitude)
+
+
+def follows(samples: Samples, law: Law) -> bool:
+    """Return True if the law takes samples to the next ones as they are declared, at whatever distance."""
+    assert samples.omega is not None and samples.attitude is not None
+    omega = to_body(samples.attitude, samples.omega) if samples.space else samples.omega
+    first = np.unique(np.linspace(0, len(samples.t) - 2, MOST_FOLLOWED).astype(int))
+    start, goal = ((omega[k], samples.attitude[k]) for k in (first, first + 1))
+    gap = difference(law.flow(samples.t[first], samples.t[first + 1] - samples.t[first], start), goal)
+    return bool(
+        np.median(np.linalg.norm(gap[:, :3], axis=1)) < NEAR * rms(omega)
+        and np.median(np.linalg.norm(gap[:, 3:], axis=1)) < NEAR
+    )
 
 
 def fitted_body(data: Data) -> Array:
@@ -60,6 +74,7 @@ def read_again(data: Data, law: Law, track: Track) -> tuple[Finding, Data, Track
     for cause, text, attitude in (
         ("conjugate", "attitudes take space to body: the reverse rotation", conjugate(data.attitude)),
         ("scalar order", "the scalar stands at the other end of the four numbers", np.roll(data.attitude, -1, axis=1)),
+        ("scalar order", "the scalar stands at the other end of the four numbers", np.roll(data.attitude, 1, axis=1)),
     ):
         other = to_data(Samples(data.t, None, attitude))
         kind, trial = choose(other, law)

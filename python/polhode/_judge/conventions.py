@@ -20,6 +20,8 @@ FACTORS = {
     **{10.0**k: "units of time" for k in (-9, -6, -3, 3, 6, 9)},
 }
 INTERVALS = 2000
+FAR = 1.0  # rad between samples, from which means by cubics say little
+SURE = 0.05  # rho of a reading that is believed even so
 RESOLUTION = 1e-4  # of rho: the error of means by cubics
 SIGNED = tuple(
     np.eye(3)[list(order)] * np.array(signs)[:, None]
@@ -32,7 +34,7 @@ SIGNED = tuple(
 class Reading:
     """One way to read the samples, with what it leaves of the mean rates, relative to them."""
 
-    shifted: bool
+    shifted: int  # places by which the four numbers are moved on
     reversed: bool
     space: bool
     axes: Array
@@ -75,9 +77,9 @@ def readings(samples: Samples, attitude: Array, stride: int) -> list[Reading]:
     t = samples.t[four]
     mean, begin, end = mean_rates(t, samples.omega[four]), attitude[four[1]], attitude[four[2]]
     out = []
-    for shifted, reverse in itertools.product((False, True), repeat=2):
-        # What was read as (x, y, z, w) is (w, x, y, z) if the scalar stands first.
-        own = [np.roll(q, -1, axis=1) if shifted else q for q in (begin, end)]
+    for shifted, reverse in itertools.product((0, -1, 1), (False, True)):
+        # What was read as (x, y, z, w) is (w, x, y, z) if the scalar stands first, and (y, z, w, x) if it was moved twice.
+        own = [np.roll(q, shifted, axis=1) for q in (begin, end)]
         own = [conjugate(q) if reverse else q for q in own]
         for space in (False, True):
             rate = turned_by(own[0], own[1], t[2] - t[1], space)
@@ -93,7 +95,7 @@ def readings(samples: Samples, attitude: Array, stride: int) -> list[Reading]:
                 if abs(math.log(factor / known)) > math.log(1.2):
                     continue
                 rho = math.sqrt(max(0.0, 1 - factor * factor * power / square))
-                departures = shifted + reverse + (space != samples.space) + _departures(axes) + (known != 1.0)
+                departures = abs(shifted) + reverse + (space != samples.space) + _departures(axes) + (known != 1.0)
                 out.append(Reading(shifted, reverse, space, axes, known, rho, departures, factor))
     return out
 
@@ -123,14 +125,25 @@ def best_reading(samples: Samples, attitude: Array) -> tuple[Reading | None, Rea
     return found
 
 
-def undo(samples: Samples, findings: list[Finding]) -> float:
-    """Find the conventions of samples with both channels, undo them, and return what remains of the rates."""
+def reach(samples: Samples) -> float:
+    """Return the median turn between samples, by the rates as declared [rad]."""
+    assert samples.omega is not None
+    return float(np.median(np.linalg.norm(samples.omega[1:], axis=1) * np.diff(samples.t)))
+
+
+def undo(samples: Samples, findings: list[Finding], untold: list[str]) -> float:
+    """Find the conventions of samples with both channels, undo them, and return what remains of the rates.
+
+    `untold` gets a sentence where the samples are too far apart."""
     assert samples.omega is not None and samples.attitude is not None
     if not np.any(samples.omega):
         return 0.0
     if samples.angles is not None:
         _sequence(samples, findings)
     best, declared, _ = best_reading(samples, samples.attitude)
+    if reach(samples) > FAR and (best is None or best.rho > SURE):
+        untold.append("samples are further apart than a radian: they do not show the conventions")
+        return best.rho if best else 0.0
     if best is None or best.rho > 0.5:
         if len(samples.t) >= 8:
             rho = 1.0 if best is None else best.rho
@@ -158,7 +171,7 @@ def undo(samples: Samples, findings: list[Finding]) -> float:
             "the quaternion's scalar stands at the other end of the four numbers than declared",
             "declare order='wxyz' or 'xyzw', or move the scalar",
         )
-        samples.attitude = np.roll(samples.attitude, -1, axis=1)
+        samples.attitude = np.roll(samples.attitude, best.shifted, axis=1)
     if best.reversed:
         tell(
             "conjugate",

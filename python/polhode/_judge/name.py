@@ -11,10 +11,11 @@ from .law import Law
 from .laws import longest
 from .refine import refine
 from .score import Numbers, Score, rank
-from .shooting import Data, Track, carry, fit
+from .shooting import Data, Track, basis, carry, fit, weighted
 from .states import Array
 
 GAIN, MARGIN, LEFT, REFINED = 15.0, 8.0, 0.35, 6
+ROUNDING, TRIALS = 3e-15, 4
 DIGIT = 1.7  # the step of the last digit over the floor that it sets
 # Causes that are one and the same for some motions; the first is named, the other stands in its rivals.
 TWINS = {("clock", "units of rates"), ("lag", "kinematics")}
@@ -35,6 +36,8 @@ class Verdict:
     margin: float = np.inf
     before: float = 0.0
     after: float = 0.0
+    alone: Numbers = ()  # rms of each channel with the best start alone
+    floor: Numbers = ()  # below which nothing shows
 
     @property
     def explained(self) -> float:
@@ -50,8 +53,22 @@ def whiteness(rest: Array) -> float:
     return float(np.sum(np.diff(rest, axis=0) ** 2)) / (2 * power) if power else 1.0
 
 
+def raised(track: Track, floor: Numbers) -> Numbers:
+    """Return the floor of each channel, at least what the motion makes of the rounding of its steps."""
+    segments, length = track.index.shape
+    sizes = np.array([track.data.scale] * 3 + [1.0] * 3)[:, None]
+    steps = ROUNDING * sizes * np.random.default_rng(0).normal(size=(segments, length - 1, 6, TRIALS))
+    grown = weighted(track, np.concatenate([track.carried, carry(track.phi, steps)], axis=3))
+    u, rest = basis(grown[..., :6])[0], grown[..., 6:]
+    rest = (rest - u @ (np.swapaxes(u, 1, 2) @ rest)).reshape(segments, -1, length * 3, TRIALS)
+    count = int(track.new.sum()) * 3 * TRIALS
+    made = [float(np.sqrt(np.sum(part * part) / count)) for part in np.moveaxis(rest, 1, 0)]
+    return tuple(max(low, size) for low, size in zip(floor, made, strict=True))
+
+
 def weigh(track: Track, floor: Numbers, sigma: Numbers | None, known: bool) -> Verdict:
     """Score all causes along one motion, refine the best, and say what the numbers allow."""
+    floor = raised(track, floor)
     scores = rank(track, list(catalogue(track, known)), floor, sigma)
     none, rest = scores[0], scores[1:]
     hopeful = [s for s in rest[:REFINED] if s.gain > 0.5 * GAIN]
@@ -60,14 +77,15 @@ def weigh(track: Track, floor: Numbers, sigma: Numbers | None, known: bool) -> V
         score.gain = score.likelihood - none.likelihood
     ranking = sorted([*exact, *[s for s in rest if s not in hopeful]], key=lambda s: -s.gain)
     if not ranking or ranking[0].gain < GAIN:
-        return Verdict("fine", track, ranking)
+        return Verdict("fine", track, ranking, floor=floor)
     best, rivals, margin = _leader(ranking)
     before, after = np.sqrt(3 * np.array(none.rest)), np.sqrt(3 * np.array(best.rest))
+    alone = tuple(map(float, before))
     low = np.array(floor)
     lead = int(np.argmax(np.hypot(before, low) / np.hypot(after, low)))  # the channel that the cause explains
     if before[lead] < DIGIT * low[lead]:  # a constant that the file rounds is a bias, and no fault
-        return Verdict("fine", track, ranking)
-    verdict = Verdict("named", track, ranking, best, rivals, margin, float(before[lead]), float(after[lead]))
+        return Verdict("fine", track, ranking, floor=floor)
+    verdict = Verdict("named", track, ranking, best, rivals, margin, alone[lead], float(after[lead]), alone, floor)
     if not all(_explains(best, track, k, before[k], after[k], low[k]) for k in {lead, int(np.argmax(before))}):
         verdict.kind = "unexplained"
     elif margin < MARGIN and not _twins(best, rivals):

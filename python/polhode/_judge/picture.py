@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import pathlib
+import textwrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 NAMES = ("omega x", "omega y", "omega z", "rotation x", "rotation y", "rotation z")
-ROWS = 6
+LINES, WIDTH = 9, 150  # of the table, in letters
 
 
 def draw(judgement: Any, path: str | os.PathLike[str] | None = None) -> Figure:
@@ -89,7 +90,10 @@ def _pattern(axes: Axes, judgement: Any) -> None:
     rest = track.deviation()
     shown = best.deviation() if best is not None else np.full_like(rest, np.nan)
     step = 2.2 * float(np.max(np.abs(rest), initial=0.0)) or 1.0
+    noise = 2 * np.std(rest if best is None else shown, axis=0)
     for k in range(len(NAMES)):
+        if not judgement.fails("warning") or best is not None:
+            axes.axhspan(-k * step - noise[k], -k * step + noise[k], color=style.FLOOR, alpha=0.35, linewidth=0)
         colour = style.LIGHT.lines[k % 3]
         axes.plot(track.data.t, rest[:, k] - k * step, color=colour, linewidth=1.2)
         dashed = rest[:, k] - shown[:, k] - k * step
@@ -101,28 +105,28 @@ def _pattern(axes: Axes, judgement: Any) -> None:
 
 def _ranking(axes: Axes, judgement: Any) -> None:
     ranking = judgement.ranking[:8][::-1]
-    gains = [max(gain, 0.1) for _, gain in ranking]
-    axes.barh(range(len(ranking)), gains, color=[style.FLOOR] * (len(ranking) - 1) + [style.LIGHT.accent])
+    gains = [max(gain, 1.0) for _, gain in ranking]
+    named = [_best(judgement) is not None and k == len(ranking) - 1 for k in range(len(ranking))]
+    axes.barh(range(len(ranking)), gains, color=[style.LIGHT.accent if yes else style.FLOOR for yes in named])
     axes.set_yticks(range(len(ranking)), [cause for cause, _ in ranking])
     axes.set_xscale("log")
-    axes.axvline(GAIN, color=style.INK, linewidth=0.8)
-    if ranking:
-        axes.axvline(max(gains[-1] - MARGIN, 0.1), color=style.QUIET, linewidth=0.8, linestyle=(0, (4, 3)))
-    axes.set_title(f"gain of each cause [nats]: {GAIN:g} needed, {MARGIN:g} ahead (dashed)")
+    axes.set_xlim(1.0, 2 * max([GAIN, *gains]))
+    axes.axvline(GAIN, color=style.INK, linewidth=0.8, label=f"{GAIN:g} nats are needed")
+    if ranking and gains[-1] > GAIN:
+        axes.axvline(gains[-1] - MARGIN, color=style.QUIET, linewidth=0.8, linestyle=(0, (4, 3)),
+                     label=f"{MARGIN:g} nats behind the first")  # fmt: skip
+    axes.legend(frameon=False, fontsize=8, loc="lower right")
+    axes.set_title("gain of each cause")
+    axes.set_xlabel("nats")
 
 
 def _table(axes: Axes, judgement: Any) -> None:
     axes.set_axis_off()
-    lines = [str(finding) for finding in judgement.findings[:ROWS]] or ["nothing wrong"]
-    if len(judgement.findings) > ROWS:
-        lines.append(f"and {len(judgement.findings) - ROWS} more")
-    axes.text(
-        0.01,
-        0.98,
-        "\n".join(line[:170] for line in [judgement.line(), *lines]),
-        va="top",
-        fontsize=9,
-        family="monospace",
-        color=style.INK,
-        transform=axes.transAxes,
-    )
+    head = f"{judgement.samples} samples, {judgement.turns:.2g} turns"
+    texts = [f"{head}: nothing wrong" if judgement.fine else head, *map(str, judgement.findings)]
+    lines = [line for text in texts for line in textwrap.wrap(text, WIDTH, subsequent_indent="    ")]
+    if len(lines) > LINES:
+        lines = [*lines[: LINES - 1], "and more"]
+    found = axes.text(0.0, 1.0, "\n".join(lines), va="top", fontsize=9, family="monospace", color=style.INK,
+                      transform=axes.transAxes)  # fmt: skip
+    found.set_in_layout(False)

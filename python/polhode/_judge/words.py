@@ -117,7 +117,7 @@ def tell(verdict: Verdict, data: Data, evidence: dict[str, Any]) -> Finding:
 
 
 def _part(explained: float) -> str:
-    return "all" if explained > 0.99995 else f"{100 * explained:.3g} %"
+    return "all" if explained > 0.99995 else f"{100 * explained:.4g} %"
 
 
 def _rate_off(verdict: Verdict, data: Data) -> float:
@@ -127,21 +127,24 @@ def _rate_off(verdict: Verdict, data: Data) -> float:
 
 def unexplained(verdict: Verdict, data: Data, evidence: dict[str, Any]) -> Finding:
     """Return the finding of a deviation that no cause explains: the kinematics, the rates alone, or unknown."""
-    rest = verdict.track.deviation()
-    w, q = (float(np.sqrt(np.mean(np.sum(rest[:, part] ** 2, axis=1)))) for part in (slice(0, 3), slice(3, 6)))
-    span = float(data.t[verdict.track.index[0, -1]] - data.t[verdict.track.index[0, 0]])
-    cause, size = "unknown", max(w, q)
+    index, names = verdict.track.index, ("rates",) * data.has_omega + ("attitude",) * data.has_attitude
+    left = dict(zip(names, verdict.alone, strict=True))
+    w, q = left.get("rates", 0.0), left.get("attitude", 0.0)
+    span = float(data.t[index[0, -1]] - data.t[index[0, 0]])
+    cause, lead = "unknown", "attitude" if q >= w else "rates"
+    size = left[lead]
     if data.has_omega and data.has_attitude:
         if q > 5 * w * data.scale * span:
-            cause, size = "kinematics", q / span
+            cause, lead, size = "kinematics", "attitude", q / span
         elif w > 5 * q:
-            cause, size = "rates", w * data.scale
-    ranked = [s.cause.name for s in verdict.ranking[:3] if s.cause]
-    best = (
-        f"; the nearest cause is {ranked[0]}, which leaves {100 * verdict.after / verdict.before:.0f} %"
-        if (ranked and verdict.before)
-        else ""
-    )
+            cause, lead, size = "rates", "rates", w * data.scale
+    effect, place = left[lead], names.index(lead)
+    ranked = list(dict.fromkeys(s.cause.name for s in verdict.ranking[:3] if s.cause))
+    nearest = min(verdict.ranking, key=lambda s: s.rest[place], default=None)
+    best = ""
+    if nearest and nearest.cause and effect:
+        part = (3 * nearest.rest[place]) ** 0.5 / effect
+        best = f"; the nearest cause is {nearest.cause.name}, which leaves {100 * part:.0f} %"
     words = {
         "kinematics": "the rates are those of such a body, but the attitude is not their integral",
         "rates": "the attitude is that of such a body, but the rates are not its derivative",
@@ -149,12 +152,12 @@ def unexplained(verdict: Verdict, data: Data, evidence: dict[str, Any]) -> Findi
     }[cause]
     return Finding(
         cause,
-        f"{words}: off by {verdict.before:.2g}{best}",
+        f"{words}: off by {effect:.2g}{best}",
         size=size,
-        effect=verdict.before,
+        effect=effect,
         explained=0.0,
         margin=0.0,
-        rivals=tuple(dict.fromkeys(ranked)),
+        rivals=tuple(ranked),
         evidence=evidence,
         cure=CURES[cause],
     )

@@ -10,7 +10,7 @@ import numpy as np
 from .._core import InvalidInput
 from .._scene.scene import Scene
 from . import conventions, gaps
-from .channels import fitted_body, read_again, to_data
+from .channels import fitted_body, follows, read_again, to_data
 from .findings import Finding, ordered
 from .judgement import Deviation, Judgement, Repaired
 from .law import Law
@@ -50,7 +50,7 @@ class Work:
         both = samples.omega is not None and samples.attitude is not None
         rho = 0.0
         if both and len(samples.t) >= 7:
-            rho = conventions.undo(samples, self.findings)
+            rho = self._conventions()
         elif samples.space and samples.attitude is None:
             raise InvalidInput("frame: must be 'body' without attitudes, got 'space'")
         conventions.to_body_rates(samples)
@@ -67,6 +67,19 @@ class Work:
                 self.untold.append(f"with {only} alone, faults that the other channel would show stay unseen")
             return self._end(self._judge(data, turns), data, turns)
         return self._end(None, data, turns)
+
+    def _conventions(self) -> float:
+        """Undo the conventions, and return what remains; far samples are asked for the law as declared before."""
+        far = self.known and conventions.reach(self.samples) > conventions.FAR
+        if far and follows(self.samples, self._law_of(self.body)):
+            return 0.0
+        return conventions.undo(self.samples, self.findings, self.untold)
+
+    def _law_of(self, matrix: Array | None) -> Law:
+        if self.scene is not None:
+            return Law(self.scene.inertia.matrix, self.scene if self.scene.torques or self.scene.rotors else None)
+        assert matrix is not None
+        return Law(matrix)
 
     def _judge(self, data: Data, turns: float) -> Verdict:
         law = self._law(data)
@@ -86,30 +99,33 @@ class Work:
                 law = variant.law
         verdict, data = self._without_outliers(data, law, floor, sigma, track)
         evidence = invariants(data, law.matrix)
+        if verdict.floor and max(verdict.floor) > 100 * max(floor):
+            self.untold.append(f"this motion makes {max(verdict.floor):.1g} of rounding: a smaller fault does not show")
         if verdict.kind in ("named", "cannot tell"):
             self._add(tell(verdict, data, evidence))
         elif verdict.kind == "unexplained":
             self._add(unexplained(verdict, data, evidence))
         else:
-            self._nothing(verdict, floor)
-        if verdict.kind == "named" and (other := second(verdict, floor, sigma, self.known)) is not None:
+            self._nothing(verdict, verdict.floor or floor)
+        if (
+            verdict.kind == "named"
+            and (other := second(verdict, verdict.floor or floor, sigma, self.known)) is not None
+        ):
             self._add(tell(other, data, evidence))
         if self.scene is not None and verdict.track.length == len(data.t):
             best = verdict.best.track if verdict.kind == "named" and verdict.best else None
-            start = check_start(best or verdict.track, self.scene, floor, sigma)
+            start = check_start(best or verdict.track, self.scene, verdict.floor or floor, sigma)
             if start is not None:
                 self._add(start)
         return verdict
 
     def _law(self, data: Data) -> Law:
-        if self.scene is not None:
-            return Law(self.scene.inertia.matrix, self.scene if self.scene.torques or self.scene.rotors else None)
         if self.body is None:
             self.untold.append(
                 "the inertia was fitted: wrong moments, axes and signs of products stay unseen, and its scale"
             )
             self.body = fitted_body(data)
-        return Law(self.body)
+        return self._law_of(self.body)
 
     def _say_law(self, data: Data, law: Law, variant: Variant) -> None:
         before = float(np.sqrt(np.mean(longest(data, law).deviation() ** 2)))
