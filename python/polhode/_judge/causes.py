@@ -42,9 +42,11 @@ class Scope:
         """The same by extrapolation, for differences."""
         return extrapolated(self.law.field, self.t, self.dt, self.starts, self.levels)
 
-    @property
+    @cached_property
     def levels(self) -> int:
-        return 6 if self.law.free else 4
+        """As many as long steps need for all digits."""
+        reach = float(np.max(np.linalg.norm(self.starts[0], axis=1) * np.abs(self.dt), initial=0.0))
+        return (4 if reach < 0.15 else 5 if reach < 0.35 else 6) if self.law.free else 4
 
     def by_field(self, extra: Callable[[Array, Array, Array], Array]) -> Array:
         """Return what one more torque makes of the steps."""
@@ -142,7 +144,7 @@ def _tensor_push(scope: Scope, c: Array, logs: slice, tilt: slice) -> Array:
 
 def _method(name: str) -> Push:
     def push(scope: Scope, count: Array) -> Array:
-        done = methods.run(name, scope.law.field, scope.t, scope.dt, scope.starts, int(count[0]))
+        done = methods.run(name, scope.law, scope.t, scope.dt, scope.starts, int(count[0]))
         return difference(scope.end, done)
 
     return push

@@ -78,7 +78,7 @@ def readings(samples: Samples, attitude: Array, stride: int) -> list[Reading]:
     mean, begin, end = mean_rates(t, samples.omega[four]), attitude[four[1]], attitude[four[2]]
     out = []
     for shifted, reverse in itertools.product((0, -1, 1), (False, True)):
-        # What was read as (x, y, z, w) is (w, x, y, z) if the scalar stands first, and (y, z, w, x) if it was moved twice.
+        # What was read as (x, y, z, w) is (w, x, y, z) if the scalar stands first, (y, z, w, x) if it was moved twice.
         own = [np.roll(q, shifted, axis=1) for q in (begin, end)]
         own = [conjugate(q) if reverse else q for q in own]
         for space in (False, True):

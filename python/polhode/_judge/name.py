@@ -17,6 +17,8 @@ from .states import Array
 GAIN, MARGIN, LEFT, REFINED = 15.0, 8.0, 0.35, 6
 ROUNDING, TRIALS = 3e-15, 4
 DIGIT = 1.7  # the step of the last digit over the floor that it sets
+# What the errors of a method may look like, and which part of them stays as a pattern then.
+IMITATED, PATTERN = ("lag", "clock", "units of rates", "inertia", "damping", "kinematics"), 0.005
 # Causes that are one and the same for some motions; the first is named, the other stands in its rivals.
 TWINS = {("clock", "units of rates"), ("lag", "kinematics")}
 
@@ -71,6 +73,9 @@ def weigh(track: Track, floor: Numbers, sigma: Numbers | None, known: bool) -> V
     floor = raised(track, floor)
     scores = rank(track, list(catalogue(track, known)), floor, sigma)
     none, rest = scores[0], scores[1:]
+    before, low = np.sqrt(3 * np.array(none.rest)), np.array(floor)
+    if np.all(before < DIGIT * low):
+        return Verdict("fine", track, rest, floor=floor)
     hopeful = [s for s in rest[:REFINED] if s.gain > 0.5 * GAIN]
     exact = [refine(track, s, floor, sigma) for s in hopeful]
     for score in exact:
@@ -79,9 +84,8 @@ def weigh(track: Track, floor: Numbers, sigma: Numbers | None, known: bool) -> V
     if not ranking or ranking[0].gain < GAIN:
         return Verdict("fine", track, ranking, floor=floor)
     best, rivals, margin = _leader(ranking)
-    before, after = np.sqrt(3 * np.array(none.rest)), np.sqrt(3 * np.array(best.rest))
+    after = np.sqrt(3 * np.array(best.rest))
     alone = tuple(map(float, before))
-    low = np.array(floor)
     lead = int(np.argmax(np.hypot(before, low) / np.hypot(after, low)))  # the channel that the cause explains
     if before[lead] < DIGIT * low[lead]:  # a constant that the file rounds is a bias, and no fault
         return Verdict("fine", track, ranking, floor=floor)
@@ -90,7 +94,17 @@ def weigh(track: Track, floor: Numbers, sigma: Numbers | None, known: bool) -> V
         verdict.kind = "unexplained"
     elif margin < MARGIN and not _twins(best, rivals):
         verdict.kind = "cannot tell"
+    elif _like_a_method(best, track, lead, alone[lead], float(after[lead]), floor[lead]):
+        verdict.kind, verdict.rivals = "cannot tell", tuple(dict.fromkeys((*rivals, "integrator")))
     return verdict
+
+
+def _like_a_method(best: Score, track: Track, channel: int, before: float, after: float, floor: float) -> bool:
+    """Return True if a cause that an unknown method of integration may imitate leaves a pattern."""
+    if best.cause is None or best.cause.name not in IMITATED or after < max(PATTERN * before, 30 * floor):
+        return False
+    shown = best.track or track
+    return whiteness(shown.flat(shown.residual)[:, track.data.channels[channel][0]]) < 0.1
 
 
 def _explains(best: Score, track: Track, channel: int, before: float, after: float, floor: float) -> bool:

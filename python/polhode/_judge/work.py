@@ -113,10 +113,10 @@ class Work:
         ):
             self._add(tell(other, data, evidence))
         if self.scene is not None and verdict.track.length == len(data.t):
-            best = verdict.best.track if verdict.kind == "named" and verdict.best else None
-            start = check_start(best or verdict.track, self.scene, verdict.floor or floor, sigma)
-            if start is not None:
-                self._add(start)
+            if (along := _explained(verdict)) is not None:
+                start = check_start(along, self.scene, verdict.floor or floor, sigma)
+                if start is not None:
+                    self._add(start)
         return verdict
 
     def _law(self, data: Data) -> Law:
@@ -261,6 +261,13 @@ class Work:
             track.length,
             verdict,
         )
+
+
+def _explained(verdict: Verdict) -> Track | None:
+    """Return the motion with the named cause, or that of the law where nothing is wrong: others have no true start."""
+    if verdict.kind == "fine":
+        return verdict.track
+    return verdict.best.track if verdict.kind == "named" and verdict.best else None
 
 
 def _deviation(rest: Array, data: Data) -> Deviation:
