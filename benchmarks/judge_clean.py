@@ -20,7 +20,7 @@ DRESSES = ("as computed", "noise 1e-9", "noise 1e-6", "noise 1e-3", "noise 1e-2"
            "uneven times", "sign flips")  # fmt: skip
 SCENES = tuple(sorted(path.stem for path in (ROOT / "scenes").glob("*.toml")))
 FORMS = ("free", "symmetric", "sphere", "steady", "Lagrange", "pendulum", "damped", "gyrostat")
-MOST = 250  # samples of one run
+MOST = 120  # samples of one run
 
 
 def drawn(form, rng):
@@ -52,10 +52,9 @@ def drawn(form, rng):
 def thinned(scene, rng):
     """A scene of polhode with another start near its own, and at most MOST of its samples from any place on."""
     times = np.asarray(scene.times)
-    count = min(len(times), int(rng.integers(40, MOST)))
-    first = int(rng.integers(0, len(times) - count + 1))
-    chosen = times[[0, *range(max(first, 1), first + count)]]
-    return scene.replace(omega=scene.omega * rng.uniform(0.9, 1.1, 3), times=chosen)
+    count = min(len(times), int(rng.integers(40, MOST // 2 if scene.torques else MOST)))
+    first = int(rng.integers(0, min(len(times) - count, 200) + 1))
+    return scene.replace(omega=scene.omega * rng.uniform(0.9, 1.1, 3), times=times[first : first + count])
 
 
 def dressed(dress, scene, rng):
@@ -78,10 +77,10 @@ def dressed(dress, scene, rng):
     return scene, motion.t, attitude, omega
 
 
-def runs(seed, count, only=""):
+def runs(seed, count, only="", part=0, parts=1):
     """Give one record for each run; a dress and a motion take turns."""
     names = [name for name in (*SCENES, *FORMS) if only in ("", name)]
-    for k in range(count):
+    for k in range(part, count, parts):
         rng = np.random.default_rng([seed, k])
         name, dress = names[k % len(names)], DRESSES[(k // len(names)) % len(DRESSES)]
         try:
@@ -104,10 +103,12 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--count", type=int, default=2200)
     parser.add_argument("--only", default="")
+    parser.add_argument("--part", default="0/1", help="a part of the runs, such as 1/3")
     parser.add_argument("--json", type=pathlib.Path)
     given = parser.parse_args()
     records = []
-    for record in runs(given.seed, given.count, given.only):
+    part, parts = map(int, given.part.split("/"))
+    for record in runs(given.seed, given.count, given.only, part, parts):
         records.append(record)
         if not record.get("fine"):
             print(record, file=sys.stderr, flush=True)

@@ -1,6 +1,6 @@
 """Writes what tests and docs use of NASA's check case 2, a brick that tumbles without damping.
 
-Source: E. B. Jackson, R. E. Shelton, A. A. Jackson, M. Castro, D. M. Noble, Check-Cases for Verification of 6-DOF
+Source: D. G. Murri, E. B. Jackson, R. O. Shelton, Check-Cases for Verification of 6-Degree-of-Freedom
 Flight Vehicle Simulations, NASA/TM-2015-218675; its tables as published in github.com/nasa/simupy-flight,
 NESC_data/Atmospheric_checkcases/Atmos_02_TumblingBrickNoDamping. Every simulator's rows at multiples of 0.5 s are
 kept, with the columns of rotation and place, and with all their digits.

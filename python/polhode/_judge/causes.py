@@ -144,7 +144,13 @@ def _tensor_push(scope: Scope, c: Array, logs: slice, tilt: slice) -> Array:
 
 def _method(name: str) -> Push:
     def push(scope: Scope, count: Array) -> Array:
-        done = methods.run(name, scope.law, scope.t, scope.dt, scope.starts, int(count[0]))
+        try:
+            with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+                done = methods.run(name, scope.law, scope.t, scope.dt, scope.starts, int(count[0]))
+        except (InvalidInput, np.linalg.LinAlgError):  # steps that are much too long
+            return np.full((len(scope.t), 6), np.nan)
+        if not all(np.all(np.isfinite(part)) for part in done):
+            return np.full((len(scope.t), 6), np.nan)
         return difference(scope.end, done)
 
     return push

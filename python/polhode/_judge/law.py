@@ -51,9 +51,11 @@ class Law:
         torque = np.zeros_like(omega)
         momentum = omega @ self.matrix
         if self.scene is not None:
-            unit = attitude / np.linalg.norm(attitude, axis=1, keepdims=True)
-            times = np.broadcast_to(t, omega.shape[:1])
-            torque += [self.scene.torque(*state) for state in zip(times, omega, unit)]
+            size = np.linalg.norm(attitude, axis=1)
+            good = (size > 0) & (size < 1e100) & np.all(np.abs(omega) < 1e100, axis=1)
+            torque[~good] = np.nan  # a trial that ran away
+            rows = zip(np.broadcast_to(t, size.shape)[good], omega[good], attitude[good] / size[good, None])
+            torque[good] = np.reshape([self.scene.torque(*row) for row in rows], (-1, 3))
             momentum = momentum + self.scene.rotor_momentum if self.scene.rotors else momentum
         if self.extra is not None:
             torque += self.extra(t, omega, attitude)
@@ -124,9 +126,10 @@ def extrapolated(field: Field, t: Array, dt: Array, state: State, levels: int = 
     pieces = max(1, int(np.ceil(reach / 0.8)))
     time, length = np.array(t, float), np.asarray(dt, float) / pieces
     omega, attitude = state
-    for _ in range(pieces):
-        omega, attitude = _extrapolate(field, time, length, omega, attitude, levels)
-        time = time + length
+    with np.errstate(over="ignore", invalid="ignore"):  # what runs away is not finite, and is left out
+        for _ in range(pieces):
+            omega, attitude = _extrapolate(field, time, length, omega, attitude, levels)
+            time = time + length
     return omega, attitude
 
 

@@ -109,7 +109,7 @@ def rank(
         forced = carry(track.phi, np.concatenate(pushes, axis=-1)) + np.concatenate(shows, axis=-1)
     else:
         forced = np.zeros((*track.omega.shape[:2], 6, 0))
-    forced[~np.isfinite(forced)] = 0.0
+    forced[~(np.abs(forced) < 1e60)] = 0.0
     count = 3 * int(track.new.sum())
 
     def find(which: slice) -> Rated:

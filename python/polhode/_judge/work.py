@@ -25,6 +25,7 @@ from .words import invariants, tell, unexplained
 
 MOST, MOST_DRIVEN = 2000, 400
 FEWEST, SHORTEST = 8, 0.2  # samples, and turns
+GAP = 20.0  # rad
 
 
 class Work:
@@ -54,7 +55,7 @@ class Work:
         elif samples.space and samples.attitude is None:
             raise InvalidInput("frame: must be 'body' without attitudes, got 'space'")
         conventions.to_body_rates(samples)
-        data = to_data(samples)
+        data = self._without_gaps(to_data(samples))
         speed = np.linalg.norm(data.omega, axis=1)
         turns = float(np.sum(0.5 * (speed[1:] + speed[:-1]) * np.diff(data.t))) / (2 * np.pi)
         if not np.any(data.omega):
@@ -67,6 +68,19 @@ class Work:
                 self.untold.append(f"with {only} alone, faults that the other channel would show stay unseen")
             return self._end(self._judge(data, turns), data, turns)
         return self._end(None, data, turns)
+
+    def _without_gaps(self, data: Data) -> Data:
+        """Return the longest stretch without a gap of many turns, which no step can be judged across."""
+        reach = np.linalg.norm(data.omega[1:], axis=1) * np.diff(data.t)
+        ends = np.flatnonzero((reach > GAP) & (reach > 10 * np.median(reach)))
+        if not len(ends):
+            return data
+        edges = np.concatenate([[0], ends + 1, [len(data.t)]])
+        longest = int(np.argmax(np.diff(edges)))
+        first, last = int(edges[longest]), int(edges[longest + 1])
+        self.untold.append(f"there are gaps of up to {np.max(reach) / (2 * np.pi):.2g} turns: "
+                           f"samples {first} to {last - 1} were judged")  # fmt: skip
+        return data.take(slice(first, last))
 
     def _conventions(self) -> float:
         """Undo the conventions, and return what remains; far samples are asked for the law as declared before."""
