@@ -79,12 +79,13 @@ def dressed(dress, scene, rng):
 
 def runs(seed, count, only="", part=0, parts=1):
     """Give one record for each run; a dress and a motion take turns."""
-    names = [name for name in (*SCENES, *FORMS) if only in ("", name)]
+    names = [name for name in (*SCENES, *FORMS) if not only or name in only.split(",")]
     for k in range(part, count, parts):
         rng = np.random.default_rng([seed, k])
         name, dress = names[k % len(names)], DRESSES[(k // len(names)) % len(DRESSES)]
         try:
-            scene = drawn(name, rng) if name in FORMS else thinned(ph.Scene.load(str(ROOT / f"scenes/{name}.toml")), rng)
+            file = str(ROOT / f"scenes/{name}.toml")
+            scene = drawn(name, rng) if name in FORMS else thinned(ph.Scene.load(file), rng)
             scene, t, attitude, omega = dressed(dress, scene, rng)
         except (ph.InvalidInput, ph.IntegrationFailure) as error:
             yield {"k": k, "name": name, "dress": dress, "skipped": str(error)[:100]}
@@ -102,7 +103,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--count", type=int, default=2200)
-    parser.add_argument("--only", default="")
+    parser.add_argument("--only", default="", help="motions, such as free,steady")
     parser.add_argument("--part", default="0/1", help="a part of the runs, such as 1/3")
     parser.add_argument("--json", type=pathlib.Path)
     given = parser.parse_args()

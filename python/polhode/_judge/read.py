@@ -28,6 +28,15 @@ class Samples:
     floor: tuple[float, float] = (0.0, 0.0)  # of the rates [rad/s] and the attitude [rad]
     norm_off: Array | None = None
 
+    def take(self, which: slice) -> Samples:
+        """Return these samples alone."""
+        t, omega, attitude, angles, norm_off = (
+            None if array is None else array[which]
+            for array in (self.t, self.omega, self.attitude, self.angles, self.norm_off)
+        )
+        assert t is not None
+        return dataclasses.replace(self, t=t, omega=omega, attitude=attitude, angles=angles, norm_off=norm_off)
+
 
 def numbers(value: Any, name: str, width: tuple[int, ...]) -> Array:
     """Return an array of samples, or refuse its shape or type."""

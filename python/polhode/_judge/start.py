@@ -7,16 +7,25 @@ from typing import Any
 
 import numpy as np
 
+from .._core import IntegrationFailure, InvalidInput
 from .._scene.scene import Scene
+from .._solve.solve import solve
 from .findings import Finding
 from .name import GAIN
 from .score import Numbers, likelihood
-from .shooting import Track
-from .states import difference
+from .shooting import Data, Track
+from .states import State, difference
+
+ACCURACY, SURE = 1e-12, 1e-11
 
 
-def check_start(track: Track, scene: Scene, floor: Numbers, sigma: Numbers | None) -> Finding | None:
-    """Return a finding if the fitted start of the whole motion is not the scene's."""
+def check_start(
+    track: Track, scene: Scene, floor: Numbers, sigma: Numbers | None, alone: bool = True
+) -> Finding | None:
+    """Return a finding if the fitted start of the whole motion is not the scene's.
+
+    `alone` stands for a motion without a cause, which is compared with the scene's own; another at first order.
+    """
     data, law = track.data, track.law
     here = np.array([scene.t0])
     given = law.flow(here, data.t[:1] - here, (scene.omega[None], np.asarray(scene.attitude, float)[None]))
@@ -29,6 +38,10 @@ def check_start(track: Track, scene: Scene, floor: Numbers, sigma: Numbers | Non
         return tuple(float(np.sum((residual[:, part] / scale) ** 2)) / rows for part, scale in data.channels)
 
     after, before = squares(track.residual[0]), squares(track.residual[0] - track.carried[0] @ offset)
+    if alone and (own := _own(scene, data)) is not None:  # exact, where the motion amplifies what is nearly nothing
+        before = squares(difference(own, data.state))
+    elif max(np.max(np.abs(offset[part])) / size for part, size in data.channels) < 10 * max(floor):
+        return None
     gain = likelihood(after, floor, rows, 6, sigma) - likelihood(before, floor, rows, 0, sigma)
     effect = math.sqrt(3 * max(before))
     if gain < GAIN or effect < 3 * max(floor):
@@ -53,3 +66,14 @@ def check_start(track: Track, scene: Scene, floor: Numbers, sigma: Numbers | Non
         explained=1 - max(after) / max(before),
         cure="check what the simulator starts from, and when it prints",
     )
+
+
+def _own(scene: Scene, data: Data) -> State | None:
+    """Return the scene's motion at the samples, None where it is not sure."""
+    try:
+        motion = solve(scene.replace(times=data.t, want=("omega", "attitude")), ACCURACY)
+    except (InvalidInput, IntegrationFailure):
+        return None
+    if not motion.success or motion.error > SURE or motion.omega is None or motion.attitude is None:
+        return None
+    return motion.omega, motion.attitude

@@ -47,7 +47,7 @@ class Work:
         self.whole: Data | None = None
 
     def run(self) -> Judgement:
-        samples = self.samples
+        samples = self.samples = self._without_gaps(self.samples)
         both = samples.omega is not None and samples.attitude is not None
         rho = 0.0
         if both and len(samples.t) >= 7:
@@ -55,7 +55,7 @@ class Work:
         elif samples.space and samples.attitude is None:
             raise InvalidInput("frame: must be 'body' without attitudes, got 'space'")
         conventions.to_body_rates(samples)
-        data = self._without_gaps(to_data(samples))
+        data = to_data(samples)
         speed = np.linalg.norm(data.omega, axis=1)
         turns = float(np.sum(0.5 * (speed[1:] + speed[:-1]) * np.diff(data.t))) / (2 * np.pi)
         if not np.any(data.omega):
@@ -69,18 +69,20 @@ class Work:
             return self._end(self._judge(data, turns), data, turns)
         return self._end(None, data, turns)
 
-    def _without_gaps(self, data: Data) -> Data:
+    def _without_gaps(self, samples: Samples) -> Samples:
         """Return the longest stretch without a gap of many turns, which no step can be judged across."""
-        reach = np.linalg.norm(data.omega[1:], axis=1) * np.diff(data.t)
+        if samples.omega is None:
+            return samples
+        reach = np.linalg.norm(samples.omega[1:], axis=1) * np.diff(samples.t)
         ends = np.flatnonzero((reach > GAP) & (reach > 10 * np.median(reach)))
         if not len(ends):
-            return data
-        edges = np.concatenate([[0], ends + 1, [len(data.t)]])
+            return samples
+        edges = np.concatenate([[0], ends + 1, [len(samples.t)]])
         longest = int(np.argmax(np.diff(edges)))
         first, last = int(edges[longest]), int(edges[longest + 1])
-        self.untold.append(f"there are gaps of up to {np.max(reach) / (2 * np.pi):.2g} turns: "
-                           f"samples {first} to {last - 1} were judged")  # fmt: skip
-        return data.take(slice(first, last))
+        turns = f"{np.max(reach) / (2 * np.pi):.2g} turns"
+        self.untold.append(f"there are gaps of up to {turns}: samples {first} to {last - 1} were judged")
+        return samples.take(slice(first, last))
 
     def _conventions(self) -> float:
         """Undo the conventions, and return what remains; far samples are asked for the law as declared before."""
@@ -128,7 +130,7 @@ class Work:
             self._add(tell(other, data, evidence))
         if self.scene is not None and verdict.track.length == len(data.t):
             if (along := _explained(verdict)) is not None:
-                start = check_start(along, self.scene, verdict.floor or floor, sigma)
+                start = check_start(along, self.scene, verdict.floor or floor, sigma, verdict.kind == "fine")
                 if start is not None:
                     self._add(start)
         return verdict

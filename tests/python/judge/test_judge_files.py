@@ -34,7 +34,8 @@ FORMS = {
     "polhode run": ("t,omega_x,omega_y,omega_z,attitude_x,attitude_y,attitude_z,attitude_w", (T, W, Q), ","),
     "scalar first": ("t qw qx qy qz wx wy wz", (T, WXYZ, W), " "),
     "semicolons": ("time;q_x;q_y;q_z;q_w;w_x;w_y;w_z", (T, Q, W), ";"),
-    "tabs and units": ("time [ms]\tqx\tqy\tqz\tqw\twx [deg/s]\twy [deg/s]\twz [deg/s]", (1000 * T, Q, np.degrees(W)), "\t"),
+    "tabs and units": ("time [ms]\tqx\tqy\tqz\tqw\twx [deg/s]\twy [deg/s]\twz [deg/s]",
+                       (1000 * T, Q, np.degrees(W)), "\t"),
     "EuRoC": ("#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],a_RS_S_x [m s^-2]",
               (np.round(T * 1e9), W, 0 * T), ","),
     "EuRoC's truth": ("#timestamp [ns],p_RS_R_x [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z [],b_w_RS_S_x [rad s^-1]",
@@ -49,7 +50,8 @@ FORMS = {
     "NESC without a place": ("time,eulerAngle_deg_Yaw,eulerAngle_deg_Pitch,eulerAngle_deg_Roll,"
                              "bodyAngularRateWrtEi_deg_s_Roll,bodyAngularRateWrtEi_deg_s_Pitch,"
                              "bodyAngularRateWrtEi_deg_s_Yaw", (T, YPR, np.degrees(W)), ","),
-    "p, q, r": ("t,roll [deg],pitch [deg],yaw [deg],p [deg/s],q [deg/s],r [deg/s]", (T, YPR[:, ::-1], np.degrees(W)), ","),
+    "p, q, r": ("t,roll [deg],pitch [deg],yaw [deg],p [deg/s],q [deg/s],r [deg/s]",
+                (T, YPR[:, ::-1], np.degrees(W)), ","),
     "matrices": (",".join(["t", *(f"R{a}{b}" for a in "123" for b in "123"), "wx", "wy", "wz"]),
                  (T, R.as_matrix().reshape(-1, 9), W), ","),
     "mixed units": ("t,roll [rad],pitch [rad],yaw [rad],rollRate [deg/s],pitchRate [deg/s],yawRate [deg/s]",
@@ -127,8 +129,10 @@ BAD = {
     "a decimal comma": ("t;wx;wy;wz\n0;1,5;2;3\n1;1;2;3\n", "must be numbers, got '1,5'; write decimals with a point"),
     "no number": ("t,wx,wy,wz\n0,1,2,3\n1,1,two,3\n", "line 3: must be numbers, got 'two'"),
     "a column twice": ("t,wx,wx,wy,wz\n0,1,2,3,4\n1,1,2,3,4\n", "column 'wx': must come once"),
-    "two columns of one thing": ("t,wx,omega_x,wy,wz\n0,1,2,3,4\n1,1,2,3,4\n", "'wx' and 'omega_x': both name one thing"),
-    "an unknown unit": ("t,wx [furlong],wy [furlong],wz [furlong]\n0,1,2,3\n1,1,2,3\n", "has the unknown unit 'furlong'"),
+    "two columns of one thing": ("t,wx,omega_x,wy,wz\n0,1,2,3,4\n1,1,2,3,4\n",
+                                 "'wx' and 'omega_x': both name one thing"),
+    "an unknown unit": ("t,wx [furlong],wy [furlong],wz [furlong]\n0,1,2,3\n1,1,2,3\n",
+                        "has the unknown unit 'furlong'"),
     "units that differ": ("t,wx [deg/s],wy,wz\n0,1,2,3\n1,1,2,3\n", "column 'wx [deg/s]': must have the unit of its"),
     "no scalar told": ("t,q0,q1,q2,q3\n0,1,2,3,4\n1,1,2,3,4\n", "q0, q1, q2, q3: do not say where the scalar is"),
     "no sequence told": ("t,angle_1,angle_2,angle_3\n0,1,2,3\n1,1,2,3\n", "do not say their sequence"),
@@ -195,7 +199,8 @@ def test_too_many_rows_are_refused_before_numbers_are_read(tmp_path, monkeypatch
 
 
 @pytest.mark.parametrize("name", ["b_w_RS_S_x", "omega_x_lower", "orientation_covariance.0", "acc_x", "gyro_bias_x",
-                                  "angular_velocity_covariance.4", "magnetic_x", "x", "wind_x", "quality", "theta_dot"])  # fmt: skip
+                                  "angular_velocity_covariance.4", "magnetic_x", "x", "wind_x", "quality",
+                                  "theta_dot"])  # fmt: skip
 def test_other_columns_are_left_alone(name):
     assert role(name) is None
 
