@@ -21,6 +21,7 @@ FACTORS = {
 }
 INTERVALS = 2000
 FAR = 1.0  # rad between samples, from which means by cubics say little
+LONG = 1.5  # rad between samples, beyond which no longer intervals are tried: turns by more than pi look like others
 SURE = 0.05  # rho of a reading that is believed even so
 RESOLUTION = 1e-4  # of rho: the error of means by cubics
 SIGNED = tuple(
@@ -117,12 +118,13 @@ def simplest(every: list[Reading], count: int) -> Reading:
 def best_reading(samples: Samples, attitude: Array) -> tuple[Reading | None, Reading | None, int]:
     """Return the best reading and the one that was declared, at the stride that shows it best."""
     found: tuple[Reading | None, Reading | None, int] = None, None, 1
-    stride = 1
-    while (len(samples.t) - 1) // stride >= 6:
+    turned = angle_vector(multiply(conjugate(attitude[:-1]), attitude[1:]))
+    step, stride = float(np.median(np.linalg.norm(turned, axis=1))), 1
+    while (len(samples.t) - 1) // stride >= 6 and (stride == 1 or stride * step < LONG):
         every = readings(samples, attitude, stride)
         if every:
             best = simplest(every, min(INTERVALS, (len(samples.t) - 1) // stride))
-            if found[0] is None or best.rho < 0.7 * found[0].rho:
+            if found[0] is None or best.rho + RESOLUTION < 0.7 * (found[0].rho + RESOLUTION):
                 given = [r for r in every if r.departures == 0]
                 found = best, given[0] if given else None, stride
         stride *= 2

@@ -248,6 +248,12 @@ def _step(values: Array | None) -> float:
     return float(top * 10.0 ** (1 - significant) / 2) if significant <= 12 else 0.0
 
 
+def _tells_nothing(values: Array) -> bool:
+    """Return True if all columns have few values, so that they do not show how many digits there are."""
+    some = values[:: max(1, len(values) // 1000)]
+    return all(len(np.unique(column)) <= 0.3 * len(column) for column in some.T)
+
+
 def _significant(values: Array) -> int:
     """Return how many decimal digits the numbers have, up to 17."""
     some = values[values != 0][:400]
@@ -259,6 +265,8 @@ def _floors(
 ) -> None:
     """Set how far off the samples may be by their digits alone, and say that they are few."""
     attitude, omega = steps
+    if rates is not None and not omega and attitude and _tells_nothing(rates):
+        omega = attitude  # of the same file, with as many decimals
     coarse = [(step, what) for step, what in ((attitude, "in the attitude"), (omega, "rad/s")) if step]
     if coarse:
         findings.append(

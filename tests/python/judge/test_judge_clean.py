@@ -92,3 +92,16 @@ def test_the_fitted_start_and_residual_are_returned():
     assert found.samples == 200 and found.turns == pytest.approx(
         np.linalg.norm(W, axis=1).mean() * 6 / 2 / np.pi, rel=1e-2
     )
+
+
+def test_a_steady_turn_has_no_other_convention_at_any_distance():
+    """Samples of which every sixteenth is more than half a turn on look as if they turned back."""
+    t = np.linspace(0, 8, 102)
+    w, q = ph.FreeMotion(I, (0, 0, 2.55754391)).at(t)
+    assert ph.judge(t, q, w, inertia=I, tolerance=1e-10).fine
+
+
+def test_constant_rates_have_the_digits_of_their_file():
+    w, q = ph.FreeMotion((1, 1, 1), (0.3, 0.7, -1.1)).at(T)
+    w = w + 1e-10
+    assert ph.judge(T, q.round(9), w.round(9) + 4e-10, inertia=(1, 1, 1), tolerance=1e-10).fine

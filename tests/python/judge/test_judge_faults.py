@@ -110,3 +110,5 @@ def test_ten_thousand_samples_and_gaps_beyond_the_thinning():
     assert ph.judge(t, q, w, inertia=I).fine
     found = ph.judge(t[:9990], q[keep], w[keep], inertia=I)
     assert found.findings[0].cause == "dropped" and found.findings[0].size == 10
+    assert [f.cause for f in found.findings if f.level != "remark"] == ["dropped"]
+    np.testing.assert_allclose(found.repaired.t, t[keep], atol=1e-12)
