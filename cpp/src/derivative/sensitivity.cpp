@@ -135,7 +135,7 @@ std::vector<SensitivityTo> find_closed_columns(const Scene& scene, const std::ve
   return columns;
 }
 
-MotionSensitivity differentiate_free(const Scene& scene, const std::vector<SensitivityTo>& columns, TurnSide side) {
+MotionSensitivity differentiate_free(const Scene& scene, const std::vector<SensitivityTo>& columns, RotationSide side) {
   const FreeSensitivity closed(FreeMotion(scene.given_inertia_B(), scene.omega(), scene.attitude()), columns, side);
   const std::size_t n = scene.times().size();
   std::vector<double> t = scene.times();

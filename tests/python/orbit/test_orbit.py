@@ -90,8 +90,8 @@ def draw(rng, e, nu):
 
 
 CONICS = {"circle": 0.0, "nearly round": 1e-16, "round to 1e-9": 1e-9, "elliptic": 0.4, "long": 0.97,
-          "1 - 1e-6": 1 - 1e-6, "1 - 1 ulp": 1 - 2**-53, "1": 1.0, "1 + 1 ulp": 1 + 2**-52, "1 + 1e-9": 1 + 1e-9, "1 + 1e-3": 1.001,
-          "hyperbolic": 1.5, "flyby": 4.2, "fast": 900.0}
+          "1 - 1e-6": 1 - 1e-6, "1 - 1 ulp": 1 - 2**-53, "1": 1.0, "1 + 1 ulp": 1 + 2**-52, "1 + 1e-9": 1 + 1e-9,
+          "1 + 1e-3": 1.001, "hyperbolic": 1.5, "flyby": 4.2, "fast": 900.0}
 
 
 @pytest.mark.parametrize("name", CONICS)
