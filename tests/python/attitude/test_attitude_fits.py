@@ -115,6 +115,18 @@ def test_an_exact_pair_may_be_opposite_and_the_others_turn_about_it(rng):
             assert np.sqrt([0.0, 1.0, 2.0] @ ((a - other.apply(b)) ** 2).sum(axis=1)) > left
 
 
+@pytest.mark.parametrize("weights", [[np.inf, 1.0], [1.0, np.inf]])
+@pytest.mark.parametrize("seed", range(20))
+def test_an_exact_pair_beside_a_parallel_one_gives_the_shortest_rotation(weights, seed):
+    rng = np.random.default_rng(seed)
+    a, b = rng.normal(size=(2, 3)), np.tile(rng.normal(size=3), (2, 1))
+    with pytest.warns(UserWarning, match="leave the rotation open"):
+        found = R.align_vectors(a, b, weights)[0]
+    exact, given = a[np.argmax(weights)], b[0]
+    angle = np.arctan2(np.linalg.norm(np.cross(given, exact)), given @ exact)
+    assert abs(found.magnitude() - angle) < 1e-14
+
+
 @pytest.mark.parametrize("b", [[[1, 2, 3], [2, 4, 6]], [[1, 2, 3], [0, 0, 0]], np.zeros((2, 3))])
 def test_vectors_that_leave_the_rotation_open_are_told(b):
     turn = R.random(rng=5)
