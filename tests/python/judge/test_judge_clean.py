@@ -105,3 +105,18 @@ def test_constant_rates_have_the_digits_of_their_file():
     w, q = ph.FreeMotion((1, 1, 1), (0.3, 0.7, -1.1)).at(T)
     w = w + 1e-10
     assert ph.judge(T, q.round(9), w.round(9) + 4e-10, inertia=(1, 1, 1), tolerance=1e-10).fine
+
+
+def test_a_gain_of_a_few_nats_is_no_fault():
+    rng = np.random.default_rng(3)
+    q = (ph.Rotation.from_quat(Q) * ph.Rotation.from_rotvec(1e-3 * rng.normal(size=(200, 3)))).as_quat()
+    w = W + 1e-3 * rng.normal(size=W.shape) + [4.6e-4, 0, 0]
+    found = ph.judge(T, q, w, inertia=I)
+    assert found.fine and 1 < dict(found.ranking)["bias"] < 15
+
+
+def test_a_channel_that_is_nearly_exact_counts_by_its_own_noise():
+    rng = np.random.default_rng(4)
+    q = (ph.Rotation.from_quat(Q) * ph.Rotation.from_rotvec(1e-2 * rng.normal(size=(200, 3)))).as_quat()
+    found = ph.judge(T, q, W + 1e-8 * rng.normal(size=W.shape) + [3e-7, 0, 0], inertia=I, tolerance=1e-10).findings[0]
+    assert found.cause == "bias" and abs(found.size[0] - 3e-7) < 3e-8
