@@ -58,7 +58,7 @@ py::dict sensitivities_of(const py::list& scenes, const py::object& moments, con
                           const std::vector<std::string>& groups, double accuracy, bool certify,
                           const std::string& side, long max_steps, int threads, bool refuse) {
   const SensitivityOptions options{
-      .accuracy = accuracy, .certify = certify, .side = to_turn_side(side), .max_steps = max_steps};
+      .accuracy = accuracy, .certify = certify, .side = to_rotation_side(side), .max_steps = max_steps};
   const ManyScenes many(scenes, moments, omega, attitude);
   const MakeScene make_scene = many.maker();
   std::vector<ManySensitivity> all;
