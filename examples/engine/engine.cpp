@@ -25,8 +25,8 @@ Vec operator*(float s, Vec a) { return {s * a.x, s * a.y, s * a.z}; }
 float dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 Vec cross(Vec a, Vec b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
 Quat inverse(Quat q) { return {-q.x, -q.y, -q.z, q.w}; }
-Vec to_body(Quat q, Vec v) { return polhode::step::turn_back(q, v); }
-Vec to_space(Quat q, Vec v) { return polhode::step::turn_back(inverse(q), v); }
+Vec to_body(Quat q, Vec v) { return polhode::step::rotate_back(q, v); }
+Vec to_space(Quat q, Vec v) { return polhode::step::rotate_back(inverse(q), v); }
 
 constexpr float h = 1.0f / 60.0f, gravity = 9.81f, room = 5.0f;   // the room: |x|, |y|, |z| < 5 m
 

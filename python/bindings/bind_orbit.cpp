@@ -1,3 +1,5 @@
+#include <pybind11/typing.h>
+
 #include "bind.hpp"
 #include "convert.hpp"
 #include "gil.hpp"
@@ -28,7 +30,7 @@ void fill(const Orbit& orbit, const Array& times, Array& r, Array& v) {
   }
 }
 
-py::tuple states_at(const Orbit& orbit, py::handle t) {
+py::typing::Tuple<Array, Array> states_at(const Orbit& orbit, py::handle t) {
   const Array times = to_array(t, "t");
   std::vector<py::ssize_t> shape(times.shape(), times.shape() + times.ndim());
   shape.push_back(3);

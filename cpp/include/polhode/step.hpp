@@ -122,8 +122,7 @@ template <class T> POLHODE_STEP void kick(Vec<T>& L, const Vec<T>& torque, As<T>
 }
 
 /// R(p)^T v. What the length of p lacks to 1 is taken out, and small terms are summed first: |v| hardly drifts.
-template <class T>
-POLHODE_STEP Vec<T> rotate_back(const Quat<T>& p, const Vec<T>& v) {
+template <class T> POLHODE_STEP Vec<T> rotate_back(const Quat<T>& p, const Vec<T>& v) {
   using O = Ops<T>;
   const T ww = O::madd(-p.w, p.w, O::set(1)), two = O::set(2);
   const T k = O::madd(-p.x, p.x, O::madd(-p.y, p.y, O::madd(-p.z, p.z, ww)));
@@ -134,8 +133,7 @@ POLHODE_STEP Vec<T> rotate_back(const Quat<T>& p, const Vec<T>& v) {
 }
 
 /// q p, of length 1. p is scaled first and the large terms are added last, so each component is rounded once.
-template <class T>
-POLHODE_STEP Quat<T> compose(const Quat<T>& q, const Quat<T>& p) {
+template <class T> POLHODE_STEP Quat<T> compose(const Quat<T>& q, const Quat<T>& p) {
   using O = Ops<T>;
   const T s = O::madd(q.x, q.x, O::madd(q.y, q.y, O::madd(q.z, q.z, q.w * q.w))), k = O::set(0.5) - O::set(0.5) * s;
   const T x = O::madd(k, p.x, p.x), y = O::madd(k, p.y, p.y), z = O::madd(k, p.z, p.z), w = O::madd(k, p.w, p.w);
@@ -178,8 +176,7 @@ template <class T> POLHODE_STEP void circle(T angle, T& c, T& s) {
 /// Whittaker & Watson, sec. 23.7. Both are series at a quarter of the step, doubled by their addition theorems. T and
 /// |L| are kept for any value of the series, because f_i^2 - f_j^2 = K_i - K_j is all that the polhode uses. The
 /// rotation has the form of Moser and Veselov's discrete body (Hairer & Vilmart 2006, J. Phys. A 39, 13225).
-template <int N = 0, class T>
-POLHODE_STEP Quat<T> free_rotation(const Inertia<T>& body, const Vec<T>& y) {
+template <int N = 0, class T> POLHODE_STEP Quat<T> free_rotation(const Inertia<T>& body, const Vec<T>& y) {
   using O = Ops<T>;
   constexpr int terms = N != 0 ? N : O::single ? 3 : 5;
   static_assert(terms >= 2 && terms <= 5, "series of 2 to 5 terms");

@@ -81,7 +81,7 @@ class ConicPath final : public Orbit::Path {
       throw InvalidInput("anomaly", "between the asymptotes of the hyperbola", to_text(given.anomaly));
     angles_ = {given.inclination, given.node, given.periapsis};
     if (given.j2 != 0.0) set_drift(given);
-    turn(0.0);
+    rotate_plane(0.0);
     start(chi);
   }
 
@@ -101,7 +101,7 @@ class ConicPath final : public Orbit::Path {
       return {x * x_ + y * side, vx * x_ + vy * side};
     }
     ConicPath now(*this);
-    now.turn(elapsed.hi);
+    now.rotate_plane(elapsed.hi);
     const Vector3d side = now.z_.cross(now.x_), r = x * now.x_ + y * side;
     const Vector3d spin = drift_.node * Vector3d(0.0, 0.0, 1.0) + drift_.periapsis * now.z_;
     return {r, vx * now.x_ + vy * side + spin.cross(r)};
@@ -142,7 +142,7 @@ class ConicPath final : public Orbit::Path {
   }
 
   /// The axes of the plane after a time: rotations about z, x and z.
-  void turn(double elapsed) {
+  void rotate_plane(double elapsed) {
     const auto [sn, cn] = math::sincos(angles_.node + drift_.node * elapsed);
     const auto [si, ci] = math::sincos(angles_.inclination);
     const auto [sw, cw] = math::sincos(angles_.periapsis + drift_.periapsis * elapsed);

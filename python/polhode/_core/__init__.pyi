@@ -1370,7 +1370,7 @@ class _Orbit:
         """
         Return what pickle makes the object from.
         """
-    def at(self, arg0: typing.Any) -> tuple[typing.Any, ...]:
+    def at(self, arg0: typing.Any) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         ...
     @property
     def e(self) -> float:

@@ -13,6 +13,7 @@ from .._core import symbols as _core
 from .symbols import Symbol, joined, numbers_of
 
 _LOOKS, _ACCURACY = 8, 1e-12
+_NEAR = 8   # calls some units of rounding beside a look
 
 
 class Values:
@@ -112,21 +113,31 @@ def compare(function: Callable[..., Any], parameters: dict[str, Any], states: di
     arrays = {name: np.array(value) if isinstance(value, tuple) else value for name, value in parameters.items()}
     p = Values("p", arrays)
     rng = np.random.default_rng(2026)
+
+    def both(t: Any, omega: Any, attitude: Any, at: dict[str, Any], s: Values) -> tuple[Any, Any]:
+        """The numbers of the function, and those of its formula."""
+        with np.errstate(all="ignore"):
+            own = np.array(signature.call(t, omega.copy(), attitude.copy(), p, s), omega.dtype).astype(float)
+        if is_potential:
+            return own, np.array([formula.energy(t, attitude)])
+        rates = formula.rates(t, omega, attitude, at)
+        value = formula.value(t, omega, attitude, states=at if states else None)
+        return own, np.concatenate([value, *(np.ravel(rates[name]) for name in sorted(states))])
+
     for _ in range(_LOOKS):
         t, omega, attitude = float(rng.uniform(0, 10)), rng.normal(size=3), rng.normal(size=4)
         attitude /= np.linalg.norm(attitude)
         at = {name: np.asarray(start) + rng.normal(size=np.shape(start)) for name, start in states.items()}
         s = Values("s", {name: float(value) if value.ndim == 0 else value.copy() for name, value in at.items()})
-        with np.errstate(all="ignore"):
-            own = np.array(signature.call(t, omega.copy(), attitude.copy(), p, s), float)
-        if is_potential:
-            traced = np.array([formula.energy(t, attitude)])
-        else:
-            rates = formula.rates(t, omega, attitude, at)
-            traced = np.concatenate([formula.value(t, omega, attitude, states=at if states else None),
-                                     *(np.ravel(rates[name]) for name in sorted(states))])
+        own, traced = both(t, omega, attitude, at, s)
         size = max(float(np.abs(own).max()), float(np.abs(traced).max()))
         wrong = ~((np.abs(own - traced) <= _ACCURACY * size) | (np.isnan(own) & np.isnan(traced)) | (own == traced))
+        if wrong.any():   # or what remains is the rounding of terms that cancel
+            near = [both(t * by[0], omega * by[1:4], attitude * by[4:], at, s)
+                    for by in 1 + np.finfo(float).eps * rng.integers(-4, 5, (_NEAR, 8))]
+            wide = np.longdouble
+            near.append(both(t, omega.astype(wide), attitude.astype(wide), at, s))
+            wrong &= ~(np.abs(own - traced) <= 64 * np.ptp([(own, traced), *near], axis=0).max())
         if wrong.any():
             i = int(np.argmax(wrong))
             raise InvalidInput(

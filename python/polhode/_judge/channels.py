@@ -41,7 +41,7 @@ def to_data(samples: Samples) -> Data:
 
 
 def follows(samples: Samples, law: Law) -> bool:
-    """Return True if the law takes samples to the next ones as they are declared, at whatever distance."""
+    """Return True if the law takes samples to the next ones as they are declared, at any distance."""
     assert samples.omega is not None and samples.attitude is not None
     omega = to_body(samples.attitude, samples.omega) if samples.space else samples.omega
     first = np.unique(np.linspace(0, len(samples.t) - 2, MOST_FOLLOWED).astype(int))

@@ -27,9 +27,9 @@ def write_repaired(path: pathlib.Path, samples: Repaired) -> None:
     parts = {name: getattr(samples, name) for name in COLUMNS}
     arrays = {"t": samples.t, **{name: array for name, array in parts.items() if array is not None}}
     if path.suffix == ".npz":
-        packed = io.BytesIO()
-        np.savez_compressed(packed, **arrays)
-        _files.create(path, packed.getvalue())
+        held = io.BytesIO()
+        np.savez_compressed(held, **arrays)
+        _files.create(path, held.getvalue())
         return
     header = ",".join(["t", *(column for name in arrays if name in COLUMNS for column in COLUMNS[name])])
     rows = (",".join(map(repr, row)) for row in np.column_stack(list(arrays.values())).tolist())

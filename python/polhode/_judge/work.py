@@ -85,7 +85,7 @@ class Work:
         return samples.take(slice(first, last))
 
     def _conventions(self) -> float:
-        """Undo the conventions, and return what remains; far samples are asked for the law as declared before."""
+        """Undo the conventions, and return what remains. Far samples are compared with the law as declared first."""
         far = self.known and conventions.reach(self.samples) > conventions.FAR
         if far and follows(self.samples, self._law_of(self.body)):
             return 0.0

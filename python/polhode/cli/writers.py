@@ -28,7 +28,7 @@ class Rule:
 
 @dataclasses.dataclass(frozen=True)
 class Entry:
-    """A finding. `about` tells it from others of its code and its part; `excuse` is why it does not count."""
+    """A finding. `about` distinguishes it from others of its code and its part; `excuse` is why it does not count."""
 
     code: str
     level: str
@@ -40,7 +40,7 @@ class Entry:
 
 @dataclasses.dataclass(frozen=True)
 class Part:
-    """What was judged by itself, such as a link of a robot; a part that was not judged has the reason as `skipped`."""
+    """What was judged alone, such as a link of a robot; a part that was not judged has the reason as `skipped`."""
 
     name: str
     file: str

@@ -273,3 +273,14 @@ def test_helpers_take_numbers():
     np.testing.assert_allclose(ph.formula.to_space(Q, v), R @ v, rtol=1e-14)
     assert ph.formula.norm((3, 4)) == 5 and ph.formula.norm((0, 0), smooth=2) == 2
     assert ph.formula.where(True, 1, 2) == 1 and ph.formula.clip(5, 0, 2) == 2
+
+
+@pytest.mark.parametrize("gap", [0, 1e-16, 1e-12, 1e-6, 1e-3])
+def test_terms_that_cancel_are_compared_with_their_rounding(gap):
+    """w x (J w) of a body next to a sphere: what remains is rounding, which the function and its formula share not."""
+    rng = np.random.default_rng(4)
+    for k in range(60):
+        axes = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        J = axes @ np.diag(1 + gap * rng.normal(size=3)) @ axes.T
+        J = np.diag(np.diag(J)) if k % 2 else (J + J.T) / 2
+        Formula(lambda t, w, q, p, J=J: 2 * np.cross(w, J @ w))

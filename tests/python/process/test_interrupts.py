@@ -70,6 +70,10 @@ def closed_form_bodies():
     return lambda: ph.solve_many(scene, omega=omega, accuracy=1e-6, threads=1)
 
 
+def far_orbit():
+    return ph.Orbit(1.0, (1, 0, 0), (0, 1.2, 0)).at(np.linspace(0, 1e4, 20_000_000))
+
+
 def free_bodies(threads):
     omega, times = RNG.normal(size=(400, 1, 3)), RNG.uniform(0, 1000, 40000)
     out = np.empty((400, 40000, 3))
@@ -227,6 +231,7 @@ LONG = {
     "solve_many, lanes": lambda: many(rtol=1e-10),
     "solve_many, lanes, one thread": lambda: many(1, rtol=1e-10),
     "solve_many, closed forms": closed_form_bodies,
+    "Orbit.at": lambda: far_orbit,
     "solve_many, derivatives": lambda: many(sensitivity="omega", accuracy=1e-3),
     "solve_many, derivatives, one thread": lambda: many(1, sensitivity="omega", accuracy=1e-3),
     "free_motion, bodies": lambda: free_bodies(None),
@@ -295,6 +300,7 @@ PROMISED = {"ensemble": 1.5}
 OUT = {
     "sets up one body, in microseconds": (
         "DampedFree", "FreeMotion", "Gyrostat", "HeavyTop", "Pendulum", "DampedFree.slowed_time", "Event", "Rotor",
+        "Orbit", "Orbit.from_elements", "Orbit.table",
         "InertiaTensor", "MassProperties", "PrincipalAxes", "shapes.", "torques.", "formula.", "generalised_forces",
         "inertia.check", "inertia.diagnose", "inertia.equivalent_box", "inertia.equivalent_ellipsoid",
         "inertia.Diagnosis", "inertia.Finding", "inertia.Flaw"),
