@@ -161,7 +161,7 @@ def _excused(found: Judgement, excuses: dict[str, str]) -> list[tuple[Finding, s
 
 
 def _require_new(fix: pathlib.Path, given: str) -> None:
-    """Refuse the name of the input, whatever stands there already, and a folder where nothing can be written."""
+    """Refuse the name of the input, a name that is taken, and a folder where nothing can be written."""
     motion_files.check(fix, (".csv", ".npz"), "fix")
     _require_other(fix, given, "--fix")
     _files.require_free(fix)
