@@ -62,6 +62,9 @@ TEST_CASE("the law of each torque is its function") {
   CHECK_THROWS(make_law(torques::Custom(rate, nullptr, {}), I));
 }
 
+static_assert(torques::HasKernel<torques::Gravity> && torques::HasKernel<torques::GravityGradient>);
+static_assert(!torques::HasKernel<torques::Custom> && !torques::HasKernel<torques::Formula>);
+
 TEST_CASE("what a torque with kernels says it is, is what its law is") {
   const Matrix3d I = make_inertia();
   int kernels = 0;

@@ -81,12 +81,15 @@ class Law {
   /// The same as a formula of the inertia too, whose nine numbers are the last parameter if the law has them.
   formula::Program open_law() const { return trace(nullptr); }
   /// The torque as a Formula, made at the first call. A torque with kernels needs none.
-  const Formula& formula() const requires(!HasKernel<Own>) {
+  /// Templates, because Clang 14 asks a constraint of a plain member while Own is incomplete, and keeps the answer.
+  template <class Complete = Own>
+  const Formula& formula() const requires(!HasKernel<Complete>) {
     std::call_once(made_->once, [this] { made_->formula.emplace(Formula::of_law(open_law())); });
     return *made_->formula;
   }
 
-  TorqueTraits traits() const requires(!HasKernel<Own>) {
+  template <class Complete = Own>
+  TorqueTraits traits() const requires(!HasKernel<Complete>) {
     TorqueTraits found = formula().traits();
     found.has_potential = has_potential;
     return found;
