@@ -101,8 +101,7 @@ def save(path: pathlib.Path, about: dict[str, Any], arrays: dict[str, Any]) -> N
         return
     zarr = need("zarr")
     target = pathlib.Path(os.path.realpath(path))   # links are followed, as for files
-    if os.path.lexists(target):
-        _folders.require_saved(target)   # before the work
+    _folders.require_replaceable(target)   # before the work
     draft = target.with_name(_files.draft_of(target.name))
     try:
         group = zarr.open_group(str(draft), mode="w")

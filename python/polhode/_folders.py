@@ -122,6 +122,29 @@ def require_saved(folder: pathlib.Path) -> dict[str, list[str]]:
     return arrays
 
 
+def require_replaceable(target: pathlib.Path) -> None:
+    """Refuse what is there and is no saved motion. Others may replace it meanwhile: then the new one is checked."""
+    for _ in range(TRIES):
+        before = _identity(target)
+        if before is None:
+            return
+        try:
+            require_saved(target)
+            return
+        except (InvalidInput, OSError):
+            if _identity(target) == before:
+                raise
+    raise InvalidInput(f"path: {target} is being written by too many")
+
+
+def _identity(path: pathlib.Path) -> tuple[int, int] | None:
+    try:
+        found = os.lstat(path)
+    except FileNotFoundError:
+        return None
+    return found.st_dev, found.st_ino
+
+
 def attributes(folder: pathlib.Path) -> dict[str, Any]:
     """Return the attributes of a group; empty without metadata."""
     if not os.path.lexists(folder / "zarr.json"):
@@ -140,8 +163,8 @@ def put(draft: pathlib.Path, target: pathlib.Path) -> None:
     """
     for _ in range(TRIES):   # threads that save to one name take turns
         old = None
+        require_replaceable(target)
         if os.path.lexists(target):
-            require_saved(target)
             old = target.with_name(f"{target.name}.{uuid.uuid4().hex}.old")
             try:
                 os.rename(target, old)
