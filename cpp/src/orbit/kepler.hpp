@@ -11,7 +11,6 @@ namespace polhode::kepler {
 /// A conic in its own plane: alpha = 1/a [1/m], the periapsis distance q [m] and e = 1 - q alpha.
 struct Conic {
   math::DD alpha, q, e;
-  double root_mu;   ///< sqrt(mu)
 };
 
 /// chi^k c_k for k = 0 to 3.

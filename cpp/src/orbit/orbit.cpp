@@ -54,7 +54,6 @@ class ConicPath final : public Orbit::Path {
     const DDVector h = cross(r, v);
     const DD p = dot(h, h) / DD(mu), sigma = dot(r, v) / root_mu;
     conic_.alpha = DD(2.0) / distance - dot(v, v) / DD(mu);
-    conic_.root_mu = root_mu.hi;
     // e towards the periapsis, times mu
     const DDVector towards = subtract(scale(r, dot(v, v) - DD(mu) / distance), scale(v, dot(r, v)));
     conic_.e = math::sqrt(dot(towards, towards)) / DD(mu);
@@ -75,7 +74,6 @@ class ConicPath final : public Orbit::Path {
     conic_.q = std::isnan(given.semi_major_axis) ? DD(given.periapsis_distance)
                                                  : DD(given.semi_major_axis) * (DD(1.0) - e);
     conic_.alpha = (DD(1.0) - e) / conic_.q;
-    conic_.root_mu = math::sqrt(DD(mu_)).hi;
     const DD chi = kepler::find_chi(conic_, given.anomaly);
     if (std::isnan(chi.hi))
       throw InvalidInput("anomaly", "between the asymptotes of the hyperbola", to_text(given.anomaly));
@@ -153,7 +151,7 @@ class ConicPath final : public Orbit::Path {
   /// Vallado 2013, "Fundamentals of Astrodynamics and Applications", section 9.6.
   void set_drift(const OrbitElements& given) {
     const double e = given.e, alpha = conic_.alpha.hi, p = conic_.q.hi * (1 + e);
-    const double n = conic_.root_mu * alpha * std::sqrt(alpha), ratio = given.radius / p;
+    const double n = std::sqrt(mu_) * alpha * std::sqrt(alpha), ratio = given.radius / p;
     const double k = 1.5 * n * given.j2 * ratio * ratio, c = math::cos(given.inclination);
     const double sine2 = 1 - c * c;
     drift_ = {-k * c, k * (2 - 2.5 * sine2)};

@@ -57,7 +57,7 @@ PairCertificate::PairCertificate(CountedRuns& runs, double safety)
   perturbed_ = perturb(longer_ ? *longer_ : scene, perturbed_units);
 }
 
-Scene PairCertificate::add_looks(const Scene& scene) const {
+Scene PairCertificate::add_probes(const Scene& scene) const {
   SceneParts parts = scene.parts();
   const auto [least, most] = std::minmax_element(parts.times.begin(), parts.times.end());
   const std::vector<double> probes = spread_probes(std::min(*least, scene.t0()), std::max(*most, scene.t0()));
@@ -67,8 +67,8 @@ Scene PairCertificate::add_looks(const Scene& scene) const {
 }
 
 /// A torque that jumps may have ended the run. A coarse run passes most jumps.
-void PairCertificate::look_after_failure() {
-  const Scene scene = add_looks(runs_.decision().scene);
+void PairCertificate::probe_after_failure() {
+  const Scene scene = add_probes(runs_.decision().scene);
   const Motion motion = runs_.run(scene, comparison_options_, failed_look_rtol);
   must_probe_ = false;
   if (motion.status != Status::finished) return;
@@ -96,13 +96,13 @@ Attempt PairCertificate::run(double coarse, double fine) {
   Motion& motion = attempt.motion;
   motion.rtol_used = fine;
   const double formulas = std::isnan(motion.error) ? 0.0 : motion.error;   // of the pieces with closed forms
-  if (must_probe_ && motion.status == Status::failed) look_after_failure();
+  if (must_probe_ && motion.status == Status::failed) probe_after_failure();
   if (!attempt.finished() || motion.t.empty()) return attempt;
   // After a terminal event the remaining times have no samples: they are not compared.
   const bool whole = motion.t.size() == perturbed_->times().size();
   const Scene compared = whole ? *perturbed_ : with_times(*perturbed_, motion.t);
   const Motion other =
-      runs_.run(must_probe_ ? add_looks(compared) : compared, comparison_options_, coarse, true);
+      runs_.run(must_probe_ ? add_probes(compared) : compared, comparison_options_, coarse, true);
   if (other.status == Status::stopped) {
     motion.status = Status::stopped;
     motion.message = "stopped by the progress callback before the error was certified";

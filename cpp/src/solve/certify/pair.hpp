@@ -24,8 +24,8 @@ class PairCertificate {
 
  private:
   /// The scene of the comparison run, with the times of the probes behind its own.
-  Scene add_looks(const Scene& scene) const;
-  void look_after_failure();
+  Scene add_probes(const Scene& scene) const;
+  void probe_after_failure();
   double find_factor(const Motion& fine, const Motion& coarse) const;
 
   CountedRuns& runs_;
