@@ -43,7 +43,7 @@ int find_number(const Program& law, const ColumnCause& cause, const LastingTorqu
   return number;
 }
 
-/// J d' = dN - d x (J w + h) - w x J d - w x (dJ w) - w x dh - dJ w', turn' = d - w x turn, and of states
+/// J d' = dN - d x (J w + h) - w x J d - w x (dJ w) - w x dh - dJ w', theta' = d - w x theta, and of states
 /// dx' = d(rate), all in principal axes.
 class EquationsBuilder {
  public:
@@ -113,7 +113,7 @@ class EquationsBuilder {
     const int size = 6 + numbers_;
     for (int i = 0; i < size; ++i) {
       found.first_term.push_back(static_cast<int>(found.terms.size()));
-      if (i >= 3 && i < 6) {   // turn' = d - w x turn
+      if (i >= 3 && i < 6) {   // theta' = d - w x theta
         const int j = (i - 3 + 1) % 3, k = (i - 3 + 2) % 3;
         add_term(i - 3, Form(1.0), found.terms);
         add_term(3 + k, (-w_[place(j)]).form(), found.terms);

@@ -9,7 +9,7 @@
 namespace polhode {
 
 /// The columns of a body's variational equations in groups of eight, each with its series: d omega and the small
-/// rotation R -> R exp([turn]x), then the changes of further states. Vectors are in principal axes here, and in body
+/// rotation R -> R exp([theta]x), then the changes of further states. Vectors are in principal axes here, and in body
 /// axes outside.
 class ColumnLanes {
  public:

@@ -14,7 +14,7 @@ using VectorRows = double[ode::most_series_order + 2][4];
 /// w' of a column = (terms of `rates`) + `pull` times its small rotation, and the small rotation changes by -w x it.
 struct MatrixRow {
   double rates[6];   ///< p1 w3, p1 w2, p2 w1, p2 w3, p3 w2, p3 w1, where w1' = p1 (w2 d3 + w3 d2) + ... of a column d
-  double turn[6];    ///< w3, -w2, w1, -w3, w2, -w1
+  double theta[6];   ///< w3, -w2, w1, -w3, w2, -w1
   double pull[9];    ///< the derivative of torque / inertia by the small rotation, row by row
 };
 

@@ -59,7 +59,7 @@ class SampleTarget {
     std::copy_n(omega, 3, out_.omega.data() + 3 * sample);
     std::copy_n(attitude, 4, out_.attitude.data() + 4 * sample);
     std::copy_n(rows, 3 * columns_, out_.d_omega.data() + 3 * columns_ * sample);
-    std::copy_n(rows + 3 * columns_, 3 * columns_, out_.turn.data() + 3 * columns_ * sample);
+    std::copy_n(rows + 3 * columns_, 3 * columns_, out_.theta.data() + 3 * columns_ * sample);
     const std::size_t more = states_count_ * columns_;
     std::copy_n(rows + 6 * columns_, more, out_.d_states.data() + more * sample);
   }
@@ -105,9 +105,9 @@ Matrix3d ColumnRun::find_inertia_change(const SceneParameter& parameter) const {
     return axis * axis.transpose();
   }
   if (parameter.of == Of::axes) {   // E J E^T with E = 1 + [unit]x
-    Matrix3d turned;
-    for (int c = 0; c < 3; ++c) turned.col(c) = unit.cross(Vector3d(given.matrix().col(c)));
-    return turned + turned.transpose();
+    Matrix3d crossed;
+    for (int c = 0; c < 3; ++c) crossed.col(c) = unit.cross(Vector3d(given.matrix().col(c)));
+    return crossed + crossed.transpose();
   }
   if (parameter.of == Of::rotor && parameter.field == SceneParameter::inertia &&
       scene_.rotors()[parameter.index].free()) {
@@ -246,7 +246,7 @@ ColumnSamples ColumnRun::run(double rtol, long max_steps, std::size_t most) cons
   const std::size_t samples = scene_.times().size(), columns = parameters_.size();
   ColumnSamples out;
   out.omega.resize(3 * samples), out.attitude.resize(4 * samples);
-  out.d_omega.resize(3 * columns * samples), out.turn.resize(3 * columns * samples);
+  out.d_omega.resize(3 * columns * samples), out.theta.resize(3 * columns * samples);
   out.d_states.resize(states_ * columns * samples);
   SampleOrder order(scene_.times(), scene_.t0());
   for (auto* direction : {&order.forward, &order.backward}) {

@@ -14,7 +14,7 @@ namespace polhode {
 /// The motion of a scene and its columns at the scene's times, from one run.
 struct ColumnSamples {
   std::vector<double> omega, attitude;   ///< (n, 3) and (n, 4)
-  std::vector<double> d_omega, turn;     ///< (n, 3, columns) in body axes
+  std::vector<double> d_omega, theta;     ///< (n, 3, columns) in body axes
   std::vector<double> d_states;          ///< (n, states, columns)
   std::vector<std::size_t> samples;      ///< those that were computed
   long steps = 0;

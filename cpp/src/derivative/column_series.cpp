@@ -12,7 +12,7 @@ using math::DD;
 using Source = ForceSource;
 
 /// Row by row (v2, v3, v1), or (v3, v1, v2).
-void turn_rows(const VectorRows& v, int by, int order, VectorRows& out) {
+void permute_rows(const VectorRows& v, int by, int order, VectorRows& out) {
   for (int k = 0; k <= order; ++k) {
     for (int i = 0; i < 3; ++i) out[k][i] = v[k][(i + by) % 3];
     out[k][3] = 0.0;
@@ -68,7 +68,7 @@ void ColumnSeries::see_vectors(DD t, double unit, const double* y, int order) co
   for (int c = 0; c < 3; ++c)
     if (sees_space_[c]) std::copy_n(rotate(back, Vector3d(Vector3d::Unit(c))).data(), 3, seen[n++][0]);
   if (sees_orbit_) {
-    const std::array<Vector3d, 2> orbit = body_.see_orbit(t, y);
+    const std::array<Vector3d, 2> orbit = body_.compute_orbit_axes(t, y);
     for (const Vector3d& v : orbit) std::copy_n(v.data(), 3, seen[n++][0]);
   }
   if (n == 0) return;
@@ -89,25 +89,25 @@ void ColumnSeries::find_products(DD t, double unit, int order) const {
   source(Source::one)[0][0] = 1.0;
   if (sees_orbit_) {
     const VectorRows& u = radius_;
-    turn_rows(u, 1, order, first), turn_rows(u, 2, order, second);
+    permute_rows(u, 1, order, first), permute_rows(u, 2, order, second);
     kernels_.multiply(first, second, order, source(Source::radius_pairs));
     kernels_.multiply(u, u, order, source(Source::radius_squares));
-    if (terms_.uses(Source::turned_pairs) || terms_.uses(Source::timed_pairs)) {
-      turn_rows(tangent_, 1, order, third), turn_rows(tangent_, 2, order, fourth);
-      VectorRows& turned = source(Source::turned_pairs);
+    if (terms_.uses(Source::tangent_pairs) || terms_.uses(Source::timed_pairs)) {
+      permute_rows(tangent_, 1, order, third), permute_rows(tangent_, 2, order, fourth);
+      VectorRows& pairs = source(Source::tangent_pairs);
       VectorRows other;
-      kernels_.multiply(first, fourth, order, turned), kernels_.multiply(second, third, order, other);
+      kernels_.multiply(first, fourth, order, pairs), kernels_.multiply(second, third, order, other);
       VectorRows& timed = source(Source::timed_pairs);
       for (int k = 0; k <= order; ++k)
-        for (int i = 0; i < 3; ++i) turned[k][i] += other[k][i];
+        for (int i = 0; i < 3; ++i) pairs[k][i] += other[k][i];
       // In loops of their own: where row 0 is an exception within one, GCC 14 splits, vectorises and reads old rows.
-      for (int i = 0; i < 3; ++i) timed[0][i] = t.hi * turned[0][i];
+      for (int i = 0; i < 3; ++i) timed[0][i] = t.hi * pairs[0][i];
       for (int k = 1; k <= order; ++k)
-        for (int i = 0; i < 3; ++i) timed[k][i] = t.hi * turned[k][i] + unit * turned[k - 1][i];
+        for (int i = 0; i < 3; ++i) timed[k][i] = t.hi * pairs[k][i] + unit * pairs[k - 1][i];
     }
   }
   if (!terms_.uses(Source::derivatives) && !terms_.uses(Source::rate_pairs)) return;
-  turn_rows(w, 1, order, first), turn_rows(w, 2, order, second);
+  permute_rows(w, 1, order, first), permute_rows(w, 2, order, second);
   kernels_.multiply(first, second, order, source(Source::rate_pairs));
   kernels_.multiply(w, w, order, source(Source::rate_squares));
   VectorRows& derivatives = source(Source::derivatives);
@@ -115,9 +115,9 @@ void ColumnSeries::find_products(DD t, double unit, int order) const {
     for (int i = 0; i < 3; ++i) derivatives[k][i] = (k + 1) * w[k + 1][i] / unit;
 }
 
-/// The matrix of the equations. The small rotation turns a vector v that is fixed in space by v x turn. So the torque
-/// -m x g gives (m.g) turn - g (m.turn), a torque f that is constant in space gives f x turn, and a gradient with the
-/// torque c1 u2 u3 gives c1 ((u3^2 - u2^2) turn1 + u1 u2 turn2 - u1 u3 turn3), and so on.
+/// The matrix of the equations. The small rotation changes a vector v that is fixed in space by v x theta. So the torque
+/// -m x g gives (m.g) theta - g (m.theta), a torque f that is constant in space gives f x theta, and a gradient with the
+/// torque c1 u2 u3 gives c1 ((u3^2 - u2^2) theta1 + u1 u2 theta2 - u1 u3 theta3), and so on.
 void ColumnSeries::fill_matrix(int order) const {
   const double* p = terms_.product;
   const VectorRows& w = source(Source::rates);

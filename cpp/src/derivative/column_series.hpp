@@ -10,7 +10,7 @@ namespace polhode {
 
 /// A body's series as an ode::SeriesProblem, with the columns of its variational equations beside the state. They are
 /// expanded with each series of the state, and limit the step as the state does. A column has six numbers, d omega and
-/// the small rotation R -> R exp([turn]x), in body axes.
+/// the small rotation R -> R exp([theta]x), in body axes.
 class ColumnSeries {
  public:
   static constexpr int dimension = BodySeries::dimension;

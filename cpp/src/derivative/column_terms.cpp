@@ -65,7 +65,7 @@ class TermsBuilder {
     for (int i = 0; i < 3; ++i) {
       const double gap = J_[next_axis(next_axis(i))] - J_[next_axis(i)];
       if (field == 0) put(column, i, Source::radius_pairs, i, 6.0 * torque.mean_motion() * gap);
-      put(column, i, field == 0 ? Source::timed_pairs : Source::turned_pairs, i, torque.strength() * gap);
+      put(column, i, field == 0 ? Source::timed_pairs : Source::tangent_pairs, i, torque.strength() * gap);
     }
   }
   template <class Torque>

@@ -7,7 +7,7 @@
 
 namespace polhode {
 
-/// The axis after i, in turn.
+/// The axis after i, in cyclic order.
 constexpr int next_axis(int i) { return (i + 1) % 3; }
 
 /// What a column of the variational equations changes in a body while it moves; body axes.
@@ -28,16 +28,16 @@ enum class ForceSource {
   space_x, space_y, space_z,   ///< the axes of space, seen in the body
   radius_squares,     ///< of the radial direction u of an orbit
   radius_pairs,       ///< u2 u3, u3 u1, u1 u2
-  turned_pairs,       ///< with the tangent t: u2 t3 + u3 t2, u3 t1 + u1 t3, u1 t2 + u2 t1
+  tangent_pairs,      ///< with the tangent t: u2 t3 + u3 t2, u3 t1 + u1 t3, u1 t2 + u2 t1
   timed_pairs,        ///< the same times the time
   count
 };
 
 /// The constants of the variational equations of one body under lasting torques, in principal axes P:
 ///
-///   J d' = dN - d x (J w + h) - w x J d - w x (dJ w) - w x dh - dJ w',   turn' = d - w x turn
+///   J d' = dN - d x (J w + h) - w x J d - w x (dJ w) - w x dh - dJ w',   theta' = d - w x theta
 ///
-/// for the columns d = d omega and turn, the small rotation R -> R exp([turn]x).
+/// for the columns d = d omega and theta, the small rotation R -> R exp([theta]x).
 struct ColumnTerms {
   struct Force {
     int column, component;

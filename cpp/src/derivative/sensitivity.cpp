@@ -25,9 +25,9 @@ constexpr int most_runs = 5;
 constexpr std::size_t samples_compared = 64;   // samples of the first run
 
 /// The larger of |d omega| / scale and the angle of one column, whose components are `stride` apart.
-double measure(const double* d_omega, const double* turn, std::size_t stride, double scale) {
+double measure(const double* d_omega, const double* theta, std::size_t stride, double scale) {
   const double rate = math::hypot(d_omega[0], d_omega[stride], d_omega[2 * stride]) / scale;
-  return std::max(rate, math::hypot(turn[0], turn[stride], turn[2 * stride]));
+  return std::max(rate, math::hypot(theta[0], theta[stride], theta[2 * stride]));
 }
 
 double find_rate_scale(const Scene& scene, const std::vector<double>& omega) {
@@ -43,13 +43,13 @@ std::vector<double> compare(const ColumnSamples& a, const ColumnSamples& b, std:
   for (const std::size_t i : a.samples) {
     for (std::size_t c = 0; c < columns; ++c) {
       const std::size_t at = 3 * columns * i + c;
-      double d_omega[3], turn[3];
+      double d_omega[3], theta[3];
       for (std::size_t k = 0; k < 3; ++k) {
         d_omega[k] = a.d_omega[at + k * columns] - b.d_omega[at + k * columns];
-        turn[k] = a.turn[at + k * columns] - b.turn[at + k * columns];
+        theta[k] = a.theta[at + k * columns] - b.theta[at + k * columns];
       }
-      const double size = measure(&b.d_omega[at], &b.turn[at], columns, scale);
-      const double apart = measure(d_omega, turn, 1, scale);
+      const double size = measure(&b.d_omega[at], &b.theta[at], columns, scale);
+      const double apart = measure(d_omega, theta, 1, scale);
       if (!(apart <= size * error[c])) error[c] = apart / size;
     }
   }
@@ -70,14 +70,14 @@ std::vector<double> compare(const ColumnSamples& a, const ColumnSamples& b, std:
 }
 
 /// Small rotations in space axes from those in body axes.
-void turn_to_space(const std::vector<double>& attitude, std::size_t columns, std::vector<double>& turn) {
+void rotate_to_space(const std::vector<double>& attitude, std::size_t columns, std::vector<double>& theta) {
   for (std::size_t i = 0; 4 * i < attitude.size(); ++i) {
     const double* q = &attitude[4 * i];
     const Quat q_WB{q[0], q[1], q[2], q[3]};
     for (std::size_t c = 0; c < columns; ++c) {
-      double* first = &turn[3 * columns * i + c];
-      const Vector3d turned = rotate(q_WB, {first[0], first[columns], first[2 * columns]});
-      for (std::size_t k = 0; k < 3; ++k) first[k * columns] = turned[static_cast<Eigen::Index>(k)];
+      double* first = &theta[3 * columns * i + c];
+      const Vector3d rotated = rotate(q_WB, {first[0], first[columns], first[2 * columns]});
+      for (std::size_t k = 0; k < 3; ++k) first[k * columns] = rotated[static_cast<Eigen::Index>(k)];
     }
   }
 }
@@ -176,9 +176,9 @@ MotionSensitivity integrate_columns(const Scene& given, const std::vector<SceneP
   }
   for (double& error : found.error) error += rounding * turns;
   found.omega = std::move(last.omega), found.attitude = std::move(last.attitude);
-  found.d_omega = std::move(last.d_omega), found.d_attitude = std::move(last.turn);
+  found.d_omega = std::move(last.d_omega), found.d_attitude = std::move(last.theta);
   found.d_states = std::move(last.d_states);
-  if (options.side == RotationSide::space) turn_to_space(found.attitude, parameters.size(), found.d_attitude);
+  if (options.side == RotationSide::space) rotate_to_space(found.attitude, parameters.size(), found.d_attitude);
   return found;
 }
 

@@ -49,12 +49,12 @@ double half_log(double m) {
   return s * (low + (high + (c[8] + c[9] * z) * z4) * z4);
 }
 
-/// For 0 < x < infinity: a guess, and what the exponential of it lacks.
+/// For 0 < x < infinity: a guess, and what remains to the exponential.
 DD log_of(double x) {
   const Split split(x);
   const double guess = 2.0 * half_log(split.m);
-  const DD lack = DD(split.m - 1.0) + DD(split.m) * expm1_dd(DD(-guess));
-  const DD log_m = DD(guess) + (lack - scaled(lack * lack, 0.5));
+  const DD residual = DD(split.m - 1.0) + DD(split.m) * expm1_dd(DD(-guess));
+  const DD log_m = DD(guess) + (residual - scaled(residual * residual, 0.5));
   return split.n == 0 ? log_m : ln2() * DD(static_cast<double>(split.n)) + log_m;
 }
 

@@ -37,7 +37,7 @@ std::shared_ptr<const InertiaTensor> make_carrier(const InertiaTensor& all, cons
   return std::make_shared<const InertiaTensor>(InertiaTensor::from_trusted(J, false));
 }
 
-/// The gradient of gravity sees the mass of free rotors, which their carrier lacks.
+/// The gradient of gravity acts on the mass of free rotors, which is not in their carrier.
 void require_no_gradient(const std::vector<AnyTorque>& torques) {
   for (const AnyTorque& torque : torques) {
     if (!std::holds_alternative<torques::GravityGradient>(drop_windows(torque))) continue;

@@ -16,7 +16,7 @@ from .._core import InertiaTensor, InvalidInput
 from . import methods
 from .law import Law, extrapolated
 from .shooting import Track
-from .states import Array, State, angle_vector, conjugate, difference, multiply, to_body, turn
+from .states import Array, State, angle_vector, conjugate, difference, exponential, multiply, to_body
 
 SPACINGS = (2, 3, 4, 5, 8, 10, 20)
 
@@ -117,10 +117,10 @@ def _inertia(matrix: Array) -> tuple[Array, Array]:
 
 
 def changed_tensor(matrix: Array, logs: Array, tilt: Array) -> Array:
-    """Return a tensor with moments times e^logs (ascending) and principal axes turned by a vector in the body."""
+    """Return a tensor with moments times e^logs (ascending) and principal axes rotated by a vector in the body."""
     moments, axes = _inertia(matrix)
     if np.any(tilt):
-        axes = to_matrix(turn(tilt)) @ axes
+        axes = to_matrix(exponential(tilt)) @ axes
     changed = (axes * (moments * np.exp(logs))) @ axes.T
     return 0.5 * (changed + changed.T)
 
@@ -161,8 +161,8 @@ def _attitude_method(place: float) -> Push:
         steps = int(count[0])
         inside = [scope.law.flow(scope.t, scope.dt * (k / steps), scope.starts)[0] for k in range(1, steps)]
         rates = [scope.starts[0], *inside, scope.end[0]]
-        turned = methods.turned(place, rates, scope.dt, scope.starts[1])
-        return difference(scope.end, (scope.end[0], turned))
+        rotated = methods.rotate_by_rates(place, rates, scope.dt, scope.starts[1])
+        return difference(scope.end, (scope.end[0], rotated))
 
     return push
 
@@ -170,8 +170,8 @@ def _attitude_method(place: float) -> Push:
 def _scaled_rates(scope: Scope, c: Array) -> Array:
     """The attitude follows the rates times a factor; by the mean of the exact turn."""
     own = angle_vector(multiply(conjugate(scope.starts[1]), scope.end[1]))
-    turned = multiply(scope.starts[1], turn(own * (1 + c[0])))
-    return difference(scope.end, (scope.end[0], turned))
+    rotated = multiply(scope.starts[1], exponential(own * (1 + c[0])))
+    return difference(scope.end, (scope.end[0], rotated))
 
 
 def _lag(scope: Scope, c: Array) -> Array:
@@ -191,7 +191,7 @@ def _shown_rates(make: Callable[[Array, State, Array], Array]) -> Push:
     return show
 
 
-def _turning_attitude(scope: Scope, c: Array) -> Array:
+def _drifting_attitude(scope: Scope, c: Array) -> Array:
     t, (_, attitude) = scope.samples()
     out = np.zeros((len(t), 6))
     out[:, 3:] = to_body(attitude, (t - scope.middle)[:, None] * c)
@@ -213,7 +213,7 @@ def _interpolated(spacing: int) -> Push:
         span = t[np.where(inside, last, 0)] - t[np.where(inside, first, 0)]
         part = np.where(inside, t[track.index] - t[np.where(inside, first, 0)], 0.0) / np.where(inside, span, 1.0)
         between = angle_vector(multiply(conjugate(a), b).reshape(-1, 4)).reshape(*part.shape, 3)
-        made = multiply(a, turn((part[..., None] * between).reshape(-1, 3)).reshape(*part.shape, 4))
+        made = multiply(a, exponential((part[..., None] * between).reshape(-1, 3)).reshape(*part.shape, 4))
         apart = angle_vector(multiply(conjugate(track.attitude), made).reshape(-1, 4)).reshape(*part.shape, 3)
         out[..., 3:] = np.where(inside[..., None], c[0] * apart, 0.0)
         return out
@@ -282,13 +282,13 @@ def catalogue(track: Track, known: bool = True) -> Iterator[Cause]:
     yield Cause("clock", "", 1, 1e-5, lambda s, c: difference(s.end, s.law.flow(s.t, s.dt * (1 + c[0]), s.starts)))
     if both:
         yield Cause("lag", "", 1, 1e-4 * float(np.median(np.diff(data.t))), show=_lag)
-        yield Cause("turning frame", "of the attitude", 3, 1e-4 / span, show=_turning_attitude)
+        yield Cause("turning frame", "of the attitude", 3, 1e-4 / span, show=_drifting_attitude)
         yield Cause(
             "misaligned",
             "",
             3,
             1e-5,
-            show=_shown_rates(lambda t, s, c: to_body(np.tile(turn(c), (len(t), 1)), s[0]) - s[0]),
+            show=_shown_rates(lambda t, s, c: to_body(np.tile(exponential(c), (len(t), 1)), s[0]) - s[0]),
         )
         yield Cause(
             "turning frame",

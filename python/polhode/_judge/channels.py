@@ -9,13 +9,13 @@ import numpy as np
 from .. import measured
 from .._core import InertiaTensor
 from .._sensitivity.fit import fit as fit_body
-from .conventions import turned_by
+from .conventions import rates_between
 from .findings import Finding
 from .law import Law
 from .laws import Variant, choose
 from .read import Samples
 from .shooting import Data, Track
-from .states import Array, conjugate, difference, multiply, rms, to_body, turn
+from .states import Array, conjugate, difference, exponential, multiply, rms, to_body
 
 MOST_FITTED, MOST_FOLLOWED = 300, 100
 NEAR = 0.05  # of the rates, and rad
@@ -26,12 +26,12 @@ def to_data(samples: Samples) -> Data:
     t = samples.t
     if samples.omega is None:
         assert samples.attitude is not None
-        mean = turned_by(samples.attitude[:-1], samples.attitude[1:], np.diff(t), False)
+        mean = rates_between(samples.attitude[:-1], samples.attitude[1:], np.diff(t), False)
         middle = 0.5 * (t[1:] + t[:-1])
         omega = np.stack([np.interp(t, middle, mean[:, k]) for k in range(3)], axis=1)
         return Data(t, omega, samples.attitude, has_omega=False)
     if samples.attitude is None:
-        steps = turn(0.5 * (samples.omega[1:] + samples.omega[:-1]) * np.diff(t)[:, None])
+        steps = exponential(0.5 * (samples.omega[1:] + samples.omega[:-1]) * np.diff(t)[:, None])
         attitude = np.empty((len(t), 4))
         attitude[0] = [0, 0, 0, 1]
         for k, step in enumerate(steps):

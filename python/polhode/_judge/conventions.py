@@ -45,7 +45,7 @@ class Reading:
     scale: float = 1.0
 
 
-def turned_by(first: Array, second: Array, dt: Array, space: bool) -> Array:
+def rates_between(first: Array, second: Array, dt: Array, space: bool) -> Array:
     """Return the mean rates that take attitudes to others, in body axes or space axes."""
     step = multiply(second, conjugate(first)) if space else multiply(conjugate(first), second)
     rates: Array = angle_vector(step) / dt[:, None]
@@ -83,7 +83,7 @@ def readings(samples: Samples, attitude: Array, stride: int) -> list[Reading]:
         own = [np.roll(q, shifted, axis=1) for q in (begin, end)]
         own = [conjugate(q) if reverse else q for q in own]
         for space in (False, True):
-            rate = turned_by(own[0], own[1], t[2] - t[1], space)
+            rate = rates_between(own[0], own[1], t[2] - t[1], space)
             total, power = rate.T @ mean, float(np.sum(mean * mean))
             square = float(np.sum(rate * rate))
             if not square or not power:
@@ -118,8 +118,8 @@ def simplest(every: list[Reading], count: int) -> Reading:
 def best_reading(samples: Samples, attitude: Array) -> tuple[Reading | None, Reading | None, int]:
     """Return the best reading and the one that was declared, at the stride that shows it best."""
     found: tuple[Reading | None, Reading | None, int] = None, None, 1
-    turned = angle_vector(multiply(conjugate(attitude[:-1]), attitude[1:]))
-    step, stride = float(np.median(np.linalg.norm(turned, axis=1))), 1
+    angles = angle_vector(multiply(conjugate(attitude[:-1]), attitude[1:]))
+    step, stride = float(np.median(np.linalg.norm(angles, axis=1))), 1
     while (len(samples.t) - 1) // stride >= 6 and (stride == 1 or stride * step < LONG):
         every = readings(samples, attitude, stride)
         if every:

@@ -61,8 +61,8 @@ class Law:
             torque += self.extra(t, omega, attitude)
         slope = (self.gyro * cross(momentum, omega) + torque) @ np.linalg.inv(self.matrix)
         vector, scalar = attitude[:, :3], attitude[:, 3:]
-        turning = np.concatenate([scalar * omega + cross(vector, omega), -np.sum(vector * omega, 1, keepdims=True)], 1)
-        return slope, 0.5 * turning
+        rates = np.concatenate([scalar * omega + cross(vector, omega), -np.sum(vector * omega, 1, keepdims=True)], 1)
+        return slope, 0.5 * rates
 
     def flow(self, t: Array, dt: Array, state: State) -> State:
         """Return the states at `t` + `dt` of bodies that start at `t`, one for each row."""

@@ -66,10 +66,10 @@ def variants(law: Law) -> Iterator[Variant]:
                 dataclasses.replace(law, matrix=matrix),
             )
     for order in itertools.permutations(range(3)):
-        turned = law.matrix[np.ix_(order, order)]
+        rotated = law.matrix[np.ix_(order, order)]
         for signs in itertools.product((1.0, -1.0), repeat=2):
             flip = np.array([1.0, *signs])
-            matrix = turned * np.outer(flip, flip)
+            matrix = rotated * np.outer(flip, flip)
             if fresh(matrix):
                 shown = ", ".join("xyz"[k] for k in order)
                 yield Variant(

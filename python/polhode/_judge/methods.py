@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from .law import Law, cross, extrapolated
-from .states import Array, State, multiply, turn
+from .states import Array, State, exponential, multiply
 
 Step = Callable[[Law, Array, Array, Array], Array]
 
@@ -63,16 +63,16 @@ def _rk4(law: Law, t: Array, h: Array, y: Array) -> Array:
     return y + s * (a + 2 * b + 2 * c + d) / 6
 
 
-def _turned_euler(law: Law, t: Array, h: Array, y: Array) -> Array:
+def _rotated_euler(law: Law, t: Array, h: Array, y: Array) -> Array:
     """The rates by Euler's rule; the old rates turn the attitude."""
     slope = law.field(t, y[:, :3], y[:, 3:])[0]
-    return np.concatenate([y[:, :3] + h[:, None] * slope, _turn(h, y[:, :3], y)], axis=1)
+    return np.concatenate([y[:, :3] + h[:, None] * slope, _rotate(h, y[:, :3], y)], axis=1)
 
 
-def _turned_semi_implicit(law: Law, t: Array, h: Array, y: Array) -> Array:
+def _rotated_semi_implicit(law: Law, t: Array, h: Array, y: Array) -> Array:
     """The rates by Euler's rule; the new rates turn the attitude."""
     rates = y[:, :3] + h[:, None] * law.field(t, y[:, :3], y[:, 3:])[0]
-    return np.concatenate([rates, _turn(h, rates, y)], axis=1)
+    return np.concatenate([rates, _rotate(h, rates, y)], axis=1)
 
 
 def _one_newton(law: Law, t: Array, h: Array, y: Array) -> Array:
@@ -84,7 +84,7 @@ def _one_newton(law: Law, t: Array, h: Array, y: Array) -> Array:
     slope = law.field(t, omega, y[:, 3:])[0] @ law.matrix
     jacobian = law.matrix + h[:, None, None] * (_cross_matrix(omega) @ law.matrix - _cross_matrix(omega @ law.matrix))
     rates = omega + np.linalg.solve(jacobian, (h[:, None] * slope)[..., None])[..., 0]
-    return np.concatenate([rates, _turn(h, rates, y)], axis=1)
+    return np.concatenate([rates, _rotate(h, rates, y)], axis=1)
 
 
 def _same_momentum(law: Law, t: Array, h: Array, y: Array) -> Array:
@@ -93,10 +93,10 @@ def _same_momentum(law: Law, t: Array, h: Array, y: Array) -> Array:
     end = (y[:, :3] + h[:, None] * law.field(t, y[:, :3], y[:, 3:])[0]) @ law.matrix
     lengths = [np.linalg.norm(m, axis=1, keepdims=True) for m in (momentum, end)]
     rates = end * (lengths[0] / np.where(lengths[1] > 0, lengths[1], 1.0)) @ np.linalg.inv(law.matrix)
-    return np.concatenate([rates, _turn(h, rates, y)], axis=1)
+    return np.concatenate([rates, _rotate(h, rates, y)], axis=1)
 
 
-def _turned_midpoint(law: Law, t: Array, h: Array, y: Array) -> Array:
+def _rotated_midpoint(law: Law, t: Array, h: Array, y: Array) -> Array:
     """The implicit midpoint rule in the momentum, with Cayley's rotation: a free body keeps its momentum in space."""
     inverse = np.linalg.inv(law.matrix)
     start = 0.5 * h[:, None] * (y[:, :3] @ law.matrix)
@@ -110,7 +110,7 @@ def _turned_midpoint(law: Law, t: Array, h: Array, y: Array) -> Array:
     return np.concatenate([rates, multiply(y[:, 3:], np.concatenate([x, np.ones((len(x), 1))], axis=1))], axis=1)
 
 
-def _turned_rk4(law: Law, t: Array, h: Array, y: Array) -> Array:
+def _rotated_rk4(law: Law, t: Array, h: Array, y: Array) -> Array:
     """Kutta's rule of order 4 on the group of rotations.
 
     H. Munthe-Kaas, BIT 38 (1998) 92.
@@ -119,20 +119,20 @@ def _turned_rk4(law: Law, t: Array, h: Array, y: Array) -> Array:
 
     def stage(at: Array, omega: Array, angle: Array) -> tuple[Array, Array]:
         """The slopes of the rates and of the rotation vector."""
-        slope = law.field(at, omega, multiply(y[:, 3:], turn(angle)))[0]
-        turned = cross(angle, omega)
-        return slope, omega + 0.5 * turned + cross(angle, turned) / 12
+        slope = law.field(at, omega, multiply(y[:, 3:], exponential(angle)))[0]
+        change = cross(angle, omega)
+        return slope, omega + 0.5 * change + cross(angle, change) / 12
 
     a1, k1 = stage(t, w1, np.zeros_like(w1))
     a2, k2 = stage(t + h / 2, w1 + 0.5 * s * a1, 0.5 * s * k1)
     a3, k3 = stage(t + h / 2, w1 + 0.5 * s * a2, 0.5 * s * k2)
     a4, k4 = stage(t + h, w1 + s * a3, s * k3)
     rates = w1 + s * (a1 + 2 * a2 + 2 * a3 + a4) / 6
-    return np.concatenate([rates, _turn(h, (k1 + 2 * k2 + 2 * k3 + k4) / 6, y)], axis=1)
+    return np.concatenate([rates, _rotate(h, (k1 + 2 * k2 + 2 * k3 + k4) / 6, y)], axis=1)
 
 
-def _turn(h: Array, rates: Array, y: Array) -> Array:
-    return multiply(y[:, 3:], turn(h[:, None] * rates))
+def _rotate(h: Array, rates: Array, y: Array) -> Array:
+    return multiply(y[:, 3:], exponential(h[:, None] * rates))
 
 
 def _cross_matrix(v: Array) -> Array:
@@ -151,12 +151,12 @@ STEPS: dict[str, tuple[Step | None, int]] = {
     "RK3": (_rk3, 3),
     "RK4": (_rk4, 4),
     "AB2": (None, 2),
-    "Euler, turned": (_turned_euler, 1),
-    "semi-implicit Euler, turned": (_turned_semi_implicit, 1),
+    "Euler, turned": (_rotated_euler, 1),
+    "semi-implicit Euler, turned": (_rotated_semi_implicit, 1),
     "implicit Euler, one Newton step": (_one_newton, 1),
     "Euler, momentum restored": (_same_momentum, 1),
-    "midpoint of the momentum": (_turned_midpoint, 2),
-    "RK4, turned": (_turned_rk4, 4),
+    "midpoint of the momentum": (_rotated_midpoint, 2),
+    "RK4, turned": (_rotated_rk4, 4),
 }
 ATTITUDES = {"old rate": (0.0, 1), "new rate": (1.0, 1), "mean rate": (0.5, 2)}
 
@@ -182,12 +182,12 @@ def _unit(y: Array) -> Array:
     return y
 
 
-def turned(place: float, rates: list[Array], dt: Array, attitude: Array) -> Array:
-    """Return attitudes that were turned by held rates: the old (place 0), the new (1), or their mean (1/2).
+def rotate_by_rates(place: float, rates: list[Array], dt: Array, attitude: Array) -> Array:
+    """Return attitudes that were rotated by held rates: the old (place 0), the new (1), or their mean (1/2).
 
     `rates` are the exact ones at the ends of equal steps, one more than there are steps.
     """
     h = (dt / (len(rates) - 1))[:, None]
     for old, new in zip(rates[:-1], rates[1:], strict=True):
-        attitude = multiply(attitude, turn(h * ((1 - place) * old + place * new)))
+        attitude = multiply(attitude, exponential(h * ((1 - place) * old + place * new)))
     return attitude

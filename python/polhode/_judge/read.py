@@ -216,17 +216,17 @@ def _norms(samples: Samples, quats: Array, findings: list[Finding], digit: float
         )
     samples.norm_off = off
     unit = quats / size[:, None]
-    turns = np.sum(unit[1:] * unit[:-1], axis=1) < 0
-    if turns.any():
+    flips = np.sum(unit[1:] * unit[:-1], axis=1) < 0
+    if flips.any():
         findings.append(
             Finding(
                 "sign flips",
-                f"quaternions change sign at {int(turns.sum())} samples, which changes no rotation",
-                size=int(turns.sum()),
-                where=tuple(int(k) + 1 for k in np.flatnonzero(turns)[:100]),
+                f"quaternions change sign at {int(flips.sum())} samples, which changes no rotation",
+                size=int(flips.sum()),
+                where=tuple(int(k) + 1 for k in np.flatnonzero(flips)[:100]),
             )
         )
-        unit = unit * np.concatenate([[1.0], np.cumprod(np.where(turns, -1.0, 1.0))])[:, None]
+        unit = unit * np.concatenate([[1.0], np.cumprod(np.where(flips, -1.0, 1.0))])[:, None]
     samples.attitude = unit
     return None
 

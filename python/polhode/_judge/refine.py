@@ -62,9 +62,9 @@ def _run(
         found = rate(rows, floor, count, sigma, extra=1 if held else 0)
         change = (carried @ found.start[:, None, :, None] + both[..., :-1] @ found.c[:, None] + own)[..., 0]
         c = c + found.c
-        turned = np.linalg.norm(change[..., 3:], axis=-1, keepdims=True)
+        angle = np.linalg.norm(change[..., 3:], axis=-1, keepdims=True)
         now.omega, now.attitude = moved(
-            (now.omega, now.attitude), change * np.minimum(1, 1 / np.maximum(1e-300, turned))
+            (now.omega, now.attitude), change * np.minimum(1, 1 / np.maximum(1e-300, angle))
         )
         size = max(rms(change[..., :3]) / now.data.scale, rms(change[..., 3:]))
         if not np.isfinite(size) or size > 10:

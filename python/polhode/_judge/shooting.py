@@ -201,9 +201,9 @@ def fit(data: Data, law: Law, length: int, rounds: int = 6) -> Track:
         change = (track.carried @ start[:, None, :, None] + own)[..., 0]
         if not np.all(np.isfinite(change)):
             break
-        turned = np.linalg.norm(change[..., 3:], axis=-1, keepdims=True)
+        angle = np.linalg.norm(change[..., 3:], axis=-1, keepdims=True)
         track.omega, track.attitude = moved(
-            (track.omega, track.attitude), change * np.minimum(1.0, 1.0 / np.maximum(1e-300, turned))
+            (track.omega, track.attitude), change * np.minimum(1.0, 1.0 / np.maximum(1e-300, angle))
         )
         size = max(rms(change[..., :3]) / data.scale, rms(change[..., 3:]))
         if size < 1e-13 or (size < 1e-9 and size > 0.3 * last):

@@ -28,7 +28,7 @@ def conjugate(attitude: Array) -> Array:
     return reverse
 
 
-def turn(vector: Array) -> Array:
+def exponential(vector: Array) -> Array:
     """Return the quaternions of rotation vectors [rad]."""
     return _kernels.from_rotvec(np.ascontiguousarray(vector), False)
 
@@ -51,7 +51,7 @@ def difference(state: State, other: State) -> Array:
 
 def moved(state: State, by: Array) -> State:
     """Return states moved by six numbers each: the reverse of `difference`."""
-    return state[0] + by[..., :3], multiply(state[1], turn(by[..., 3:]))
+    return state[0] + by[..., :3], multiply(state[1], exponential(by[..., 3:]))
 
 
 def rms(array: Array) -> float:

@@ -29,7 +29,7 @@ def run(files: list[str], options: Options) -> int:
     else:
         reports = check(list(files), path=options.path, package=packages, ignore=excuses, xacro=options.xacro)
     if not reports:
-        raise InvalidInput(f"{files[0]}: must hold a robot description: URDF, SDF, MJCF or xacro")
+        raise InvalidInput(f"{files[0]}: must hold a robot description: {robots.formats.NAMES} or xacro")
     alone = len(files) == 1 and not pathlib.Path(files[0]).is_dir()
     if all(report.error for report in reports):
         if alone:

@@ -216,18 +216,18 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   /// @param between  gets the sizes in the middle of the step added, or null
   void propagate(const P& problem, int most_terms, double s, double* error, double* between) {
     const int W = this->width(), terms = trace_.all_terms ? this->order_ : std::min(this->order_, most_terms);
-    alignas(64) double twin[most_numbers] = {}, propagated[most_numbers];
-    for (int i = 0; i < W; ++i) twin[i] = this->y_old_[i] + error[i];
-    problem.compute_series(this->time_old_, this->unit_old_, twin, twin, terms, twin_rows_);
-    for (int k = W; k < W * (terms + 1); ++k) twin_rows_[k] -= this->rows_[k];
+    alignas(64) double perturbed[most_numbers] = {}, propagated[most_numbers];
+    for (int i = 0; i < W; ++i) perturbed[i] = this->y_old_[i] + error[i];
+    problem.compute_series(this->time_old_, this->unit_old_, perturbed, perturbed, terms, perturbed_rows_);
+    for (int k = W; k < W * (terms + 1); ++k) perturbed_rows_[k] -= this->rows_[k];
     if (between != nullptr) {
       const double half = 0.5 * s;
       double sizes[4];
-      evaluate_series(twin_rows_, terms, W, Base::zero, error, &half, 1, propagated);
+      evaluate_series(perturbed_rows_, terms, W, Base::zero, error, &half, 1, propagated);
       this->problem_.measure_error(this->arrived_, propagated, sizes);
       for (int k = 0; k < 3; ++k) between[k] += sizes[k + 1];
     }
-    evaluate_series(twin_rows_, terms, W, Base::zero, error, &s, 1, propagated);
+    evaluate_series(perturbed_rows_, terms, W, Base::zero, error, &s, 1, propagated);
     std::copy_n(propagated, W, error);
   }
 
@@ -251,13 +251,13 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   /// Applies the correction after a step to the erroneous solution as well.
   void restore(const P& problem, double* error) {
     const int W = this->width();
-    double twin[most_numbers], low[most_numbers];
+    double perturbed[most_numbers], low[most_numbers];
     for (int i = 0; i < W; ++i) {
       const math::DD sum = math::two_sum(this->y_[i], this->carry_[i] + error[i]);
-      twin[i] = sum.hi, low[i] = sum.lo;
+      perturbed[i] = sum.hi, low[i] = sum.lo;
     }
-    problem.correct(this->time_, this->counts_.steps - 1, twin, low);
-    for (int i = 0; i < W; ++i) error[i] = (twin[i] - this->y_[i]) + (low[i] - this->carry_[i]);
+    problem.correct(this->time_, this->counts_.steps - 1, perturbed, low);
+    for (int i = 0; i < W; ++i) error[i] = (perturbed[i] - this->y_[i]) + (low[i] - this->carry_[i]);
   }
 
   /// @param growth  what to add to the spread, relative to y, in its own direction
@@ -305,9 +305,9 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     int i = 0;
     for (const auto& [problem, error] : {std::pair<const P*, const double*>{&lost_, loss_}, {&perturbed_, spread_},
                                          {&sampled_, sample_}}) {
-      alignas(64) double twin[most_numbers] = {};
-      for (int k = 0; k < this->width(); ++k) twin[k] = y[k] + error[k];
-      parts[i] = error == sample_ && !separate_ ? 0.0 : problem->compute_guard(crossing.guard, t, twin) - crossing.value;
+      alignas(64) double perturbed[most_numbers] = {};
+      for (int k = 0; k < this->width(); ++k) perturbed[k] = y[k] + error[k];
+      parts[i] = error == sample_ && !separate_ ? 0.0 : problem->compute_guard(crossing.guard, t, perturbed) - crossing.value;
       sum += std::abs(parts[i++]);
     }
     return sum / trace_.scale;
@@ -394,7 +394,7 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   double now_[3] = {}, old_[3] = {};
   math::Coin coin_;
   alignas(64) double loss_[most_numbers], spread_[most_numbers], sample_[most_numbers];
-  alignas(64) double twin_rows_[most_numbers * (most_series_order + 1)] = {};
+  alignas(64) double perturbed_rows_[most_numbers * (most_series_order + 1)] = {};
 };
 
 }  // namespace polhode::ode

@@ -223,9 +223,9 @@ class FormulaSteps {
       a[0] = madd(qy, r2, a[0]), a[1] = madd(qz, r0, a[1]), a[2] = madd(qx, r1, a[2]), a[3] = madd(qy, r1, a[3]);
     });
     const Wide half(0.5);
-    const Wide turn[4] = {a[0] - o[0], a[1] - o[1], a[2] - o[2], -(a[3] + o[3])};
+    const Wide rate[4] = {a[0] - o[0], a[1] - o[1], a[2] - o[2], -(a[3] + o[3])};
     for (int i = 0; i < 4; ++i) {
-      const Wide row = over(n, half * turn[i]);
+      const Wide row = over(n, half * rate[i]);
       put(code_.q[i], n + 1, row), pass_.store(b_.c[4 + i][n + 1], row);
     }
     Wide tau[3] = {tau_B[0], tau_B[1], tau_B[2]};

@@ -66,10 +66,10 @@ POLHODE_INLINE void balance_rates(const TaylorBlock& b, Pass pass, Wide (&y)[8],
   const Wide uu = y[0] * y[0], vv = y[1] * y[1], ww = y[2] * y[2], uv = y[0] * y[1], sum = uu + vv;
   const Wide split = select(sum > zero, (uu - vv) / sum, zero);
   const Wide scaling = select(abs(uv) > Wide(1e-250), Wide(-0.5) * (u * v - kept[0]).hi / uv, zero);
-  const Wide lack = (WideDD(balance) * (u * u + v * v) + w * w - kept[1]).hi + Wide(2.0) * balance * sum * scaling;
+  const Wide residual = (WideDD(balance) * (u * u + v * v) + w * w - kept[1]).hi + Wide(2.0) * balance * sum * scaling;
   const Wide slope = Wide(2.0) * (balance * (uu - vv) * split + ww);
   // Where the energy is extreme for this u v, its slope vanishes and it cannot be corrected.
-  const Wide step = select(slope > Wide(1e-3) * (balance * sum + ww), -lack / slope, zero), shift = step * split;
+  const Wide step = select(slope > Wide(1e-3) * (balance * sum + ww), -residual / slope, zero), shift = step * split;
   const Wide change[3] = {y[0] * (scaling + shift), y[1] * (scaling - shift), y[2] * step};
   for (int i = 0; i < 3; ++i) {
     const WideDD corrected = math::two_sum(y[i], carry[i] + select(abs(scaling) < Wide(0.1), change[i], zero));
@@ -81,9 +81,9 @@ POLHODE_INLINE void balance_rates(const TaylorBlock& b, Pass pass, Wide (&y)[8],
 POLHODE_INLINE void balance_attitude(Wide (&y)[8], Wide (&carry)[8]) {
   Wide norm(0.0), cross(0.0);
   for (int i = 4; i < 8; ++i) norm = madd(y[i], y[i], norm), cross = madd(y[i], carry[i], cross);
-  const Wide lack = Wide(0.5) * (Wide(1.0) - norm) - cross;
+  const Wide residual = Wide(0.5) * (Wide(1.0) - norm) - cross;
   for (int i = 4; i < 8; ++i) {
-    const WideDD sum = math::two_sum(y[i], madd(lack, y[i], carry[i]));
+    const WideDD sum = math::two_sum(y[i], madd(residual, y[i], carry[i]));
     y[i] = sum.hi, carry[i] = sum.lo;
   }
 }

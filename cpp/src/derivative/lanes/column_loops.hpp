@@ -74,16 +74,16 @@ constexpr int columns_at_once = 4;
 /// The sums of one row in parts, so that no sum waits long for the last one.
 template <bool pulled>
 struct ColumnSums {
-  Columns rates[3], pull[3], turn[3];
+  Columns rates[3], pull[3], theta[3];
 
   /// Adds a row of the matrix times a row of the columns.
   POLHODE_INLINE void add(const MatrixRow& m, const Columns (&x)[6]) {
     rates[0] = madd(all_columns(m.rates[0]), x[1], rates[0]), rates[1] = madd(all_columns(m.rates[2]), x[2], rates[1]);
-    rates[2] = madd(all_columns(m.rates[4]), x[0], rates[2]), turn[0] = madd(all_columns(m.turn[0]), x[4], turn[0]);
-    turn[1] = madd(all_columns(m.turn[2]), x[5], turn[1]), turn[2] = madd(all_columns(m.turn[4]), x[3], turn[2]);
+    rates[2] = madd(all_columns(m.rates[4]), x[0], rates[2]), theta[0] = madd(all_columns(m.theta[0]), x[4], theta[0]);
+    theta[1] = madd(all_columns(m.theta[2]), x[5], theta[1]), theta[2] = madd(all_columns(m.theta[4]), x[3], theta[2]);
     rates[0] = madd(all_columns(m.rates[1]), x[2], rates[0]), rates[1] = madd(all_columns(m.rates[3]), x[0], rates[1]);
-    rates[2] = madd(all_columns(m.rates[5]), x[1], rates[2]), turn[0] = madd(all_columns(m.turn[1]), x[5], turn[0]);
-    turn[1] = madd(all_columns(m.turn[3]), x[3], turn[1]), turn[2] = madd(all_columns(m.turn[5]), x[4], turn[2]);
+    rates[2] = madd(all_columns(m.rates[5]), x[1], rates[2]), theta[0] = madd(all_columns(m.theta[1]), x[5], theta[0]);
+    theta[1] = madd(all_columns(m.theta[3]), x[3], theta[1]), theta[2] = madd(all_columns(m.theta[5]), x[4], theta[2]);
     if constexpr (pulled) {
       for (int c = 0; c < 3; ++c)
         for (int i = 0; i < 3; ++i) pull[i] = madd(all_columns(m.pull[3 * i + c]), x[3 + c], pull[i]);
@@ -129,7 +129,7 @@ class ColumnExpansion {
 
   /// Begins with what forces row n.
   POLHODE_INLINE void start(int n, ColumnSums<pulled>& sums) const {
-    for (int i = 0; i < 3; ++i) sums.rates[i] = sums.pull[i] = sums.turn[i] = all_columns(0.0);
+    for (int i = 0; i < 3; ++i) sums.rates[i] = sums.pull[i] = sums.theta[i] = all_columns(0.0);
     for (const ColumnForce* force = forces_; force != forces_ + force_count_; ++force) {
       const Columns parts = load_columns(force->parts + lane_), value = all_columns(force->first[4 * n]);
       for (int i = 0; i < 3; ++i)
@@ -145,7 +145,7 @@ class ColumnExpansion {
       for (int c = 0; c < 3; ++c)
         d = madd(all_columns(linear_[3 * i + c]), load_columns(rows_[c].of[n] + lane_), d);
       store_columns(rows_[i].of[n + 1] + lane_, d * scale);
-      store_columns(rows_[3 + i].of[n + 1] + lane_, (load_columns(rows_[i].of[n] + lane_) + sums.turn[i]) * scale);
+      store_columns(rows_[3 + i].of[n + 1] + lane_, (load_columns(rows_[i].of[n] + lane_) + sums.theta[i]) * scale);
     }
   }
 

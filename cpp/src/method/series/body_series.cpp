@@ -57,7 +57,7 @@ BodySeries::BodySeries(const Scene& scene, bool attitude) {
   if (rotated_) {
     const Quat q_BP = quat_from_matrix(R_BP_, "inertia.axes");
     q_PB_ = conjugate(q_BP);
-    // A body at rest next to upright turns as far as its attitude is from upright.
+    // A body at rest next to upright rotates as far as its attitude is from upright.
     q_WP = multiply_exactly(q_WB, q_BP);
     omega_P = R_BP_.transpose() * scene.omega();
   }
@@ -75,7 +75,7 @@ BodySeries::BodySeries(const Scene& scene, bool attitude) {
   if (attitude_) {
     start_[4] = q_WP.x, start_[5] = q_WP.y, start_[6] = q_WP.z, start_[7] = q_WP.w;
   } else if (terms_.fixed_vectors == 1) {
-    // Not by q_WP, which is rounded: such a rounding of the vertical would turn an upright body.
+    // Not by q_WP, which is rounded: such a rounding of the vertical would rotate an upright body.
     const std::array<DD, 3> seen_B = see_from_body(q_WB, space_[0]);
     for (int i = 0; i < 3; ++i) {
       DD seen(0.0);
@@ -268,7 +268,7 @@ BodySeries BodySeries::perturbed(double part, int choice) const {
     for (const auto& column : terms.damping) largest = std::max(largest, std::abs(column[i]));
     for (auto& column : terms.damping) change(column[i], 8.0 * (rounded ? largest : column[i]));
   }
-  // So are those of a weight and its arm: next to upright such a rounding turns the body.
+  // So are those of a weight and its arm: next to upright such a rounding rotates the body.
   for (auto& vector : terms.pull) {
     double largest[3] = {};
     for (int i = 0; i < 3; ++i)
@@ -296,7 +296,7 @@ void BodySeries::measure_error(const double* y, const double* error, double* out
   out[3] = 0.0;
 }
 
-std::array<Vector3d, 2> BodySeries::see_orbit(DD t, const double* y) const {
+std::array<Vector3d, 2> BodySeries::compute_orbit_axes(DD t, const double* y) const {
   // n t in double-double, because the error of a rounded angle would grow with the number of orbits.
   const DD product = math::two_prod(orbit_rate_, t.hi), angle = math::two_sum(product.hi, orbit_phase_);
   const double low = angle.lo + product.lo + orbit_rate_ * t.lo;
@@ -317,7 +317,7 @@ void BodySeries::compute_series(DD t, double unit, const double* y, const double
     }
   }
   if (terms_.gradient) {
-    const auto [radius, tangent] = see_orbit(t, y);
+    const auto [radius, tangent] = compute_orbit_axes(t, y);
     std::copy_n(radius.data(), 3, vectors + 4 * n);
     std::copy_n(tangent.data(), 3, vectors + 4 * (n + 1));
   }
@@ -345,17 +345,17 @@ void BodySeries::correct_rates(double* y, double* carry) const {
   const DD u(y[0], carry[0]), v(y[1], carry[1]), w(y[2], carry[2]);
   const double uu = y[0] * y[0], vv = y[1] * y[1], ww = y[2] * y[2], uv = y[0] * y[1], sum = uu + vv;
   const double split = sum > 0.0 ? (uu - vv) / sum : 0.0;
-  double turn = 0.0;   // relative change of u and v
+  double ratio = 0.0;   // relative change of u and v
   if (std::abs(uv) > 1e-250) {
-    turn = -0.5 * (u * v - kept_[0]).hi / uv;
-    if (!(std::abs(turn) < 0.1)) return;
+    ratio = -0.5 * (u * v - kept_[0]).hi / uv;
+    if (!(std::abs(ratio) < 0.1)) return;
   }
-  const double lack = (DD(balance_) * (u * u + v * v) + w * w - kept_[1]).hi + 2.0 * balance_ * sum * turn;
+  const double residual = (DD(balance_) * (u * u + v * v) + w * w - kept_[1]).hi + 2.0 * balance_ * sum * ratio;
   const double slope = 2.0 * (balance_ * (uu - vv) * split + ww);
   // No step where the energy is extreme for this u v, because the slope vanishes.
-  const double step = slope > 1e-3 * (balance_ * sum + ww) ? -lack / slope : 0.0;
+  const double step = slope > 1e-3 * (balance_ * sum + ww) ? -residual / slope : 0.0;
   const double apart = step * split;
-  const double change[3] = {y[0] * (turn + apart), y[1] * (turn - apart), y[2] * step};
+  const double change[3] = {y[0] * (ratio + apart), y[1] * (ratio - apart), y[2] * step};
   for (int i = 0; i < 3; ++i) {
     const DD restored = math::two_sum(y[i], carry[i] + change[i]);
     y[i] = restored.hi, carry[i] = restored.lo;
@@ -374,9 +374,9 @@ void BodySeries::keep_unit(double* y, double* carry) {
   // rotate with q, and a larger one would grow.
   double norm = 0.0, cross = 0.0;
   for (int i = 4; i < 8; ++i) norm += y[i] * y[i], cross += y[i] * carry[i];
-  const double lack = 0.5 * (1.0 - norm) - cross;
+  const double residual = 0.5 * (1.0 - norm) - cross;
   for (int i = 4; i < 8; ++i) {
-    const DD sum = math::two_sum(y[i], carry[i] + lack * y[i]);
+    const DD sum = math::two_sum(y[i], carry[i] + residual * y[i]);
     y[i] = sum.hi, carry[i] = sum.lo;
   }
 }

@@ -69,7 +69,7 @@ class BodySeries {
     omega_P[0] = w1, omega_P[1] = w2;
   }
   /// The radial direction of the orbit and its tangent in P, for a state with the quaternion.
-  std::array<Vector3d, 2> see_orbit(math::DD t, const double* y) const;
+  std::array<Vector3d, 2> compute_orbit_axes(math::DD t, const double* y) const;
   void compute_series(math::DD t, double unit, const double* y, const double* carry, int order, double* rows) const;
   void compute_sizes(const double* row, double* sizes) const {
     double w[3];

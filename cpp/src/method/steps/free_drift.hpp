@@ -116,8 +116,8 @@ class FreeDrift {
       add(change[4 + i], q[i], state[6 + i]);
       norm += q[i] * q[i], cross += q[i] * state[6 + i];
     }
-    const double lack = 0.5 * (1.0 - norm) - cross;   // restores |q| = 1
-    for (int i = 0; i < 4; ++i) add(state[6 + i] + lack * q[i], q[i], state[6 + i]);
+    const double residual = 0.5 * (1.0 - norm) - cross;   // restores |q| = 1
+    for (int i = 0; i < 4; ++i) add(state[6 + i] + residual * q[i], q[i], state[6 + i]);
   }
 
   Separatrix separatrix_;

@@ -53,11 +53,11 @@ Scene perturb_start(const Scene& piece, const ClosedForm& form, const double* er
 }
 
 /// The error of one row, in the layout of the trace.
-void subtract(const Rows& twin, const Rows& rows, std::size_t i, double* error) {
+void subtract(const Rows& perturbed, const Rows& rows, std::size_t i, double* error) {
   std::fill_n(error, 8, 0.0);
-  for (std::size_t k = 0; k < 3; ++k) error[k] = twin.omega[3 * i + k] - rows.omega[3 * i + k];
+  for (std::size_t k = 0; k < 3; ++k) error[k] = perturbed.omega[3 * i + k] - rows.omega[3 * i + k];
   if (rows.attitude.empty()) return;
-  const double *p = twin.attitude.data() + 4 * i, *q = rows.attitude.data() + 4 * i;
+  const double *p = perturbed.attitude.data() + 4 * i, *q = rows.attitude.data() + 4 * i;
   const double sign = std::copysign(1.0, p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3]);
   for (std::size_t k = 0; k < 4; ++k) error[4 + k] = sign * p[k] - q[k];
 }

@@ -152,7 +152,7 @@ class BodyEquations::Maker {
     for (std::size_t i = 0; i < rotating.size(); ++i)
       if (rotating[i]) add_rotor(body_.scene_.rotors()[i]);
     for (const AnyTorque& torque : torques) std::visit([this](const auto& acting) { add(acting); }, torque);
-    for (std::size_t i = 0; i < body_.fixed_.size(); ++i) add_turning(body_.fixed_index(i));
+    for (std::size_t i = 0; i < body_.fixed_.size(); ++i) add_rotation(body_.fixed_index(i));
     for (std::size_t i = 0; i < body_.orbits_.size(); ++i) add_orbit(i);
     if (body_.has_attitude_) add_attitude();
     return std::move(system_);
@@ -253,14 +253,14 @@ class BodyEquations::Maker {
   void add(const Torque&) requires(!torques::HasKernel<Torque>) {}
 
   /// v' = v x w of a vector fixed in space, as seen from the body
-  void add_turning(int first) {
+  void add_rotation(int first) {
     for_permutations([&](int i, int j, int k, double s) { system_.add_product(first + i, first + j, k, Interval(s)); });
   }
 
   void add_orbit(std::size_t orbit) {
     const int radial = body_.orbit_index(orbit), tangential = radial + 3;
     const Interval n = Interval(body_.orbits_[orbit].mean_motion) * per_rate_;
-    add_turning(radial), add_turning(tangential);
+    add_rotation(radial), add_rotation(tangential);
     for (int i = 0; i < 3; ++i) {
       system_.add_variable(radial + i, tangential + i, n);
       system_.add_variable(tangential + i, radial + i, -n);

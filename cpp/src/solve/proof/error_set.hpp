@@ -8,7 +8,7 @@ namespace polhode::proof {
 
 /// Where the exact state may lie around a computed one: all sums over j of B_j x_j with |x_ji| <= radius_ji.
 ///
-/// The matrices B_j follow the motion's derivative, so that the set turns, shears and stretches with the motion and is
+/// The matrices B_j follow the motion's derivative, so that the set rotates, shears and stretches with the motion and is
 /// not boxed in fixed axes at each step. The last B_j takes up what each step adds; where its inverse becomes large a
 /// new one begins. The smallest two are merged, in an orthogonal basis, where there are too many.
 /// Sums of parallelepipeds: Kuehn 1998, Computing 61, 47. Orthogonal bases: Lohner 1987, in: Computer Arithmetic,

@@ -41,11 +41,11 @@ class Builder {
     for (int i = 0; i < 3; ++i) variables.push_back({formula::Variable::Kind::state, formula::first_rate + i});
     for (const Expr& change : change_.components) program.outputs.push_back((change * units_.sign).form());
     if (has_attitude_) {
-      const Vec<Expr, 4> turn = formula::multiply_pure(q_, w_);
+      const Vec<Expr, 4> q_rate = formula::multiply_pure(q_, w_);
       for (int i = 0; i < 4; ++i) {
         variables.push_back({formula::Variable::Kind::state, formula::first_attitude + i});
         const double half = 0.5 * units_.sign * (units_.rate / units_.pace);
-        program.outputs.push_back((turn[to_index(i)] * half).form());
+        program.outputs.push_back((q_rate[to_index(i)] * half).form());
       }
     }
     program.graph = exact_.take();

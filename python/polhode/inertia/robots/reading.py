@@ -7,11 +7,9 @@ import os
 from ... import _files
 from ..._core import InvalidInput
 from ..._xml import parse, parse_bytes
-from .formats import FORMATS
+from .formats import FORMATS, ROOTS
 from .link import Robot
 from .paths import Search
-
-_readers = {root: format.read for format in FORMATS.values() for root in (*format.roots, *format.parts)}
 
 
 def read(path: str | os.PathLike[str], *, search: Search | None = None, data: bytes | None = None) -> Robot:
@@ -37,9 +35,10 @@ def read(path: str | os.PathLike[str], *, search: Search | None = None, data: by
     """
     file = _files.to_path(path, "path")
     root = parse(file) if data is None else parse_bytes(data, str(file))
-    if (reader := _readers.get(root.tag)) is None:
-        raise InvalidInput(f"{file}: must have the root <robot> (URDF), <mujoco> (MJCF) or <sdf>; got <{root.tag}>")
-    robot = reader(root, file, search or Search.of())
+    if (format := ROOTS.get(root.tag)) is None:
+        roots = " or ".join(f"<{format.roots[0]}> ({name})" for name, format in FORMATS.items())
+        raise InvalidInput(f"{file}: must have the root {roots}; got <{root.tag}>")
+    robot = format.read(root, file, search or Search.of())
     troubles = [link.trouble for link in robot.links if link.trouble is not None]
     if troubles and len(troubles) == len(robot.links):
         raise troubles[0]
