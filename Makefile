@@ -59,7 +59,7 @@ demo: build/.installed ## charts speed against accuracy on the scenes, in a minu
 test: install ## every test, C++ and Python, as a fresh clone is checked
 	@cmake --build $(BUILD) -j $(JOBS) --target polhode_tests polhode_headers_alone | sed -n '/warning:\|error:/p'
 	@$(BUILD)/tests/cpp/polhode_tests
-	@$(PYTHON) -m pytest
+	@$(PYTHON) -m pytest -n $(JOBS) --dist loadfile
 
 same-bits: install ## every answer has the stored bits, at every level of SIMD
 	@$(PYTHON) tests/support/same_bits.py

@@ -188,7 +188,8 @@ void BodySeries::add_torques(const Scene& scene) {
     ++terms_.fixed_vectors;
   }
   if (gradients_ > 0) {
-    if (terms_.fixed_vectors == 1) terms_.fixed_vectors = 2;   // with an orbit there are kernels for none or two
+    // With an orbit there are kernels for none or two.
+    if (few_kernels || terms_.fixed_vectors == 1) terms_.fixed_vectors = 2;
     terms_.gradient = true;
     terms_.orbit_rate = orbit_rate_;
     const double strength = 3.0 * gradients_ * orbit_rate_ * orbit_rate_;

@@ -5,6 +5,14 @@ namespace polhode {
 /// The variables of the rates: the rates about principal axes 1, 2, 3 themselves, or u, v and w2 (separatrix.hpp).
 enum class RateVariables { plain, separatrix };
 
+/// Whether one kernel serves all torques that need the attitude, with zeros for what a torque does not have. It has the
+/// same bits, is slower and smaller: the browser's core is compiled so.
+#ifdef POLHODE_FEW_KERNELS
+inline constexpr bool few_kernels = true;
+#else
+inline constexpr bool few_kernels = false;
+#endif
+
 /// The constants of the Taylor recurrences of Euler's equations with all polynomial torques. Lanes of `r` are the rate
 /// variables (r0, r1, r2, 0). Vectors are fixed in space, or rotate with the orbit, and have components in body axes.
 struct SeriesTerms {

@@ -292,9 +292,14 @@ template <bool separatrix>
 SeriesKernel choose(const SeriesTerms& c, bool attitude) {
   if (!attitude)
     return c.fixed_vectors == 1 ? &expand<separatrix, false, 1, false> : &expand<separatrix, false, 0, false>;
-  if (c.gradient) return c.fixed_vectors > 0 ? &expand<separatrix, true, 2, true> : &expand<separatrix, true, 0, true>;
-  if (c.fixed_vectors == 0) return &expand<separatrix, true, 0, false>;
-  return c.fixed_vectors == 1 ? &expand<separatrix, true, 1, false> : &expand<separatrix, true, 2, false>;
+  if constexpr (few_kernels) {
+    return &expand<separatrix, true, 2, true>;
+  } else {
+    if (c.gradient)
+      return c.fixed_vectors > 0 ? &expand<separatrix, true, 2, true> : &expand<separatrix, true, 0, true>;
+    if (c.fixed_vectors == 0) return &expand<separatrix, true, 0, false>;
+    return c.fixed_vectors == 1 ? &expand<separatrix, true, 1, false> : &expand<separatrix, true, 2, false>;
+  }
 }
 
 SeriesKernel choose(const SeriesTerms& c, bool attitude) {
