@@ -70,15 +70,17 @@ class Grid {
   std::vector<Cell> cells_;
 };
 
-/// The points as parts of the distance, from their lowest corner.
+/// The points as parts of the distance, from their lowest corner. None if that leaves the range of the cells' numbers.
 std::vector<Vector3d> scaled(const double* coordinates, const std::vector<std::uint32_t>& vertices, double distance) {
   std::vector<Vector3d> points;
   points.reserve(vertices.size());
   for (const std::uint32_t v : vertices) {
     points.emplace_back(Eigen::Map<const Vector3d>(coordinates + 3 * std::size_t{v}));
   }
-  Vector3d low = points[0];
-  for (const Vector3d& p : points) low = low.cwiseMin(p);
+  Vector3d low = points[0], high = low;
+  for (const Vector3d& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  // Beyond it cells have no number: the mesh is too large for float64, or the distance too small.
+  if (!((high - low).array() / distance < 0x1p62).all()) return {};
   for (Vector3d& p : points) p = (p - low) / distance;
   return points;
 }
@@ -110,6 +112,7 @@ bool is_closed(const std::vector<std::array<std::uint32_t, 3>>& faces, const std
 Weld weld_vertices(const double* coordinates, const std::vector<std::uint32_t>& vertices, double distance) {
   static const auto& steps = *new const std::vector<Cell>(near_cells());   // never destroyed, as threads may go on
   const std::vector<Vector3d> points = scaled(coordinates, vertices, distance);
+  if (points.empty()) return {vertices};
   const Grid grid(points, 0.999 / std::sqrt(3.0));
   Surfaces groups(points.size());  // of vertices: the root is the first
   for (std::uint32_t cell = 0; cell < grid.count(); ++cell) {

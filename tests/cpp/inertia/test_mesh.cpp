@@ -138,6 +138,17 @@ TEST_CASE("seams are welded, and holes described") {
   CHECK(report.errors.mass > 1.0 / 12);  // a twelfth of the surface is missing
 }
 
+TEST_CASE("vertices whose distance leaves float64 are not welded") {
+  // A pyramid without its base of five vertices. The last two stood in one cell, which had no number.
+  const double far = 1.7e308;
+  const std::vector<double> vertices = {-far, 0, 0,   0,   -far, 0,    0,       0,   -far, far,
+                                        far,  far, far, 0.9 * far, far, 0.5, 0.5, 0.5};
+  const std::vector<std::int32_t> faces = {0, 1, 5, 1, 2, 5, 2, 3, 5, 3, 4, 5, 4, 0, 5};
+  const MeshReport report = examine_mesh(Mesh(vertices.data(), 6, faces.data(), 5));
+  CHECK(report.welded == 0);
+  CHECK(report.open_edges == 5);
+}
+
 TEST_CASE("what checks find in a mesh") {
   Surface box = make_box({-1, -1, -1}, {1, 1, 1});
   CHECK(check_mesh(box.view()).components == 1);
