@@ -12,7 +12,7 @@ import warnings
 
 import atheris
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "python"))
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "python/files"))
 
 import test_fuzz
 import trimesh.exchange.load  # noqa: F401  loaded late otherwise, without its counters

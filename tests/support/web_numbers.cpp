@@ -1,7 +1,7 @@
 #include <charconv>
 #include <string>
 
-// numbers.cpp as a module of its own, for tests/python/test_web.py.
+// numbers.cpp as a module of its own, for tests/python/web/test_web.py.
 #define POLHODE_EXPORT(name) extern "C" __attribute__((export_name(#name)))
 
 namespace {

@@ -1,8 +1,12 @@
 """Random bytes and random doubles at every door: a result, or InvalidInput in one line; and one answer by every way."""
 
 import json
+import pathlib
+import runpy
 import struct
+import sys
 import time
+import types
 import warnings
 
 import numpy as np
@@ -302,3 +306,13 @@ def test_random_doubles(name):
 @pytest.mark.parametrize("name", CHECKS)
 def test_many_random_doubles(name):
     run_check(name, LONG)
+
+
+def test_the_target_of_make_fuzz_finds_its_seeds(monkeypatch):
+    pytest.importorskip("trimesh")
+    monkeypatch.setitem(sys.modules, "atheris", types.ModuleType("atheris"))
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    target = pathlib.Path(__file__).parents[2] / "fuzz/files.py"
+    kinds = runpy.run_path(str(target))["test_fuzz"].SEEDS
+    script = (target.parents[2] / ".ci/fuzz").read_text(encoding="utf-8")
+    assert set(kinds) == set(script.split("for file in ")[1].split(";")[0].split())
