@@ -38,6 +38,7 @@ struct TopSymmetry {
   double A, C;
 };
 
+constexpr double negligible = 0x1p-900;   // beside rates and attitudes near 1
 constexpr double equal_within = 32 * std::numeric_limits<double>::epsilon();
 
 TopSymmetry symmetry_of(const Vector3d& moments) {
@@ -164,21 +165,27 @@ void HeavyTop::set_up() {
   largest_time_ = std::min(std::ldexp(1e25, -e), std::numeric_limits<double>::max());
 
   // Centre of mass below: rotate the body axes by pi about x.
-  const Vector3d w = omega_.unaryExpr([&](double c) { return std::ldexp(c, -e); });
+  Vector3d w = omega_.unaryExpr([&](double c) { return std::ldexp(c, -e); });
+  Quat start_q = attitude_;
   const bool below = weight_arm_ < 0.0;
-  // A weight next to the smallest numbers would lose its digits, and no time lets it act: it is taken as none.
+  // A weight next to the smallest numbers would lose its digits, and no time lets it act: it is taken as none. What is
+  // as small beside 1 in the start is then none either: quotients of it leave the range of float64.
   const double weight = std::ldexp(std::abs(weight_arm_), -e_A - 2 * e);
+  if (weight < negligible) {
+    for (double* part : {&w[0], &w[1], &w[2], &start_q.x, &start_q.y, &start_q.z, &start_q.w})
+      if (std::abs(*part) < negligible) *part = 0.0;
+  }
   exact::HeavyTopStart s{.A = std::ldexp(body.A, -e_A), .C = std::ldexp(body.C, -e_A),
-                         .M = weight < 0x1p-960 ? 0.0 : weight,
+                         .M = weight < negligible ? 0.0 : weight,
                          .w1 = w[0], .w2 = w[1], .w3 = w[2],
-                         .x = attitude_.x, .y = attitude_.y, .z = attitude_.z, .w = attitude_.w};
+                         .x = start_q.x, .y = start_q.y, .z = start_q.z, .w = start_q.w};
   constants_.framed = below || axis_ != Vector3d::UnitZ();
   if (axis_ != Vector3d::UnitZ()) {
     DDQuat q = widen(to_working_axes(axis_));
     const DD norm = math::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
     q = {q.x / norm, q.y / norm, q.z / norm, q.w / norm};
     const DDQuat back{-q.x, -q.y, -q.z, q.w};
-    const DDQuat start = multiply(widen(attitude_), back);
+    const DDQuat start = multiply(widen(start_q), back);
     const DDQuat w_S = multiply(multiply(q, {w[0], w[1], w[2], 0.0}), back);
     s.w1 = w_S.x, s.w2 = w_S.y, s.w3 = w_S.z;
     s.x = start.x, s.y = start.y, s.z = start.z, s.w = start.w;

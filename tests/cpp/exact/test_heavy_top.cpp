@@ -324,3 +324,29 @@ TEST_CASE("what is no symmetric top, or beyond float64, is refused with its name
   CHECK(refusal([&] { HeavyTop(Vector3d(1, 1, 0), 1, {0.3, 0, 0}); }).empty());  // a point on a rod may swing
   CHECK(refusal([&] { HeavyTop(fine, 0, {0, 0, 0}).at(1e20); }).empty());        // at rest
 }
+
+TEST_CASE("heavy tops: no weight, and a start with numbers next to the smallest") {
+  struct Start {
+    Vector3d moments, omega;
+    Quat attitude;
+    double weight_arm;
+  };
+  const Start starts[] = {
+      {{1.03, 1.03, 1.1}, {4.9e-311, 0, 0.089}, {0, -0.6, 0, 0.8}, 0.0},
+      {{0.73, 1.03, 1.03}, {-5e-311, -1.1e-321, 0.91}, {1.5e-308, 0, 5.5e-281, 1}, 0.0},
+      {{1.78, 1.03, 1.03}, {0, 0, 0.055}, {0, 9.4e-321, -7.9e-308, 1}, -3.4e-321},
+      {{0.49, 1.03, 1.03}, {2.1e-306, 0, 6.6e-11}, {8.6e-321, 1.3e-311, -7e-309, 1}, 0.0},
+      {{0.45, 1.03, 1.03}, {7.8e-311, 0, 0.41}, {3.1e-306, -5.8e-301, -0.6, 0.8}, -1.6e-291},
+  };
+  for (const Start& start : starts) {
+    CAPTURE(start.omega.transpose());
+    const HeavyTop top(start.moments, start.weight_arm, start.omega, start.attitude);
+    for (const double t : {0.0, 1.0, 1e3}) {
+      const State state = top.at(t);
+      // The rate about the axis stays, and nothing else rotates the body.
+      CHECK((state.omega - start.omega).norm() <= 1e-15 * start.omega.norm());
+      const Quat& q = state.attitude;
+      CHECK(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w == doctest::Approx(1.0).epsilon(1e-15));
+    }
+  }
+}
