@@ -215,9 +215,39 @@ py::dict describe(const TorqueRecord& record) {
   return dict;
 }
 
+constexpr const char* as_formula_doc = R"doc(Return the same torque as a formula, which is never replaced.
+
+Parameters
+----------
+inertia : InertiaTensor or array_like, optional
+    Of the body, for a torque that depends on it [kg m^2].
+
+Returns
+-------
+Formula
+    With `recognise` False, and with the parameters of the torque by their names.
+
+Raises
+------
+InvalidInput
+    For a torque that depends on the inertia, without it.
+)doc";
+
 template <class List = AnyTorque, class Visitor>
 void for_each_torque(Visitor&& visitor) {
   [&]<class... T>(std::variant<T...>*) { (visitor.template operator()<T>(), ...); }(static_cast<List*>(nullptr));
+}
+
+/// as_formula(inertia=None) of the classes of torques, once Formula has its own.
+void bind_as_formula(const py::module_& torques) {
+  for_each_torque<LastingTorque>([&]<class T>() {
+    if constexpr (!std::is_same_v<T, torques::Custom>) {
+      auto type = py::reinterpret_borrow<py::class_<T>>(torques.attr(std::string(T::record().name).c_str()));
+      type.def("as_formula", [](const T& torque, const py::object& inertia) {
+        return as_formula(torque, to_used_inertia(torque, inertia));
+      }, py::arg("inertia") = py::none(), as_formula_doc);
+    }
+  });
 }
 
 }  // namespace
@@ -243,6 +273,7 @@ AnyTorque to_torque(py::handle value, const std::string& name) {
 void bind_torque(py::module_& m) {
   py::module_ torques = m.def_submodule("torques", "The classes of polhode.torques.");
   for_each_torque([&]<class T>() { bind_one<T>(torques); });
+  bind_as_formula(torques);
   bind_formula_symbols(m);
   m.def("torque_records", [] {
     py::list list;

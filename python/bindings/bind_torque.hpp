@@ -102,14 +102,16 @@ void bind_traits(py::class_<T>& type) {
   }, "dict: uses_time, uses_attitude, uses_rates, has_potential.");
 }
 
+/// The inertia, which may be left out for a torque that does not depend on it.
+inline Matrix3d to_used_inertia(const AnyTorque& torque, py::handle inertia) {
+  if (!inertia.is_none()) return to_inertia(inertia, "inertia").matrix();
+  if (uses_inertia(torque)) throw InvalidInput("inertia", "given", "nothing", "the torque depends on it");
+  return Matrix3d::Identity();
+}
+
 inline Array compute_value(const AnyTorque& torque, py::handle t, py::handle omega, py::handle attitude,
                            py::handle inertia, py::handle states) {
-  Matrix3d I_B = Matrix3d::Identity();
-  if (!inertia.is_none()) {
-    I_B = to_inertia(inertia, "inertia").matrix();
-  } else if (uses_inertia(torque)) {
-    throw InvalidInput("inertia", "given", "nothing", "the torque depends on it");
-  }
+  const Matrix3d I_B = to_used_inertia(torque, inertia);
   const Vector3d w = to_vector3(omega, "omega");
   const Quat unit = to_attitude(attitude, "attitude");
   const double q[4] = {unit.x, unit.y, unit.z, unit.w};

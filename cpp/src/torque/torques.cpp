@@ -183,6 +183,16 @@ formula::Program make_bound_law(const AnyTorque& torque, const Matrix3d& inertia
   return formula::bind_parameters(law, formula::list_values(law.parameters));
 }
 
+torques::Formula as_formula(const AnyTorque& torque, const Matrix3d& inertia_B) {
+  return visit_lasting([&]<class T>(const T& one) -> torques::Formula {
+    if constexpr (std::is_same_v<T, torques::Formula>) {
+      return one.as_given();
+    } else {
+      return torques::Formula(make_law(torque, inertia_B), false);
+    }
+  }, torque);
+}
+
 TorqueTraits traits(const AnyTorque& torque) {
   return std::visit([](const auto& any) { return any.traits(); }, torque);
 }

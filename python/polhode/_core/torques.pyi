@@ -45,6 +45,25 @@ class Constant:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
         ...
+    def as_formula(self, inertia: typing.Any = None) -> Formula:
+        """
+        Return the same torque as a formula, which is never replaced.
+
+        Parameters
+        ----------
+        inertia : InertiaTensor or array_like, optional
+            Of the body, for a torque that depends on it [kg m^2].
+
+        Returns
+        -------
+        Formula
+            With `recognise` False, and with the parameters of the torque by their names.
+
+        Raises
+        ------
+        InvalidInput
+            For a torque that depends on the inertia, without it.
+        """
     def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None, states: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
         """
         Return the torque at one state.
@@ -116,6 +135,25 @@ class Gravity:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
         ...
+    def as_formula(self, inertia: typing.Any = None) -> Formula:
+        """
+        Return the same torque as a formula, which is never replaced.
+
+        Parameters
+        ----------
+        inertia : InertiaTensor or array_like, optional
+            Of the body, for a torque that depends on it [kg m^2].
+
+        Returns
+        -------
+        Formula
+            With `recognise` False, and with the parameters of the torque by their names.
+
+        Raises
+        ------
+        InvalidInput
+            For a torque that depends on the inertia, without it.
+        """
     def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None, states: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
         """
         Return the torque at one state.
@@ -187,6 +225,25 @@ class GravityGradient:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
         ...
+    def as_formula(self, inertia: typing.Any = None) -> Formula:
+        """
+        Return the same torque as a formula, which is never replaced.
+
+        Parameters
+        ----------
+        inertia : InertiaTensor or array_like, optional
+            Of the body, for a torque that depends on it [kg m^2].
+
+        Returns
+        -------
+        Formula
+            With `recognise` False, and with the parameters of the torque by their names.
+
+        Raises
+        ------
+        InvalidInput
+            For a torque that depends on the inertia, without it.
+        """
     def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None, states: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
         """
         Return the torque at one state.
@@ -256,6 +313,25 @@ class Damping:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
         ...
+    def as_formula(self, inertia: typing.Any = None) -> Formula:
+        """
+        Return the same torque as a formula, which is never replaced.
+
+        Parameters
+        ----------
+        inertia : InertiaTensor or array_like, optional
+            Of the body, for a torque that depends on it [kg m^2].
+
+        Returns
+        -------
+        Formula
+            With `recognise` False, and with the parameters of the torque by their names.
+
+        Raises
+        ------
+        InvalidInput
+            For a torque that depends on the inertia, without it.
+        """
     def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None, states: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
         """
         Return the torque at one state.
@@ -322,6 +398,25 @@ class AngularDamping:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
         ...
+    def as_formula(self, inertia: typing.Any = None) -> Formula:
+        """
+        Return the same torque as a formula, which is never replaced.
+
+        Parameters
+        ----------
+        inertia : InertiaTensor or array_like, optional
+            Of the body, for a torque that depends on it [kg m^2].
+
+        Returns
+        -------
+        Formula
+            With `recognise` False, and with the parameters of the torque by their names.
+
+        Raises
+        ------
+        InvalidInput
+            For a torque that depends on the inertia, without it.
+        """
     def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None, states: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
         """
         Return the torque at one state.
@@ -409,6 +504,25 @@ class Formula:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
         ...
+    def as_formula(self, inertia: typing.Any = None) -> Formula:
+        """
+        Return the same torque as a formula, which is never replaced.
+
+        Parameters
+        ----------
+        inertia : InertiaTensor or array_like, optional
+            Of the body, for a torque that depends on it [kg m^2].
+
+        Returns
+        -------
+        Formula
+            With `recognise` False, and with the parameters of the torque by their names.
+
+        Raises
+        ------
+        InvalidInput
+            For a torque that depends on the inertia, without it.
+        """
     def energy(self, t: typing.Any, attitude: typing.Any) -> float:
         """
         Return the potential energy of a formula made from a potential; 0 without one.

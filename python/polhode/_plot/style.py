@@ -41,14 +41,14 @@ DARK = Palette("#e3e8ed", "#9aa7b4", "#2c343d", "#131416", "#5d6975", "#1d2329",
 _COLOURS = {
     "rk45": "#0072b2", "dop853": "#009e73", "taylor": "#cc79a7", "radau": "#e69f00", "symplectic": "#56b4e9",
     "midpoint": "#8c6bb1", "rk4": "#a6761d", "plan": "#f0c000", "FreeMotion": "#d55e00", "HeavyTop": "#d55e00",
-    "Gyrostat": "#d55e00",
+    "Gyrostat": "#d55e00", "formula": "#8a1c5b",
 }
 _PEERS = {   # by the first word: quieter than polhode's own, each program with a mark of its own
     "SciPy": ("#3f4a55", "s"), "heyoka": ("#6a3d9a", "^"), "Odeint": ("#5b7a3a", "v"), "numbalsoda": ("#2c7f86", "P"),
     "SUNDIALS": ("#8a6d3b", "X"), "MuJoCo": ("#8c3b3b", "h"), "Orekit": ("#1f3b73", "d"),
 }
 _SPARE = ["#1b7837", "#b3006b", "#00798c", "#7a5195", "#ef5675", "#5f7d00", "#bc5090", "#003f5c"]
-_MARKERS = {"method": "o", "cheap": ".", "exact": "D", "plan": "*"}
+_MARKERS = {"method": "o", "cheap": ".", "exact": "D", "plan": "*", "formula": "p"}
 _SIZES = {"exact": 7.0, "plan": 15.0}
 PALE = "#c3cad1"
 

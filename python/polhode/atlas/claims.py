@@ -29,6 +29,9 @@ CLAIMS: dict[str, dict[str, str]] = {
     "symplectic": {"racket": "holds", "step": "holds", "gimbal": "holds", "long": "degrades", "near": "holds",
                    "scales": "holds",
                    "norm": "holds", "spin-up": "holds", "sleeping": "holds"},
+    # The built-in torques as a user would write them.
+    "formula": {"gimbal": "holds", "damping": "degrades", "spin-up": "holds", "chaos": "holds", "scales": "holds",
+                "sleeping": "holds"},
     # The best cheap step of a free body.
     "dmv8": {"step": "holds", "gimbal": "holds", "long": "degrades", "near": "degrades", "scales": "holds",
              "norm": "holds"},

@@ -1,4 +1,4 @@
-"""The entrants: the choice of `solve`, the closed forms, every method, and Euler angles."""
+"""The entrants: the choice of `solve`, the closed forms, every method, torques as formulas, and Euler angles."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ PER_TURN = 40       # steps a turn of those that do not
 
 # The groups of the matrix, in this order, and what they are called.
 KINDS = {"solve": "polhode decides", "exact": "polhode decides", "method": "steppers", "cheap": "engines' steps",
-         "angles": "Euler angles", "witness": "without care"}
+         "formula": "torques as formulas", "angles": "Euler angles", "witness": "without care"}
 ANGLES = ("rk45", "dop853")   # general methods, which take Lagrange's equations
 
 
@@ -45,6 +45,7 @@ def entrants() -> list[Entrant]:
     for cheap in (False, True):
         found += [Entrant(r["name"], "cheap" if cheap else "method", r, {"method": r["name"]})
                   for r in records if r["comparison"] == cheap]
+    found.append(Entrant("formula", "formula", {}, {"method": "taylor"}))
     # Lagrange's equations in the textbook's angles, by the general method of the highest order that is not implicit.
     general = max((r for r in records if r["adaptive"] and not r["implicit"] and r["name"] in ANGLES),
                   key=lambda r: int(r["order"]))

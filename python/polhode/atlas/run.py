@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from .._core import IntegrationFailure, InvalidInput
+from .._harness.formulas import to_formulas, why_no_formulas
 from .._harness.truth import Truth, compute_errors
 from .._scene.scene import Scene
 from .._solve.motion import Motion
@@ -38,6 +39,10 @@ def run(entrant: Entrant, scene: Scene, setting: dict[str, float], limit: float,
     Failed
         When the end was not reached, or what came back is not finite.
     """
+    if entrant.kind == "formula":
+        if why := why_no_formulas(scene):
+            raise Refused(why)
+        scene = to_formulas(scene)
     end = time.thread_time() + limit
 
     def in_time(reached: float, last: float) -> bool:

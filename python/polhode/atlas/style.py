@@ -35,6 +35,8 @@ def line(entrant: Entrant, place: int) -> dict[str, Any]:
     if entrant.kind == "cheap":
         return {"color": _EARTHS[place % len(_EARTHS)], "marker": _MARKS[place % len(_MARKS)], "markersize": 4,
                 "linewidth": 1.0, "linestyle": (0, (4, 1.5)), "zorder": 4}
+    if entrant.kind == "formula":
+        return {"color": "#8a1c5b", "marker": "p", "markersize": 5.5, "linewidth": 1.6, "linestyle": "--", "zorder": 6}
     return {"color": style.QUIET, "marker": "x", "markersize": 5, "linewidth": 1.2, "linestyle": ":", "zorder": 4}
 
 

@@ -38,7 +38,7 @@ class Candidate(NamedTuple):
     """
 
     name: str
-    family: str          # "method" | "cheap" | "plan" | "exact" | "peer"
+    family: str          # "method" | "cheap" | "formula" | "plan" | "exact" | "peer"
     source: str
     settings: Callable[[Scene], Settings]
     start: Callable[[Scene], Run]

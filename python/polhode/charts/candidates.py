@@ -1,4 +1,4 @@
-"""The candidates: every method, the plan's choice, the closed forms that apply, and other programs.
+"""The candidates: every method, torques as formulas, the plan's choice, the closed forms that apply, and other programs.
 
 A method and a closed form join by the compiled lists, another program by its file and a name in `peers`.
 """
@@ -10,6 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 from .. import _core
+from .._harness.formulas import to_formulas, why_no_formulas
 from .._scene.scene import Scene
 from .._solve.motion import Motion
 from .._solve.solve import methods, solve
@@ -58,6 +59,13 @@ def _method(record: dict[str, Any]) -> Candidate:
                      "rtol" if adaptive else "step")
 
 
+def _formula() -> Candidate:
+    """Return the candidate of torques as a user would write them: formulas, by their Taylor series."""
+    return Candidate("formula", "formula", "taylor; each torque is a formula of its own law, which is not recognised",
+                     tolerances(3, 14), lambda scene: _solving(to_formulas(scene), "rtol", method="taylor"),
+                     why_no_formulas)
+
+
 def _plan() -> Candidate:
     """Return the candidate of `solve` with an accuracy, including its certificate."""
     return Candidate("plan", "plan", "polhode.solve(accuracy=), with its certificate", tolerances(3, 12, 3),
@@ -89,4 +97,4 @@ def _exact() -> list[Candidate]:
 def candidates(with_peers: bool = True) -> list[Candidate]:
     """Return all candidates, those of polhode first."""
     own = [_method(record) for record in methods()]
-    return [*_exact(), *own, _plan(), *(peer_list.candidates() if with_peers else [])]
+    return [*_exact(), *own, _formula(), _plan(), *(peer_list.candidates() if with_peers else [])]

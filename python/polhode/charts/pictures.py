@@ -64,7 +64,7 @@ def _curves(axes: Any, result: SceneResult, spread: bool = False) -> Ends:
     accurate end. `spread`: with a bar from the fastest to the slowest repeat."""
     ends: Ends = []
     pale = dominated(result)
-    for name in result.names("method", "cheap", "peer", "exact", "plan"):
+    for name in result.names("method", "cheap", "formula", "peer", "exact", "plan"):
         points = [p for p in result.of(name) if p.error < LOST or p.swept == ""]
         if not points:
             continue

@@ -9,7 +9,7 @@ from .._plot import style
 from .._plot.text import to_error, to_time
 
 GROUPS = {"exact": "closed forms", "plan": "the plan", "method": "methods", "cheap": "engines' steps",
-          "peer": "other programs"}
+          "formula": "torques as formulas", "peer": "other programs"}
 LOST = 4.0   # an attitude is never further off than pi
 SYMBOLS = {"o": "circle", "D": "diamond", "*": "star", "s": "square", "^": "triangle-up", "v": "triangle-down",
            "P": "cross", "X": "x", "h": "hexagon", "d": "diamond-tall", ".": "circle"}

@@ -292,6 +292,7 @@ def test_shapes_torques_and_elliptic_functions():
     fired = ph.torques.During(ph.torques.Constant((0, 0, 0.52)), [(0.25, 0.75)])
     assert np.allclose(ph.solve(scene(torques=[fired], omega=(0, 0, 0)), 1e-9).omega[:, 2], (0, 0, 0.25, 0.5, 0.5))
     braked = ph.torques.Formula(lambda t, omega, attitude, p: -p.c * omega / ph.formula.norm(omega), c=0.1)
+    assert np.allclose(ph.torques.Constant((0, 0, 1)).as_formula().value(0, (0, 0, 2), (0, 0, 0, 1)), (0, 0, 1))
     assert np.allclose(braked.value(0, (0, 0, 2), (0, 0, 0, 1)), (0, 0, -0.1))
     assert np.allclose(scene(torques=[braked]).torque(0, (0, 0, 2), (0, 0, 0, 1)), (0, 0, -0.1))
     pushed = ph.solve(scene(torques=[ph.torques.Constant((0, 0, 0.52)), ph.torques.Damping((0, 0, 0))],

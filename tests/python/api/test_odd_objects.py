@@ -161,6 +161,10 @@ DOORS = {
     "formula.where": (ph.formula.where, dict(condition=True, a=W, b=W)),
     "formula.clip": (ph.formula.clip, dict(a=W, low=0.0, high=1.0)),
     "Scene, torque": (SCENE.torque, dict(t=0.0, omega=W, attitude=Q)),
+    "torques.Gravity.as_formula": (T.Gravity(1.0, W).as_formula, dict(inertia=None)),
+    "torques.Constant.as_formula": (T.Constant(W).as_formula, dict(inertia=None)),
+    "torques.Damping.as_formula": (T.Damping(W).as_formula, dict(inertia=None)),
+    "torques.Formula.as_formula": (FORMULA.as_formula, dict(inertia=None)),
     "torques.Gravity.value": (T.Gravity(1.0, W).value, dict(t=0.0, omega=W, attitude=Q, inertia=None)),
     "torques.Damping": (T.Damping, dict(matrix=np.eye(3))), "load": (ph.load, dict(path="x.npz")),
 }

@@ -31,7 +31,7 @@ BY_NAME = {family.name: family for family in FAMILIES}
 
 
 def test_every_method_takes_part_by_its_record():
-    assert {m["name"] for m in ph.methods()} | {"solve", "exact", "angles"} == set(WHO)
+    assert {m["name"] for m in ph.methods()} | {"solve", "exact", "formula", "angles"} == set(WHO)
     assert {e.name for e in rows_of(BY_NAME["step"])} == {m["name"] for m in ph.methods() if not m["adaptive"]}
     assert all({m["name"] for m in ph.methods()} <= {e.name for e in rows_of(f)} for f in FAMILIES if f.name != "step")
 

@@ -82,6 +82,10 @@ formula::Program make_open_law(const AnyTorque& torque, const Matrix3d& inertia_
 /// The same with its parameters as numbers.
 formula::Program make_bound_law(const AnyTorque& torque, const Matrix3d& inertia_B);
 
+/// A torque of the list as a formula with its parameters, which solve() does not replace; without its windows.
+/// @throws InvalidInput for a Custom
+torques::Formula as_formula(const AnyTorque& torque, const Matrix3d& inertia_B);
+
 TorqueTraits traits(const AnyTorque& torque);
 std::string_view torque_name(const AnyTorque& torque);   ///< of its record
 TorqueSum summarize(std::span<const AnyTorque> torques);
