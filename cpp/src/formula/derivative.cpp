@@ -28,8 +28,8 @@ class Derivative {
   Form make(int node) {
     const Node n = graph_[node];   // a copy: new nodes move the old ones
     switch (n.op) {
-      case Op::constant:
-      case Op::time: return {};
+      case Op::constant: return {};
+      case Op::time: return by_.kind == Variable::Kind::time ? Form(1.0) : Form();
       case Op::state: return of_state(n.index);
       case Op::parameter: return by_.kind == Variable::Kind::parameter && by_.number == n.index ? Form(1.0) : Form();
       case Op::linear: return (*this)(Form(graph_.linear(node)));

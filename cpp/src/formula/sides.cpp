@@ -75,17 +75,22 @@ Program replace_switches(const Program& whole, const Guards& guards, const std::
   return made;
 }
 
-/// The shares that keep the last outputs, the held rates, constant: of d/dt rate = b + A s, A s = -b.
+/// The shares that keep the last outputs, the held rates, constant: of d/dt rate = b + A s, A s = -b. A rate may depend
+/// on time by itself, as on a belt that speeds up.
 Program hold(const Program& system, std::size_t states, std::size_t first, std::size_t count) {
   std::vector<Variable> variables;
   for (std::size_t i = 0; i < states; ++i) variables.push_back({Variable::Kind::state, static_cast<int>(i)});
-  const std::size_t outputs = system.outputs.size();
-  Program d = differentiate(Program{system.graph, {}, system.states, system.outputs}, variables);
+  variables.push_back({Variable::Kind::time, 0});
+  Program rates{system.graph, {}, system.states, {}};
+  for (std::size_t i = 0; i < states; ++i) rates.outputs.push_back(system.outputs[i]);
+  for (std::size_t i = 0; i < count; ++i) rates.outputs.push_back(system.outputs[first + i]);
+  const std::size_t outputs = rates.outputs.size();
+  Program d = differentiate(rates, variables);
   Program change{d.graph, {}, system.states, {}};
   for (std::size_t i = 0; i < count; ++i) {
-    Form sum;
+    Form sum = d.outputs[outputs * (states + 1) + states + i];
     for (std::size_t m = 0; m < states; ++m)
-      sum = sum + change.graph.multiply(d.outputs[outputs * (m + 1) + first + i], d.outputs[m]);
+      sum = sum + change.graph.multiply(d.outputs[outputs * (m + 1) + states + i], d.outputs[m]);
     change.outputs.push_back(sum);
   }
   std::vector<Variable> shares;
@@ -141,7 +146,7 @@ Guards list_sided_guards(const Program& program) {
   return guards;
 }
 
-ModeProgram make_mode(const Program& system, const std::vector<Side>& sides) {
+ModeProgram make_mode(const Program& system, const std::vector<Side>& sides, std::size_t further) {
   const Guards guards = list_sided_guards(system);
   // From the outputs down, the guards of switches that the branches taken need.
   const Graph& graph = system.graph;
@@ -188,7 +193,7 @@ ModeProgram make_mode(const Program& system, const std::vector<Side>& sides) {
   Program smooth = replace_switches(whole, guards, sides, held);
   if (!held.empty()) {
     smooth.outputs.resize(first + 2 * held.size());   // the limits take more places than the rates
-    smooth = hold(smooth, system.outputs.size(), first, held.size());
+    smooth = hold(smooth, system.outputs.size() - further, first, held.size());
   }
   made.program = rewrite(smooth);
   return made;

@@ -147,6 +147,17 @@ def test_friction_that_holds_and_lets_go():
     np.testing.assert_array_equal(friction(0.2, np.array([1.0, -1.0, 0.0])), [-0.2, 0.2, 0.2])
 
 
+def test_friction_holds_a_rate_that_depends_on_time():
+    """A belt that speeds up carries the body: w = t / 10 from 6/7 s on, until a torque at t = 5 is more than the load."""
+    belt = Formula(text="[0, 0, friction(0.5, omega.z - 0.1 * t) - where(t > 5, 0.6, 0)]")
+    times = np.linspace(0, 8, 17)
+    motion = ph.solve(ph.Scene(inertia=(1, 2, 2), omega=(0, 0, 0.3), torques=[belt], times=times), 1e-9)
+    slips = 0.3 / 0.35   # 0.3 - 0.25 t = 0.1 t
+    w = np.where(times < slips, 0.3 - 0.25 * times, np.where(times < 5, 0.1 * times, 0.5 - 0.05 * (times - 5)))
+    assert motion.success and motion.error_kind == "bounded"
+    np.testing.assert_allclose(motion.omega[:, 2], w, rtol=0, atol=0.5 * motion.error + 1e-15)
+
+
 def test_sliding_says_where_it_begins():
     law = Formula(text="-0.5 * [sign(omega.x), 0, 0]")
     start = dict(inertia=BLOCK, omega=(0.25, 0, 0), torques=[law])

@@ -11,6 +11,7 @@ struct Variable {
   enum class Kind {
     state,
     parameter,
+    time,
     rotation   ///< a small rotation about body axis 0, 1 or 2: q exp(e a / 2), at a = 0
   };
   Kind kind;

@@ -39,8 +39,8 @@ struct ModeProgram {
 
 /// Each switch becomes its branch, which is continued beyond the surface. Friction that holds becomes the share of its
 /// load that keeps the rate constant.
-/// @param system  outputs are the rates of all its states
+/// @param system  outputs are the rates of all its states, then further ones
 /// @throws InvalidInput where no share of the load can hold the rates
-ModeProgram make_mode(const Program& system, const std::vector<Side>& sides);
+ModeProgram make_mode(const Program& system, const std::vector<Side>& sides, std::size_t further = 0);
 
 }  // namespace polhode::formula
