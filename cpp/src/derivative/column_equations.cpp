@@ -2,15 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <utility>
 
 #include "derivative/column_lanes.hpp"
+#include "derivative/held_friction.hpp"
 #include "method/series/body_laws.hpp"
 #include "method/series/formula_series.hpp"
 #include "method/series/recent_equations.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/formula/derivative.hpp"
 #include "polhode/formula/expression.hpp"
+#include "polhode/formula/modes.hpp"
 
 namespace polhode {
 namespace {
@@ -51,8 +55,6 @@ class EquationsBuilder {
       : piece_(piece), frame_(frame), states_(states), made_(make_body_system(piece, frame, states)),
         rows_(made_.outputs.size()), numbers_(static_cast<int>(formula::list_values(states).size())),
         guards_(formula::list_sided_guards(made_)), count_(guards_.forms.size()) {
-    if (std::find(guards_.holds.begin(), guards_.holds.end(), true) != guards_.holds.end())
-      refuse("friction, whose motion has no columns yet");
     Graph& graph = made_.graph;
     const Vec<Expr, 3> r = formula::list_states<3>(graph, formula::first_rate);
     w_ = made_.rates.empty() ? r : take(graph, made_.rates, 0);
@@ -60,10 +62,11 @@ class EquationsBuilder {
   }
 
   ColumnEquations build(const std::vector<ColumnCause>& causes, const std::vector<formula::Side>& sides) {
-    ColumnEquations found{frame_.terms().variables, nullptr, {}, {}, {}, {}, {}};
-    differentiate_body();
+    ColumnEquations found{frame_.terms().variables, nullptr, {}, {}, {}, {}, {}, {}};
+    differentiate_body(sides);
     add_terms(found);
     add_guards(causes, found);
+    add_held(found);
     for (std::size_t begin = 0; begin < causes.size(); begin += 8) {
       std::vector<std::vector<Form>> forces;
       for (std::size_t c = begin; c < std::min(begin + 8, causes.size()); ++c) forces.push_back(find_forces(causes[c]));
@@ -71,7 +74,7 @@ class EquationsBuilder {
     }
     if (count_ > 0) {
       if (formula::list_sided_guards(made_).forms != guards_.forms) refuse("switches that cannot be told apart");
-      made_ = formula::make_mode(made_, sides).program;
+      made_ = formula::make_mode(made_, sides, made_.outputs.size() - rows_).program;
     } else {
       made_ = formula::rewrite(made_);
     }
@@ -85,7 +88,7 @@ class EquationsBuilder {
   }
 
   /// The accelerations and the rates of states, and their derivatives by w, small rotations and states.
-  void differentiate_body() {
+  void differentiate_body(const std::vector<formula::Side>& sides) {
     Program plain;
     const Vec<Expr, 3> w = formula::list_states<3>(plain.graph, formula::first_rate);
     const Vec<Expr, 4> q = formula::list_states<4>(plain.graph, formula::first_attitude);
@@ -97,16 +100,105 @@ class EquationsBuilder {
     plain.outputs.insert(plain.outputs.end(), rates.begin(), rates.end());
     for (const int node : formula::list_sided_guards(plain).nodes) plain.outputs.push_back(Form::of(node));
     if (plain.outputs.size() != 3 + place(numbers_) + count_) refuse("switches that cannot be told apart");
-    std::vector<Variable> variables;
-    for (int i = 0; i < 3; ++i) variables.push_back({Variable::Kind::state, formula::first_rate + i});
-    for (int i = 0; i < 3; ++i) variables.push_back({Variable::Kind::rotation, i});
-    for (int i = 0; i < numbers_; ++i) variables.push_back({Variable::Kind::state, formula::first_extra + i});
-    const Program slopes = formula::differentiate(formula::rewrite(plain), variables);
     std::vector<Form> body;
     for (const Expr& one : w_.components) body.push_back(one.form());
     for (const Expr& one : q_.components) body.push_back(one.form());
     for (int i = 0; i < numbers_; ++i) body.push_back(made_.graph.state(formula::first_extra + i));
+    const std::vector<Form> shares = replace_held(plain, body, sides);
+    std::vector<Variable> variables;
+    for (int i = 0; i < 3; ++i) variables.push_back({Variable::Kind::state, formula::first_rate + i});
+    for (int i = 0; i < 3; ++i) variables.push_back({Variable::Kind::rotation, i});
+    for (int i = 0; i < numbers_ + static_cast<int>(shares.size()); ++i)
+      variables.push_back({Variable::Kind::state, formula::first_extra + i});
+    variables.push_back({Variable::Kind::time, 0});
+    const Program slopes = formula::differentiate(formula::rewrite(plain), variables);
+    body.insert(body.end(), shares.begin(), shares.end());
     slopes_ = formula::embed(slopes, made_.graph, body, nullptr);
+    if (!shares.empty()) eliminate(slopes, variables, body);
+  }
+
+  /// In the place of each friction that holds puts its share, a state behind all others. Returns the shares as forms of
+  /// the whole system.
+  std::vector<Form> replace_held(Program& plain, const std::vector<Form>& body, const std::vector<formula::Side>& sides) {
+    std::vector<Form> shares;
+    if (std::find(sides.begin(), sides.end(), formula::Side::held) == sides.end()) return shares;
+    std::map<int, Form> replaced;
+    for (const int node : formula::list_switches(plain)) {
+      if (plain.graph[node].index != 1) continue;
+      const Form form = formula::embed({plain.graph, {}, {}, {Form::of(node)}}, made_.graph, body, nullptr)[0];
+      if (form.terms.size() != 1 || made_.graph[form.terms[0].node].op != formula::Op::choose)
+        refuse("switches that cannot be told apart");
+      const auto guard = guards_.find(made_.graph, made_.graph[form.terms[0].node].operands[0]);
+      if (guard.number == count_) refuse("switches that cannot be told apart");
+      if (sides[guard.number] != formula::Side::held) continue;
+      const double sign = guard.negated ? -1.0 : 1.0;
+      const auto own = std::find(held_.begin(), held_.end(), guard.number);
+      const int k = static_cast<int>(own - held_.begin());
+      if (own == held_.end()) held_.push_back(guard.number), shares.push_back(Form::of(form.terms[0].node) * sign);
+      replaced[node] = plain.graph.state(formula::first_extra + numbers_ + k) * (sign * form.terms[0].factor);
+    }
+    Program made;
+    formula::Rewriter rewriter(plain.graph, made.graph, [&](int node, Graph& to) -> std::optional<Form> {
+      const auto found = replaced.find(node);
+      if (found == replaced.end()) return std::nullopt;
+      const formula::Term& share = found->second.terms[0];
+      return to.state(plain.graph[share.node].index) * share.factor;
+    });
+    for (const Form& output : plain.outputs) made.outputs.push_back(rewriter(output));
+    plain = std::move(made);
+    return shares;
+  }
+
+  /// Makes the slopes those of the friction that holds.
+  /// @param slopes  of the body with shares as states, by `variables`
+  void eliminate(const Program& slopes, std::vector<Variable> variables, const std::vector<Form>& body) {
+    const std::size_t size = place(6 + numbers_), rates = place(3 + numbers_), rows = rates + count_;
+    const auto slope = [&](const std::vector<Form>& of, std::size_t row, std::size_t by) { return of[rows * (1 + by) + row]; };
+    std::vector<std::size_t> guards(held_.size());   // the row of each
+    for (std::size_t g = 0; g < count_; ++g)
+      for (std::size_t k = 0; k < held_.size(); ++k)
+        if (find_guard(slopes_[rates + g]).number == held_[k]) guards[k] = rates + g;
+    Program change{slopes.graph, {}, {}, {}};
+    const auto multiply = [&](const Form& a, const Form& b) {
+      return a.is_zero() || b.is_zero() ? Form() : change.graph.multiply(a, b);
+    };
+    for (const std::size_t row : guards) {
+      Form sum = slope(slopes.outputs, row, variables.size() - 1);
+      for (std::size_t i = 0; i < size; ++i) {
+        const Form moves = i < 3 ? slopes.outputs[i]
+                         : i < 6 ? change.graph.state(formula::first_rate + static_cast<int>(i) - 3)
+                                 : slopes.outputs[i - 3];
+        sum = sum + multiply(slope(slopes.outputs, row, i), moves);
+      }
+      change.outputs.push_back(sum);
+    }
+    variables.resize(size);
+    const std::vector<Form> changes =
+        formula::embed(formula::differentiate(formula::rewrite(change), variables), made_.graph, body, nullptr);
+    std::vector<HeldFriction::Share> shares(held_.size());
+    for (std::size_t k = 0; k < held_.size(); ++k) {
+      for (std::size_t i = 0; i < rates; ++i) {
+        shares[k].effect.push_back(slope(slopes_, i, size + k));
+        shares[k].slope.push_back(slope(slopes_, guards[k], i < 3 ? i : i + 3));
+      }
+      for (std::size_t from = 0; from < size; ++from) shares[k].change.push_back(changes[held_.size() * (1 + from) + k]);
+    }
+    friction_.emplace(made_.graph, std::move(shares));
+    std::vector<std::vector<Form>> own(rates, std::vector<Form>(size));
+    for (std::size_t i = 0; i < rates; ++i)
+      for (std::size_t from = 0; from < size; ++from) own[i][from] = slope(slopes_, i, from);
+    friction_->add(own);
+    for (std::size_t i = 0; i < rates; ++i)
+      for (std::size_t from = 0; from < size; ++from) slopes_[rows * (1 + from) + i] = own[i][from];
+  }
+
+  void add_held(ColumnEquations& found) {
+    for (std::size_t k = 0; k < held_.size(); ++k) {
+      ColumnEquations::Held& held = found.held.emplace_back(ColumnEquations::Held{held_[k], {}});
+      const std::vector<Form> response = friction_->find_response(k);
+      for (std::size_t i = 0; i < response.size(); ++i)
+        add_term(static_cast<int>(i < 3 ? i : i + 3), response[i], held.response);
+    }
   }
 
   void add_terms(ColumnEquations& found) {
@@ -133,9 +225,12 @@ class EquationsBuilder {
 
   void add_guards(const std::vector<ColumnCause>& causes, ColumnEquations& found) {
     found.guards.resize(count_);
+    std::vector<double> parts(count_);
     for (std::size_t k = 0; k < count_; ++k) {
       const int row = 3 + numbers_ + static_cast<int>(k);
-      ColumnEquations::Guard& guard = found.guards[find_guard(slopes_[place(row)])];
+      const Known known = find_guard(slopes_[place(row)]);
+      parts[known.number] = known.part;
+      ColumnEquations::Guard& guard = found.guards[known.number];
       guard.series = find_series(slopes_[place(row)]);
       for (int from = 0; from < 6 + numbers_; ++from) add_term(from, find_slope(row, from), guard.terms);
     }
@@ -151,13 +246,20 @@ class EquationsBuilder {
         add_term(static_cast<int>(c), slopes[2 * outputs + count + i], term);
         if (term.empty()) continue;
         const Form& guard = slopes[outputs + i];
-        found.guards[find_guard(guard)].forces.push_back({term[0], find_series(guard)});
+        const Known known = find_guard(guard);
+        if (guards_.holds[known.number] && term[0].series >= 0)
+          refuse("a parameter that the rate of a friction does not have as a summand");
+        found.guards[known.number].forces.push_back({term[0], find_series(guard), known.part / parts[known.number]});
       }
     }
   }
 
-  /// The number of a guard. Guards are known up to a factor.
-  std::size_t find_guard(const Form& given) const {
+  /// The number of a guard, and its factor to that of the list. Guards are known up to a factor.
+  struct Known {
+    std::size_t number;
+    double part;
+  };
+  Known find_guard(const Form& given) const {
     const Graph& graph = made_.graph;
     const auto expand = [&](const Form& form) {
       const bool is_node = form.terms.size() == 1 && form.constant == 0.0;
@@ -174,7 +276,7 @@ class EquationsBuilder {
       for (std::size_t i = 0; i < form.terms.size(); ++i)
         same = same && form.terms[i].node == other.terms[i].node &&
                is_near(form.terms[i].factor, other.terms[i].factor);
-      if (same) return g;
+      if (same) return {g, part};
     }
     refuse("switches that cannot be told apart");
   }
@@ -249,6 +351,13 @@ class EquationsBuilder {
       }
     }
     for (std::size_t i = 0; i < 3; ++i) forces[i] = rate[i].form();
+    if (!friction_) return forces;
+    const auto rotation = forces.begin() + 3;   // nothing forces it
+    std::vector<Form> rates(forces.begin(), rotation);
+    rates.insert(rates.end(), rotation + 3, forces.end());
+    friction_->project(rates);
+    std::copy_n(rates.begin(), 3, forces.begin());
+    std::copy(rates.begin() + 3, rates.end(), rotation + 3);
     return forces;
   }
 
@@ -284,6 +393,8 @@ class EquationsBuilder {
   Vec<Expr, 3> w_;
   Vec<Expr, 4> q_;
   std::vector<Form> slopes_;
+  std::vector<std::size_t> held_;   ///< guards of friction that holds
+  std::optional<HeldFriction> friction_;
 };
 
 }  // namespace

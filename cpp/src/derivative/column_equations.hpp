@@ -32,10 +32,19 @@ struct ColumnEquations {
     struct Force {
       LinearTerm term;        ///< `from` is the column
       std::ptrdiff_t series;
+      double part;            ///< of the guard above in this one
     };
     std::vector<Force> forces;
   };
   std::vector<Guard> guards;
+
+  /// Friction that holds in this mode: its guard, and how a column changes for each unit of the guard's change that it
+  /// has as the friction begins to hold. One after the other.
+  struct Held {
+    std::size_t guard;
+    std::vector<LinearTerm> response;   ///< `from` is the number of a column that changes
+  };
+  std::vector<Held> held;
 
   /// Fills rows 1 to `order` of the columns.
   /// @param extras  rows of the table's extras

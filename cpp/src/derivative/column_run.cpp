@@ -8,6 +8,7 @@
 #include "derivative/column_motion.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/core/interrupt.hpp"
+#include "polhode/formula/sides.hpp"
 
 namespace polhode {
 
@@ -46,6 +47,16 @@ std::vector<double> find_further_ends(const Scene& scene) {
         if (first < t && t < last) ends.push_back(t);
   }
   return ends;
+}
+
+/// Whether a formula has friction, whose torque at a time depends on all others.
+bool has_friction(const Scene& scene) {
+  return std::any_of(scene.torques().begin(), scene.torques().end(), [&](const AnyTorque& torque) {
+    const torques::Formula* formula = find_formula(torque);
+    if (formula == nullptr || !formula->has_switches()) return false;
+    const std::vector<bool> holds = formula::list_sided_guards(formula->program(scene.inertia_B().matrix())).holds;
+    return std::find(holds.begin(), holds.end(), true) != holds.end();
+  });
 }
 
 /// Where a run writes its samples.
@@ -89,6 +100,12 @@ ColumnRun::ColumnRun(const Scene& scene, const std::vector<SceneParameter>& para
       side_(side),
       pieces_(cut(scene, find_further_ends(scene))),
       states_(static_cast<std::size_t>(scene.count_states())) {
+  const bool by_windows = std::any_of(parameters.begin(), parameters.end(), [](const SceneParameter& parameter) {
+    return parameter.of == Of::torque_windows || parameter.of == Of::rotor_windows;
+  });
+  if (by_windows && has_friction(scene))
+    throw InvalidInput("sensitivity", "without times of windows in a scene with friction", "such a time",
+                       "the torque of a friction that holds jumps there, too");
   const Matrix3d& R_BP = scene.inertia_B().axes();
   J_inverse_ = R_BP * Matrix3d(scene.inertia_B().moments().cwiseInverse().asDiagonal()) * R_BP.transpose();
   if (scene.inertia_B().is_diagonal())

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/choose_level.hpp"
+#include "polhode/core/error.hpp"
 
 namespace polhode {
 
@@ -33,6 +34,7 @@ void SwitchedColumns::compute_series(math::DD t, double unit, const double* y, c
   Mode& mode = find_mode();
   double* extras = align_to_line(mode.extras);
   mode.series.expand(t, unit, y, order, align_to_line(mode.rows), extras);
+  if (projected_ != body_.sides()) project(mode, extras);
   rows_ = rows;
   double w[3];
   body_.whole().frame().compute_rates(rows, w);
@@ -54,6 +56,22 @@ ode::StepResult SwitchedColumns::switch_mode(math::DD t, double unit, const doub
   });
 }
 
+void SwitchedColumns::project(const Mode& mode, const double* extras) const {
+  projected_ = body_.sides();
+  const auto value = [&](const LinearTerm& term) { return term.series < 0 ? term.factor : extras[term.series]; };
+  for (const ColumnEquations::Held& held : mode.equations->held) {
+    const ColumnEquations::Guard& guard = mode.equations->guards[held.guard];
+    std::vector<double> change(columns_.count(), 0.0);
+    for (std::size_t c = 0; c < change.size(); ++c)
+      for (const LinearTerm& term : guard.terms)
+        change[c] += value(term) * columns_.at(static_cast<std::size_t>(term.from), c);
+    for (const auto& force : guard.forces) change[static_cast<std::size_t>(force.term.from)] += value(force.term) * force.part;
+    for (std::size_t c = 0; c < change.size(); ++c)
+      for (const LinearTerm& term : held.response)
+        columns_.at(static_cast<std::size_t>(term.from), c) -= value(term) * change[c];
+  }
+}
+
 void SwitchedColumns::jump(math::DD t, double unit, const double* y, const ode::Crossing& crossing) const {
   Mode& mode = find_mode();
   double* extras = align_to_line(mode.extras);
@@ -62,13 +80,22 @@ void SwitchedColumns::jump(math::DD t, double unit, const double* y, const ode::
   const auto value = [&](const LinearTerm& term) { return term.series < 0 ? term.factor : extras[term.series]; };
   const ColumnEquations::Guard& guard =
       mode.equations->guards[static_cast<std::size_t>(body_.number_of(crossing.guard))];
-  std::vector<double> earlier(columns_.count(), 0.0);   // by so much a column moves the crossing [s]
-  for (std::size_t c = 0; c < earlier.size(); ++c) {
-    for (const LinearTerm& term : guard.terms)
-      earlier[c] += value(term) * columns_.at(static_cast<std::size_t>(term.from), c) / rates[guard.series];
+  std::vector<double>& earlier = earlier_;
+  if (body_.lets_go(crossing.guard)) {
+    // The torque is continuous where friction lets go, unless another switch made it do so at this time.
+    if (!crossed_ || crossed_->hi != t.hi || crossed_->lo != t.lo) return;
+  } else {
+    if (crossing.slope * crossing.slope <= 4 * crossing.curvature * crossing.rounding || crossing.slope == 0.0)
+      throw IntegrationFailure(t.hi, "sensitivity: the motion grazes the surface of a switch, where it has no derivatives");
+    earlier.assign(columns_.count(), 0.0);
+    for (std::size_t c = 0; c < earlier.size(); ++c) {
+      for (const LinearTerm& term : guard.terms)
+        earlier[c] += value(term) * columns_.at(static_cast<std::size_t>(term.from), c) / rates[guard.series];
+    }
+    for (const auto& force : guard.forces)
+      earlier[static_cast<std::size_t>(force.term.from)] += value(force.term) / rates[force.series];
+    crossed_ = t;
   }
-  for (const auto& force : guard.forces)
-    earlier[static_cast<std::size_t>(force.term.from)] += value(force.term) / rates[force.series];
   double before[3], behind[3];
   body_.whole().frame().compute_rates(crossing.before, before);
   body_.whole().frame().compute_rates(crossing.behind, behind);

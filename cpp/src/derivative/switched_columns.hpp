@@ -2,6 +2,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "derivative/column_equations.hpp"
@@ -62,6 +63,8 @@ class SwitchedColumns {
   };
 
   Mode& find_mode() const;
+  /// Takes from the columns what friction that holds leaves of them.
+  void project(const Mode& mode, const double* extras) const;
   void jump(math::DD t, double unit, const double* y, const ode::Crossing& crossing) const;
 
   Scene piece_;
@@ -71,6 +74,9 @@ class SwitchedColumns {
   const ColumnKernels& kernels_;
   mutable std::map<std::vector<formula::Side>, Mode> modes_;
   mutable ColumnLanes columns_;
+  mutable std::optional<std::vector<formula::Side>> projected_;   ///< the mode whose friction they keep to
+  mutable std::vector<double> earlier_;   ///< by so much each column moves the last crossing [s]
+  mutable std::optional<math::DD> crossed_;   ///< its time
   mutable const double* rows_ = nullptr;
   mutable double rate_ = 1.0;   ///< divides d omega where sizes are compared
 };

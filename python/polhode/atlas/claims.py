@@ -30,7 +30,7 @@ CLAIMS: dict[str, dict[str, str]] = {
                    "scales": "holds",
                    "norm": "holds", "spin-up": "holds", "sleeping": "holds"},
     # The built-in torques as a user would write them.
-    "formula": {"gimbal": "holds", "damping": "degrades", "spin-up": "holds", "chaos": "holds", "scales": "holds",
+    "formula": {"damping": "degrades", "spin-up": "holds", "chaos": "holds", "scales": "holds",
                 "sleeping": "holds"},
     # The best cheap step of a free body.
     "dmv8": {"step": "holds", "gimbal": "holds", "long": "degrades", "near": "degrades", "scales": "holds",

@@ -261,9 +261,61 @@ def test_columns_across_switches_are_differences_of_motions(law, inertia, times)
             np.testing.assert_allclose(found[..., k], (up.states[state] - down.states[state]) / 2e-5, atol=3e-7)
 
 
+RUBBED = {"load": 0.35, "a": 0.6, "v": 0.1, "h": 0.2}
+
+
+def rubbed(omega=START["omega"], **numbers):
+    """Friction about two axes, one of them on a moving belt, and a state: each holds and lets go, also both at once."""
+    def law(t, omega, attitude, p, s):
+        u = to_body(attitude, (0, 0, 1))
+        rest = ph.formula.friction(0.3, omega[0]) + 0.4 * np.sin(0.9 * t)
+        belt = ph.formula.friction(p.load, omega[2] - p.v) + p.a * np.sin(1.3 * t) + 0.05 * u[0]
+        return np.stack([rest, 0.1 * np.cos(t), belt]) - 0.02 * omega * (1 + s.h), {"h": p.a * u[1] - 0.2 * s.h}
+
+    numbers = {**RUBBED, **numbers}
+    formula = Formula(law, states={"h": numbers.pop("h")}, **numbers)
+    return ph.Scene(inertia=[[1, 0.1, 0.05], [0.1, 2, -0.1], [0.05, -0.1, 2.5]], omega=omega, attitude=Q,
+                    torques=[formula], times=np.linspace(0, 9, 10))
+
+
+def differences(make, by=1e-5):
+    up, down = (ph.solve(make(sign * by), 1e-12) for sign in (1, -1))
+    return [(a - b) / (2 * by) for a, b in ((up.omega, down.omega), (up.states["h"], down.states["h"]))]
+
+
+def test_friction_that_holds_and_lets_go_has_columns():
+    start = np.array((0.4, 0.3, 0.2))
+    motion = ph.solve(rubbed(start), 1e-9, sensitivity=("omega", *(f"torques.0.{name}" for name in ("load", "a", "v")),
+                                                         "states.h"))
+    s = motion.sensitivity
+    held = np.abs(motion.omega[:, 0]) < 1e-15
+    assert held.any() and not held.all() and motion.error_kind == "bounded"
+    np.testing.assert_array_less(np.abs(s.d_omega[held, 0]), 1e-12)   # what holds has no derivative
+    for k, name in enumerate(("x", "y", "z", "load", "a", "v", "h")):
+        if k < 3:
+            omega, h = differences(lambda by: rubbed(start + by * np.eye(3)[k]))
+        else:
+            omega, h = differences(lambda by: rubbed(start, **{name: RUBBED[name] + by}))
+        np.testing.assert_allclose(s.d_omega[..., k], omega, rtol=0, atol=3e-9, err_msg=name)
+        np.testing.assert_allclose(s.d_states["h"][..., k], h, rtol=0, atol=6e-9, err_msg=name)
+
+
+def test_friction_that_holds_from_the_start():
+    """About one axis at rest: it lets go at 0.1 t = load. Then w = (t - 10 load)^2 / 20, and dw/dload = 10 load - t."""
+    def law(t, omega, attitude, p):
+        return np.stack([0.1 * t + ph.formula.friction(p.load, omega[0]), 0.0, 0.0])
+
+    at_rest = ph.Scene(inertia=(1, 2, 2.5), omega=(0, 0, 0), torques=[Formula(law, load=0.2)], times=[1.0, 4.0])
+    s = ph.solve(at_rest, 1e-9, sensitivity=("omega", "torques.0.load")).sensitivity
+    np.testing.assert_allclose(s.d_omega[:, 0], [[0, 0, 0, 0], [0, 0, 0, -2]], rtol=0, atol=1e-9)
+
+
 def test_what_switches_leave_without_columns_is_said():
     def rub(t, omega, attitude, p):
-        return -ph.formula.friction(p.load, omega[2]) * np.array((0, 0, 1)) - 0.01 * omega
+        return ph.formula.friction(0.1, p.k * omega[2] - 0.1) * np.array((0, 0, 1)) - 0.01 * omega
 
     with pytest.raises(ph.InvalidInput, match="friction"):
-        ph.solve(scene([Formula(rub, load=0.1)]), 1e-6, sensitivity="omega")
+        ph.solve(scene([Formula(rub, k=1.0)]), 1e-6, sensitivity="torques.0.k")
+    windows = During(Constant((0.1, 0, 0)), [(0.1, 0.2)])
+    with pytest.raises(ph.InvalidInput, match="friction"):
+        ph.solve(scene([Formula(rub, k=1.0), windows]), 1e-6, sensitivity="torques.1.windows")

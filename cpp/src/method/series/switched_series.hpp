@@ -60,6 +60,8 @@ class SwitchedSeries {
   /// The mode, and a guard of it as a number among all.
   const std::vector<formula::Side>& sides() const { return shared_->sides; }
   int number_of(int guard) const { return mode().guards[static_cast<std::size_t>(guard)].number; }
+  /// Whether a guard is where friction that holds lets go.
+  bool lets_go(int guard) const { return mode().guards[static_cast<std::size_t>(guard)].edge != formula::Side::held; }
 
  private:
   using Sides = std::vector<formula::Side>;
