@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <utility>
 
@@ -104,49 +103,18 @@ class EquationsBuilder {
     for (const Expr& one : w_.components) body.push_back(one.form());
     for (const Expr& one : q_.components) body.push_back(one.form());
     for (int i = 0; i < numbers_; ++i) body.push_back(made_.graph.state(formula::first_extra + i));
-    const std::vector<Form> shares = replace_held(plain, body, sides);
+    const HeldShares shares = replace_held(plain, made_.graph, guards_, body, sides);
+    held_ = shares.guards;
     std::vector<Variable> variables;
     for (int i = 0; i < 3; ++i) variables.push_back({Variable::Kind::state, formula::first_rate + i});
     for (int i = 0; i < 3; ++i) variables.push_back({Variable::Kind::rotation, i});
-    for (int i = 0; i < numbers_ + static_cast<int>(shares.size()); ++i)
+    for (int i = 0; i < numbers_ + static_cast<int>(held_.size()); ++i)
       variables.push_back({Variable::Kind::state, formula::first_extra + i});
     variables.push_back({Variable::Kind::time, 0});
     const Program slopes = formula::differentiate(formula::rewrite(plain), variables);
-    body.insert(body.end(), shares.begin(), shares.end());
+    body.insert(body.end(), shares.forms.begin(), shares.forms.end());
     slopes_ = formula::embed(slopes, made_.graph, body, nullptr);
-    if (!shares.empty()) eliminate(slopes, variables, body);
-  }
-
-  /// In the place of each friction that holds puts its share, a state behind all others. Returns the shares as forms of
-  /// the whole system.
-  std::vector<Form> replace_held(Program& plain, const std::vector<Form>& body, const std::vector<formula::Side>& sides) {
-    std::vector<Form> shares;
-    if (std::find(sides.begin(), sides.end(), formula::Side::held) == sides.end()) return shares;
-    std::map<int, Form> replaced;
-    for (const int node : formula::list_switches(plain)) {
-      if (plain.graph[node].index != 1) continue;
-      const Form form = formula::embed({plain.graph, {}, {}, {Form::of(node)}}, made_.graph, body, nullptr)[0];
-      if (form.terms.size() != 1 || made_.graph[form.terms[0].node].op != formula::Op::choose)
-        refuse("switches that cannot be told apart");
-      const auto guard = guards_.find(made_.graph, made_.graph[form.terms[0].node].operands[0]);
-      if (guard.number == count_) refuse("switches that cannot be told apart");
-      if (sides[guard.number] != formula::Side::held) continue;
-      const double sign = guard.negated ? -1.0 : 1.0;
-      const auto own = std::find(held_.begin(), held_.end(), guard.number);
-      const int k = static_cast<int>(own - held_.begin());
-      if (own == held_.end()) held_.push_back(guard.number), shares.push_back(Form::of(form.terms[0].node) * sign);
-      replaced[node] = plain.graph.state(formula::first_extra + numbers_ + k) * (sign * form.terms[0].factor);
-    }
-    Program made;
-    formula::Rewriter rewriter(plain.graph, made.graph, [&](int node, Graph& to) -> std::optional<Form> {
-      const auto found = replaced.find(node);
-      if (found == replaced.end()) return std::nullopt;
-      const formula::Term& share = found->second.terms[0];
-      return to.state(plain.graph[share.node].index) * share.factor;
-    });
-    for (const Form& output : plain.outputs) made.outputs.push_back(rewriter(output));
-    plain = std::move(made);
-    return shares;
+    if (!held_.empty()) eliminate(slopes, variables, body);
   }
 
   /// Makes the slopes those of the friction that holds.
@@ -158,20 +126,7 @@ class EquationsBuilder {
     for (std::size_t g = 0; g < count_; ++g)
       for (std::size_t k = 0; k < held_.size(); ++k)
         if (find_guard(slopes_[rates + g]).number == held_[k]) guards[k] = rates + g;
-    Program change{slopes.graph, {}, {}, {}};
-    const auto multiply = [&](const Form& a, const Form& b) {
-      return a.is_zero() || b.is_zero() ? Form() : change.graph.multiply(a, b);
-    };
-    for (const std::size_t row : guards) {
-      Form sum = slope(slopes.outputs, row, variables.size() - 1);
-      for (std::size_t i = 0; i < size; ++i) {
-        const Form moves = i < 3 ? slopes.outputs[i]
-                         : i < 6 ? change.graph.state(formula::first_rate + static_cast<int>(i) - 3)
-                                 : slopes.outputs[i - 3];
-        sum = sum + multiply(slope(slopes.outputs, row, i), moves);
-      }
-      change.outputs.push_back(sum);
-    }
+    Program change = change_held(slopes, guards, variables);
     variables.resize(size);
     const std::vector<Form> changes =
         formula::embed(formula::differentiate(formula::rewrite(change), variables), made_.graph, body, nullptr);

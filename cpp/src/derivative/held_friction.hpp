@@ -2,9 +2,30 @@
 
 #include <vector>
 
-#include "polhode/formula/graph.hpp"
+#include "polhode/formula/derivative.hpp"
+#include "polhode/formula/program.hpp"
+#include "polhode/formula/sides.hpp"
 
 namespace polhode {
+
+/// The guards of the friction that holds, and the shares of their loads as forms of a whole system.
+struct HeldShares {
+  std::vector<std::size_t> guards;
+  std::vector<formula::Form> forms;
+};
+
+/// In the place of each friction that holds puts its share, a state behind all others.
+/// @param plain   a body's rates; gets the shares
+/// @param whole   the graph of the system, with its `guards`, and `body`, the states of `plain` as its forms
+HeldShares replace_held(formula::Program& plain, formula::Graph& whole, const formula::Guards& guards,
+                        const std::vector<formula::Form>& body, const std::vector<formula::Side>& sides);
+
+/// d/dt of held rates.
+/// @param slopes     the accelerations, rates of states and guards, differentiated by `variables`
+/// @param guards     the rows of the held rates
+/// @param variables  the rates, small rotations, states, shares, and time
+formula::Program change_held(const formula::Program& slopes, const std::vector<std::size_t>& guards,
+                             const std::vector<formula::Variable>& variables);
 
 /// What friction that holds does to the derivatives of a motion.
 ///
