@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .._scene.scene import Scene
-from ..torques import Custom, During, Formula
+from ..torques import Custom, During
 
 Torque = object
 

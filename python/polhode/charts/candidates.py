@@ -1,4 +1,4 @@
-"""The candidates: every method, torques as formulas, the plan's choice, the closed forms that apply, and other programs.
+"""The candidates: every method, torques as formulas, the plan's choice, the closed forms, and other programs.
 
 A method and a closed form join by the compiled lists, another program by its file and a name in `peers`.
 """

@@ -148,7 +148,7 @@ def test_friction_that_holds_and_lets_go():
 
 
 def test_friction_holds_a_rate_that_depends_on_time():
-    """A belt that speeds up carries the body: w = t / 10 from 6/7 s on, until a torque at t = 5 is more than the load."""
+    """A belt that speeds up carries the body: w = t / 10 from 6/7 s on, until a torque is more than the load."""
     belt = Formula(text="[0, 0, friction(0.5, omega.z - 0.1 * t) - where(t > 5, 0.6, 0)]")
     times = np.linspace(0, 8, 17)
     motion = ph.solve(ph.Scene(inertia=(1, 2, 2), omega=(0, 0, 0.3), torques=[belt], times=times), 1e-9)
