@@ -12,4 +12,7 @@ namespace polhode::python {
 std::vector<formula::Input> to_inputs(const py::dict& parameters, const std::string& prefix = "Formula.");
 py::dict from_inputs(const std::vector<formula::Input>& inputs);
 
+/// polhode.MagneticField.
+void bind_torque_field(py::module_& m);
+
 }  // namespace polhode::python

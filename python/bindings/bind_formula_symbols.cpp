@@ -2,6 +2,8 @@
 #include <memory>
 
 #include "bind_formula.hpp"
+#include "bind_orbit.hpp"
+#include "polhode/torque/magnetic_field.hpp"
 #include "bind_torque.hpp"
 #include "convert.hpp"
 #include "polhode/core/error.hpp"
@@ -183,6 +185,14 @@ void bind_symbols(py::module_& m) {
     const Expr yes = operands(a), no = operands(b);
     return operands.wrap(formula::where(condition.condition, yes, no));
   });
+  m.def("see_orbit", [](const py::object& orbit, const py::object& t) {
+    Operands operands;
+    const formula::Seen<Expr> seen = formula::see(to_ephemeris(orbit, "orbit"), operands(t));
+    py::list r, v;
+    for (const Expr& one : seen.r.components) r.append(operands.wrap(one));
+    for (const Expr& one : seen.v.components) v.append(operands.wrap(one));
+    return py::make_tuple(r, v);
+  });
   m.def("to_body", [](const py::sequence& attitude, const py::sequence& vector) {
     Operands operands;
     Vec<Expr, 4> q;
@@ -195,11 +205,21 @@ void bind_symbols(py::module_& m) {
   });
 }
 
+py::list see_field(const py::object& own, const py::object& t) {
+  const auto& field = own.cast<const MagneticField&>();
+  Operands operands;
+  py::list found;
+  for (const Expr& component : field.see(operands(t)).components) found.append(operands.wrap(component));
+  return found;
+}
+
 }  // namespace
 
 void bind_formula_symbols(py::module_& m) {
   py::module_ symbols = m.def_submodule("symbols", "What a traced function computes with.");
   bind_symbols(symbols);
+  bind_torque_field(m);
+  symbols.def("see_field", &see_field);
 }
 
 }  // namespace polhode::python

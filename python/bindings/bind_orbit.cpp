@@ -1,6 +1,11 @@
 #include <pybind11/typing.h>
 
-#include "bind.hpp"
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "bind_orbit.hpp"
 #include "convert.hpp"
 #include "gil.hpp"
 #include "polhode/core/error.hpp"
@@ -9,6 +14,13 @@
 
 namespace polhode::python {
 namespace {
+
+std::array<std::pair<const char*, double*>, 11> list_places(OrbitElements& elements) {
+  return {{{"mu", &elements.mu}, {"periapsis_distance", &elements.periapsis_distance}, {"a", &elements.semi_major_axis},
+           {"e", &elements.e}, {"inclination", &elements.inclination}, {"node", &elements.node},
+           {"periapsis", &elements.periapsis}, {"anomaly", &elements.anomaly}, {"t0", &elements.t0},
+           {"j2", &elements.j2}, {"radius", &elements.radius}}};
+}
 
 std::vector<Vector3d> to_rows(py::handle value, const char* name) {
   const Array array = to_array_with_tail(value, name, {3});
@@ -39,7 +51,56 @@ py::typing::Tuple<Array, Array> states_at(const Orbit& orbit, py::handle t) {
   return py::make_tuple(r, v);
 }
 
+template <class Rows>
+Array from_rows(const Rows& rows) {
+  Array array({static_cast<py::ssize_t>(rows.size()), static_cast<py::ssize_t>(3)});
+  double* to = array.mutable_data();
+  for (const Vector3d& row : rows) to = std::copy_n(row.data(), 3, to);
+  return array;
+}
+
+py::tuple describe(const OrbitStart& start) {
+  py::dict given;
+  given["mu"] = start.mu, given["r0"] = from_vector3(start.r0), given["v0"] = from_vector3(start.v0);
+  given["t0"] = start.t0;
+  return py::make_tuple("state", given);
+}
+
+/// The elements without those that are 0 or not given.
+py::tuple describe(const OrbitElements& elements) {
+  py::dict given;
+  given["mu"] = elements.mu;
+  OrbitElements copy = elements;
+  for (const auto& [name, place] : list_places(copy))
+    if (*place != 0.0 && !std::isnan(*place)) given[name] = *place;
+  return py::make_tuple("elements", given);
+}
+
+py::tuple describe(const OrbitRows& rows) {
+  py::dict given;
+  given["t"] = Array(static_cast<py::ssize_t>(rows.t.size()), rows.t.data());
+  given["r"] = from_rows(rows.r), given["v"] = from_rows(rows.v);
+  if (!std::isnan(rows.mu)) given["mu"] = rows.mu;
+  return py::make_tuple("table", given);
+}
+
 }  // namespace
+
+formula::Ephemeris to_ephemeris(py::handle orbit, const std::string& where, std::string name) {
+  if (!py::hasattr(orbit, "_core") || !py::isinstance<Orbit>(orbit.attr("_core")))
+    throw InvalidInput(where, "an Orbit", std::string(py::str(py::type::of(orbit).attr("__name__"))));
+  const auto& own = orbit.attr("_core").cast<const Orbit&>();
+  if (own.kind() == OrbitKind::table)
+    throw InvalidInput(where, "a conic", "a table", "torques take tables in a later version: fit elements to the table");
+  return own.ephemeris(std::move(name));
+}
+
+py::object from_ephemeris(const formula::Ephemeris& ephemeris) {
+  const std::optional<Orbit> orbit = Orbit::from_ephemeris(ephemeris);
+  if (!orbit) return py::none();
+  const py::tuple given = std::visit([](const auto& one) { return describe(one); }, orbit->given());
+  return py::module_::import("polhode._orbit.orbit").attr("_restore")(given[0], given[1]);
+}
 
 void bind_orbit(py::module_& m) {
   py::class_<Orbit>(m, "_Orbit")
@@ -48,12 +109,7 @@ void bind_orbit(py::module_& m) {
       })
       .def_static("from_elements", [](const py::dict& given) {
         OrbitElements elements{.mu = 0.0};
-        const std::pair<const char*, double*> places[] = {
-            {"mu", &elements.mu}, {"periapsis_distance", &elements.periapsis_distance},
-            {"a", &elements.semi_major_axis}, {"e", &elements.e}, {"inclination", &elements.inclination},
-            {"node", &elements.node}, {"periapsis", &elements.periapsis}, {"anomaly", &elements.anomaly},
-            {"t0", &elements.t0}, {"j2", &elements.j2}, {"radius", &elements.radius}};
-        for (const auto& [name, place] : places)
+        for (const auto& [name, place] : list_places(elements))
           if (given.contains(name)) *place = to_real(given[name], name);
         return Orbit::from_elements(elements);
       })

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <tuple>
 
+#include "bind_orbit.hpp"
 #include "bind_scene.hpp"
 #include "bind_torque.hpp"
 #include "convert.hpp"
@@ -27,6 +28,7 @@ TorqueValue to_value(py::handle value, const TorqueParameter& parameter, const s
     case Kind::real: return to_real(value, where.c_str());
     case Kind::vector: return to_vector3(value, where.c_str());
     case Kind::matrix: return to_matrix_or_diagonal(value, where.c_str());
+    case Kind::orbit: return to_ephemeris(value, where);
     case Kind::choice: break;
   }
   const std::string text = py::isinstance<py::str>(value) ? value.cast<std::string>() : std::string(py::repr(value));
@@ -48,7 +50,9 @@ py::object from_value(const TorqueValue& value) {
   return std::visit(
       [](const auto& one) -> py::object {
         using T = std::decay_t<decltype(one)>;
-        if constexpr (std::is_same_v<T, Vector3d>) {
+        if constexpr (std::is_same_v<T, formula::Ephemeris>) {
+          return from_ephemeris(one);
+        } else if constexpr (std::is_same_v<T, Vector3d>) {
           return from_vector3(one);
         } else if constexpr (std::is_same_v<T, Matrix3d>) {
           return from_matrix3(one);
@@ -74,7 +78,7 @@ std::string call_signature(const TorqueRecord& record) {
 
 std::string docstring(const TorqueRecord& record) {
   static constexpr const char* shapes[] = {"float", "array_like, shape (3,)", "array_like, shape (3, 3) or (3,)",
-                                           "str"};
+                                           "str", "Orbit"};
   std::string text = call_signature(record) + "\n\n" + std::string(record.doc) + "\n\nParameters\n----------\n";
   for (const TorqueParameter& parameter : record.parameters) {
     text += std::string(parameter.name) + " : " + shapes[static_cast<int>(parameter.kind)] + "\n    ";
@@ -193,7 +197,7 @@ void bind_one<torques::During>(py::module_& m) {
 }
 
 py::dict describe(const TorqueRecord& record) {
-  static constexpr const char* kinds[] = {"real", "vector", "matrix", "choice"};
+  static constexpr const char* kinds[] = {"real", "vector", "matrix", "choice", "orbit"};
   py::list parameters;
   for (const TorqueParameter& parameter : record.parameters) {
     py::dict one;

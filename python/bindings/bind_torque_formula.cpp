@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "bind_formula.hpp"
+#include "bind_orbit.hpp"
 #include "bind_torque.hpp"
 #include "convert.hpp"
 #include "polhode/core/error.hpp"
@@ -69,6 +70,25 @@ void add_states(const py::dict& states, Text& text) {
     text.rates.push_back(to_field(states[py::str(input.name)]["rate"], "Formula.states." + input.name + ".rate"));
 }
 
+/// Orbits by their names in a text.
+std::vector<std::pair<std::string, formula::Ephemeris>> to_orbits(py::handle orbits) {
+  std::vector<std::pair<std::string, formula::Ephemeris>> found;
+  if (orbits.is_none()) return found;
+  if (!py::isinstance<py::dict>(orbits))
+    throw InvalidInput("Formula.orbits", "a dict of names and orbits", std::string(py::str(py::type::of(orbits))));
+  for (const auto& [key, orbit] : py::reinterpret_borrow<py::dict>(orbits)) {
+    const std::string name = to_field(key, "Formula.orbits");
+    found.emplace_back(name, to_ephemeris(orbit, "Formula.orbits." + name, name));
+  }
+  return found;
+}
+
+py::dict from_orbits(const Text& text) {
+  py::dict dict;
+  for (const auto& [name, orbit] : text.orbits) dict[py::str(name)] = from_ephemeris(orbit);
+  return dict;
+}
+
 py::dict to_states(py::handle states) {
   if (states.is_none()) return {};
   if (!py::isinstance<py::dict>(states))
@@ -77,8 +97,8 @@ py::dict to_states(py::handle states) {
 }
 
 Formula make_formula(const py::object& function, const py::object& text, const py::object& let,
-                     const py::object& potential, const py::object& states, const py::object& recognise,
-                     const py::kwargs& parameters) {
+                     const py::object& potential, const py::object& states, const py::object& orbits,
+                     const py::object& recognise, const py::kwargs& parameters) {
   const bool may = to_choice(recognise);
   const int given = !function.is_none() + !text.is_none() + !potential.is_none();
   if (given != 1)
@@ -95,10 +115,13 @@ Formula make_formula(const py::object& function, const py::object& text, const p
     if (text.is_none()) written.potential = to_field(potential, "Formula.potential");
     if (written.torque.empty() && written.potential.empty())
       throw InvalidInput("Formula", "a text with an expression", "an empty one");
+    written.orbits = to_orbits(orbits);
     add_states(own, written);
     return Formula(written, may);
   }
   if (!let.is_none()) throw InvalidInput("Formula.let", "left out for a function", std::string(py::repr(let)));
+  if (!orbits.is_none())
+    throw InvalidInput("Formula.orbits", "left out for a function", std::string(py::repr(orbits)), "call orbit.at(t) in it");
   const py::object& called = potential.is_none() ? function : potential;
   if (!PyCallable_Check(called.ptr())) {
     const bool torque = potential.is_none();
@@ -135,8 +158,10 @@ py::tuple get_state(const Formula& formula) {
   const Text& text = formula.text();
   py::list let;
   for (const auto& [name, shared] : text.let) let.append(py::make_tuple(name, shared));
-  return py::make_tuple(text.torque, py::tuple(let), to_pairs(text.parameters), formula.recognise(),
-                        to_pairs(text.states), py::tuple(py::cast(text.rates)), text.potential);
+  py::tuple state = py::make_tuple(text.torque, py::tuple(let), to_pairs(text.parameters), formula.recognise(),
+                                   to_pairs(text.states), py::tuple(py::cast(text.rates)), text.potential);
+  if (text.orbits.empty()) return state;
+  return state + py::make_tuple(py::tuple(from_orbits(text).attr("items")()));
 }
 
 Formula from_state_of(const py::tuple& s) {
@@ -150,6 +175,7 @@ Formula from_state_of(const py::tuple& s) {
   text.states = from_pairs(s[4]);
   for (const py::handle rate : s[5].cast<py::sequence>()) text.rates.push_back(rate.cast<std::string>());
   text.potential = s[6].cast<std::string>();
+  if (s.size() > 7) text.orbits = to_orbits(py::dict(s[7]));
   return Formula(text, s[3].cast<bool>());
 }
 
@@ -174,6 +200,7 @@ std::string show(const Formula& formula) {
                       std::string(py::repr(py::str(is_potential ? text.potential : text.torque)));
   if (!text.let.empty()) shown += ", let=" + std::string(py::repr(from_let(text)));
   if (!text.states.empty()) shown += ", states=" + std::string(py::repr(from_states(formula)));
+  if (!text.orbits.empty()) shown += ", orbits=" + std::string(py::repr(from_orbits(text)));
   if (!formula.recognise()) shown += ", recognise=False";
   for (const auto& [name, value] : from_inputs(formula.parameters()))
     shown += ", " + std::string(py::str(name)) + "=" + std::string(py::repr(value));
@@ -181,7 +208,8 @@ std::string show(const Formula& formula) {
 }
 
 constexpr const char* formula_doc =
-    R"doc(Formula(function=None, *, text=None, let=None, potential=None, states=None, recognise=True, **parameters)
+    R"doc(Formula(function=None, *, text=None, let=None, potential=None, states=None, orbits=None, recognise=True,
+        **parameters)
 
 A torque of your own as a formula: traced once from a Python function, or written as text.
 
@@ -205,6 +233,9 @@ states : dict, optional
     States of the torque's own, by name. Beside a function each has its start, a number or shape (n,). The function is
     then ``function(t, omega, attitude, p, s)`` and returns (torque, rates), a dict of the same names. Beside a text each
     is ``{"start": numbers, "rate": text}``.
+orbits : dict of Orbit, optional
+    Orbits of a text by name: an orbit ``main`` gives ``main.r``, ``main.v`` [m, m/s], ``main.distance`` and
+    ``main.inverse_distance``. A function calls ``orbit.at(t)`` instead.
 recognise : bool
     Whether the formula may be replaced by torques of this module.
 **parameters : float or array_like, shape (n,)
@@ -278,7 +309,7 @@ void bind_torque_formula(py::module_& m) {
   py::class_<Formula> type(m, "Formula", formula_doc);
   type.def(py::init(&make_formula), py::arg("function") = py::none(), py::kw_only(), py::arg("text") = py::none(),
            py::arg("let") = py::none(), py::arg("potential") = py::none(), py::arg("states") = py::none(),
-           py::arg("recognise") = true);
+           py::arg("orbits") = py::none(), py::arg("recognise") = true);
   type.def_property_readonly("text", [](const Formula& formula) { return formula.text().torque; },
                              "str: the formula as text; empty for a potential.");
   type.def_property_readonly("potential", [](const Formula& formula) -> py::object {
@@ -286,6 +317,8 @@ void bind_torque_formula(py::module_& m) {
     return py::str(formula.text().potential);
   }, "str or None: the potential as text.");
   type.def_property_readonly("states", &from_states, "dict: of each state its start, and its rate as text.");
+  type.def_property_readonly("orbits", [](const Formula& formula) { return from_orbits(formula.text()); },
+                             "dict: the orbits of the text by name.");
   type.def_property_readonly("let", [](const Formula& formula) { return from_let(formula.text()); },
                              "dict: names for shared parts of the text.");
   type.def_property_readonly("parameters", [](const Formula& formula) { return from_inputs(formula.parameters()); },
@@ -323,7 +356,7 @@ void bind_torque_formula(py::module_& m) {
   });
   type.def("__hash__", [](const Formula& formula) { return py::hash(get_state(formula)); });
   type.def(py::pickle(&get_state, [](const py::tuple& state) {
-    return from_state("Formula", state, 7, &from_state_of);
+    return from_state("Formula", state, state.size() == 8 ? 8 : 7, &from_state_of);   // 8: with orbits
   }));
 }
 

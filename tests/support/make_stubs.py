@@ -46,11 +46,16 @@ def tidy_signature(line: str, public: list[str], home: str) -> str:
 def torque_signatures(text: str) -> str:
     """The torques' constructors take *args and read them by their records; the records know the signature too."""
     types_of = {"real": "float", "vector": "numpy.typing.ArrayLike", "matrix": "numpy.typing.ArrayLike",
-                "choice": "str"}
+                "choice": "str", "orbit": "typing.Any"}
     for record in polhode.torques.records():
         parameters = [f"{p['name']}: "
                       f"{types_of[p['kind']]}" + (f" = {p['default']!r}" if p["default"] is not None else "")
                       for p in record["parameters"]]
+        ways = [r for r in polhode.torques.records() if r["key"] == record["key"]]
+        if record == ways[0] and len(ways) > 1:   # its first class makes the others, too
+            others = [p["name"] for way in ways[1:] for p in way["parameters"]]
+            parameters = [p if " = " in p else p + " = ..." for p in parameters]
+            parameters += ["*", *(f"{name}: typing.Any = ..." for name in others)]
         start = text.index(f"class {record['name']}:")
         head, body = text[:start], text[start:]
         text = head + body.replace("(self, *args, **kwargs)", f"({', '.join(['self', *parameters])})",

@@ -53,6 +53,7 @@ std::string describe_structure(const Tape& tape) {
   for (const formula::StateSlot& state : tape.state_slots()) add(state.start, state.number, state.slot);
   for (const auto* forms : {&tape.forms(), &tape.extra_forms()})
     for (const Form& form : *forms) add_form(form);
+  for (const formula::Wave& wave : tape.waves()) add(wave.seen);
   for (const formula::Recurrence& op : tape.operations())
     add(op.rule, op.a, op.b, op.left, op.right, op.left_weighted, op.divided, op.first, op.second);
   for (const formula::CarriedVector& vector : tape.carried()) add(vector.rate != 0.0);
@@ -195,10 +196,10 @@ class FormulaIntegrator final : public SeriesIntegrator {
   void put_known(int lane) {
     const Tape& tape = *b_.tapes[lane];
     const DD t(b_.time[lane], b_.time_low[lane]);
-    for (const FormulaCode::Known& wave : code_.waves) {
-      formula::fill_wave(tape.waves()[static_cast<std::size_t>(wave.index)], t, b_.unit[lane], b_.order,
-                         b_.rows + wave.place.offset + lane, width);
-    }
+    places_.assign(tape.waves().size(), -1);
+    for (const FormulaCode::Known& wave : code_.waves)
+      places_[static_cast<std::size_t>(wave.index)] = wave.place.offset + lane;
+    if (!code_.waves.empty()) tape.fill_waves(t, b_.unit[lane], b_.order, places_, b_.rows, width);
     for (std::size_t i = 0; i < code_.vectors.size(); ++i) {
       if (!code_.vectors[i].rotates) continue;
       const formula::CarriedVector& vector = tape.carried()[i];
@@ -214,6 +215,7 @@ class FormulaIntegrator final : public SeriesIntegrator {
   FormulaBlock b_;
   FormulaCode code_;
   Aligned rows_, numbers_, older_, starts_;
+  std::vector<std::ptrdiff_t> places_;   ///< of the waves of a lane
   std::shared_ptr<const SharedTape> tapes_[width];
 };
 

@@ -110,7 +110,7 @@ class EquationsBuilder {
     for (int i = 0; i < 3; ++i) variables.push_back({Variable::Kind::rotation, i});
     for (int i = 0; i < numbers_ + static_cast<int>(held_.size()); ++i)
       variables.push_back({Variable::Kind::state, formula::first_extra + i});
-    variables.push_back({Variable::Kind::time, 0});
+    if (!held_.empty()) variables.push_back({Variable::Kind::time, 0});
     const Program slopes = formula::differentiate(formula::rewrite(plain), variables);
     body.insert(body.end(), shares.forms.begin(), shares.forms.end());
     slopes_ = formula::embed(slopes, made_.graph, body, nullptr);

@@ -33,6 +33,8 @@ class FormulaColumns {
   int count_blocks() const { return body_.count_blocks() + 1; }
   void compute_series(math::DD t, double unit, const double* y, const double* carry, int order, double* rows) const;
   void compute_sizes(const double* row, double* sizes) const;
+  int count_known() const { return body_.count_known(); }
+  double compute_known_size(int row, int which) const { return body_.compute_known_size(row, which); }
   double compute_time_scale(math::DD t, const double* y) const { return body_.compute_time_scale(t, y); }
   void start_carry(double* carry) const { body_.start_carry(carry); }
   void correct(math::DD t, long step, double* y, double* carry) const { body_.correct(t, step, y, carry); }

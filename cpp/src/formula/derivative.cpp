@@ -30,6 +30,7 @@ class Derivative {
     switch (n.op) {
       case Op::constant: return {};
       case Op::time: return by_.kind == Variable::Kind::time ? Form(1.0) : Form();
+      case Op::ephemeris: return by_.kind == Variable::Kind::time ? of_ephemeris(n) : Form();
       case Op::state: return of_state(n.index);
       case Op::parameter: return by_.kind == Variable::Kind::parameter && by_.number == n.index ? Form(1.0) : Form();
       case Op::linear: return (*this)(Form(graph_.linear(node)));
@@ -50,6 +51,21 @@ class Derivative {
     axis[static_cast<std::size_t>(by_.number)] = Expr(1.0);
     const Vec<Expr, 4> rotation = multiply_pure(list_states<4>(graph_, first_attitude), axis);
     return rotation[static_cast<std::size_t>(number - first_attitude)].form() * 0.5;
+  }
+
+  /// r' = v, |r|' = r.v / |r|
+  Form of_ephemeris(const Node& n) {
+    const Ephemeris seen = graph_.ephemeris_of(n);   // a copy: new ones move the old ones
+    const auto get = [&](int number) { return graph_.ephemeris(seen, number); };
+    const int number = n.index % Ephemeris::size;
+    if (number < Ephemeris::velocity) return get(Ephemeris::velocity + number);
+    if (number < Ephemeris::distance)
+      throw InvalidInput("Formula", "without the velocity of an orbit where friction holds", "one with it");
+    Form product;
+    for (int i = 0; i < 3; ++i)
+      product = product + graph_.multiply(get(Ephemeris::position + i), get(Ephemeris::velocity + i));
+    const Form inverse = get(Ephemeris::inverse_distance), rate = graph_.multiply(product, inverse);
+    return number == Ephemeris::distance ? rate : -graph_.multiply(graph_.multiply(inverse, inverse), rate);
   }
 
   /// d(R^T v) = (R^T v) x e + R^T dv

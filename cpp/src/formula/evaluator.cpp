@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 
 #include "polhode/formula/detail/functions.hpp"
@@ -14,7 +15,21 @@ Evaluator::Evaluator(const Program& program)
 }
 
 void Evaluator::evaluate(double t, const double* y, const double* parameters, double* values, double* outputs) const {
-  for (const int node : live_) values[node] = compute(node, t, y, parameters, values);
+  // Each ephemeris is evaluated once, at the first of its numbers.
+  std::array<double, Ephemeris::size * Graph::most_ephemerides> known;
+  unsigned seen = 0;
+  for (const int node : live_) {
+    const Node& n = program_.graph[node];
+    if (n.op != Op::ephemeris) {
+      values[node] = compute(node, t, y, parameters, values);
+      continue;
+    }
+    const int which = n.index / Ephemeris::size;
+    if ((seen >> which & 1) == 0)
+      program_.graph.ephemeris_of(n).path()->evaluate(math::DD(t), known.data() + Ephemeris::size * which);
+    seen |= 1u << which;
+    values[node] = known[static_cast<std::size_t>(n.index)];
+  }
   for (const Form& output : program_.outputs) *outputs++ = compute(output, values);
 }
 
@@ -32,6 +47,7 @@ double Evaluator::compute(int node, double t, const double* y, const double* par
     case Op::time: return t;
     case Op::state: return y[n.index];
     case Op::parameter: return parameters[n.index];
+    case Op::ephemeris: break;   // not here
     case Op::linear: return compute(program_.graph.linear(node), values);
     case Op::multiply: return operand(0) * operand(1);
     case Op::divide: return operand(0) / operand(1);

@@ -97,4 +97,12 @@ Vec<Expr, 3> to_body(const Vec<Expr, 4>& attitude, const Vec<Expr, 3>& v) {
   return {{Expr(*graph, seen[0]), Expr(*graph, seen[1]), Expr(*graph, seen[2])}};
 }
 
+Seen<Expr> see(const Ephemeris& ephemeris, const Expr& t) {
+  if (t.graph() == nullptr || !(t.form() == t.graph()->time()))
+    throw InvalidInput("orbit.at", "called with the time t itself", "another expression",
+                       "an orbit at a shifted time is an Orbit with another t0");
+  const auto number = [&](int i) { return Expr(*t.graph(), t.graph()->ephemeris(ephemeris, i)); };
+  return {{{number(0), number(1), number(2)}}, {{number(3), number(4), number(5)}}, number(6), number(7)};
+}
+
 }  // namespace polhode::formula

@@ -55,7 +55,7 @@ Facts find_facts(const Program& torque) {
   for (int i = 0; i < torque.graph.size(); ++i) {
     if (!live[static_cast<std::size_t>(i)]) continue;
     const Node& n = torque.graph[i];
-    facts.uses_time |= n.op == Op::time;
+    facts.uses_time |= n.op == Op::time || n.op == Op::ephemeris;
     facts.has_switches |= n.op == Op::choose;
     if (n.op != Op::state) continue;
     facts.uses_rates |= n.index < first_attitude;

@@ -96,6 +96,16 @@ Form Graph::time() { return Form::of(intern({.op = Op::time})); }
 Form Graph::state(int number) { return Form::of(intern({.op = Op::state, .index = number})); }
 Form Graph::parameter(int number) { return Form::of(intern({.op = Op::parameter, .index = number})); }
 
+Form Graph::ephemeris(const Ephemeris& ephemeris, int number) {
+  const auto known = std::find(ephemerides_.begin(), ephemerides_.end(), ephemeris);
+  const auto which = static_cast<int>(known - ephemerides_.begin());
+  if (known == ephemerides_.end()) {
+    if (which == most_ephemerides) throw InvalidInput("formula", "at most 16 orbits", "more");
+    ephemerides_.push_back(ephemeris);
+  }
+  return Form::of(intern({.op = Op::ephemeris, .index = Ephemeris::size * which + number}));
+}
+
 Form Graph::apply(Op op, const Form& a, double constant) {
   return Form::of(intern({.op = op, .operands = {node_of(a), -1, -1}, .constant = constant}));
 }

@@ -13,12 +13,13 @@ namespace polhode::formula {
 namespace {
 
 using Names = std::map<std::string, Value, std::less<>>;
+using Orbits = std::vector<std::pair<std::string, Ephemeris>>;
 
 /// One field by recursive descent: comparison, sum, product, sign, power, component, primary.
 class FieldParser {
  public:
-  FieldParser(Graph& graph, const Names& names, std::string_view text, std::string_view field)
-      : graph_(graph), names_(names), lexer_(check_size(text, field), field) {}
+  FieldParser(Graph& graph, const Names& names, const Orbits& orbits, std::string_view text, std::string_view field)
+      : graph_(graph), names_(names), orbits_(orbits), lexer_(check_size(text, field), field) {}
 
   Value parse() {
     Value value = comparison();
@@ -147,9 +148,28 @@ class FieldParser {
       const std::vector<Value> arguments = list(")");
       return at(token, [&] { return call(graph_, token.text, arguments); });
     }
+    const auto orbit = std::find_if(orbits_.begin(), orbits_.end(), [&](const auto& o) { return o.first == token.text; });
+    if (orbit != orbits_.end()) return see_orbit(orbit->second);
     const auto known = names_.find(token.text);
     if (known == names_.end()) refuse_name(token);
     return known->second;
+  }
+
+  /// What follows the name of an orbit.
+  Value see_orbit(const Ephemeris& ephemeris) {
+    lexer_.expect(".");
+    const Token token = lexer_.token();
+    const bool vector = token.text == "r" || token.text == "v";
+    const int first = token.text == "r"                  ? Ephemeris::position
+                      : token.text == "v"                ? Ephemeris::velocity
+                      : token.text == "distance"         ? Ephemeris::distance
+                      : token.text == "inverse_distance" ? Ephemeris::inverse_distance
+                                                         : -1;
+    if (token.kind != Token::Kind::name || first < 0) lexer_.refuse("r, v, distance or inverse_distance of an orbit");
+    lexer_.next();
+    Value value;
+    for (int i = first; i < first + (vector ? 3 : 1); ++i) value.items.emplace_back(graph_, graph_.ephemeris(ephemeris, i));
+    return value;
   }
 
   std::vector<Value> list(std::string_view end) {
@@ -162,6 +182,7 @@ class FieldParser {
   [[noreturn]] void refuse_name(const Token& token) const {
     std::string known = "a known name (";
     for (const auto& [name, value] : names_) known += name + ", ";
+    for (const auto& [name, value] : orbits_) known += name + ".r, " + name + ".v, ";
     known.resize(known.size() - 2);
     lexer_.refuse(known + ")", token.begin);
   }
@@ -178,6 +199,7 @@ class FieldParser {
 
   Graph& graph_;
   const Names& names_;
+  const Orbits& orbits_;
   Lexer lexer_;
   int depth_ = 0;
 };
@@ -228,21 +250,27 @@ Program parse(const Text& text) {
     add_name(names, parameter.name, list_inputs(graph, next, parameter.values.size(), &Graph::parameter));
     next += static_cast<int>(parameter.values.size());
   }
+  Orbits orbits;
+  for (const auto& [name, ephemeris] : text.orbits) {
+    add_name(names, name, {});   // refuses what is no name, or another's
+    names.erase(name);
+    orbits.emplace_back(name, Ephemeris(ephemeris.path(), name));
+  }
   for (const auto& [name, definition] : text.let) {
-    Value value = FieldParser(graph, names, definition, "let." + name).parse();
+    Value value = FieldParser(graph, names, orbits, definition, "let." + name).parse();
     add_name(names, name, std::move(value));
   }
   if (!text.potential.empty()) {
     if (!text.torque.empty() || !text.states.empty())
       throw InvalidInput("formula", "a potential alone", "a torque or states beside it",
                          "the torque follows from the potential: add another Formula for the rest");
-    add_outputs(program, FieldParser(graph, names, text.potential, "potential").parse(), 1, "potential");
+    add_outputs(program, FieldParser(graph, names, orbits, text.potential, "potential").parse(), 1, "potential");
     return rewrite(program);
   }
-  add_outputs(program, FieldParser(graph, names, text.torque, "torque").parse(), 3, "torque");
+  add_outputs(program, FieldParser(graph, names, orbits, text.torque, "torque").parse(), 3, "torque");
   for (std::size_t i = 0; i < text.rates.size(); ++i) {
     const std::string field = "states." + text.states[i].name + ".rate";
-    add_outputs(program, FieldParser(graph, names, text.rates[i], field).parse(), text.states[i].values.size(), field);
+    add_outputs(program, FieldParser(graph, names, orbits, text.rates[i], field).parse(), text.states[i].values.size(), field);
   }
   return rewrite(program);
 }

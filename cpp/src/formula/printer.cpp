@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <map>
 #include <string>
 
@@ -19,15 +20,18 @@ class Printer {
     for (const std::vector<Input>* inputs : {&program.parameters, &program.states})
       for (const Input& input : *inputs)
         while (input.name.size() > prefix_.size() && input.name.starts_with(prefix_)) prefix_ += '_';
+    for (const Ephemeris& one : graph_.ephemerides()) orbits_.emplace_back(find_name(one), one);
+    for (const auto& [name, one] : orbits_)
+      while (name.size() > prefix_.size() && name.starts_with(prefix_)) prefix_ += '_';
   }
 
   Text print() {
     Text text;
-    text.parameters = program_.parameters, text.states = program_.states;
+    text.parameters = program_.parameters, text.states = program_.states, text.orbits = orbits_;
     count_uses();
     for (int i = 0; i < graph_.size(); ++i) {
       const Op op = graph_[i].op;
-      if (op == Op::constant || op == Op::time || op == Op::state || op == Op::parameter) continue;
+      if (op == Op::constant || op == Op::time || op == Op::state || op == Op::parameter || op == Op::ephemeris) continue;
       if (uses_[i] == 0 || (inlined_ && uses_[i] == 1)) continue;
       text.let.emplace_back(prefix_ + std::to_string(i), operation(i));
     }
@@ -38,6 +42,18 @@ class Printer {
   }
 
  private:
+  /// Its own name, or orbit, orbit1, ...
+  std::string find_name(const Ephemeris& one) const {
+    const auto is_taken = [&](const std::string& name) {
+      const auto same = [&](const auto& other) { return other.first == name; };
+      return name.empty() || find_place(program_.parameters, name).count > 0 ||
+             find_place(program_.states, name).count > 0 || std::any_of(orbits_.begin(), orbits_.end(), same);
+    };
+    std::string name = one.name().empty() ? "orbit" : one.name();
+    for (int i = 1; is_taken(name); ++i) name = "orbit" + std::to_string(i);
+    return name;
+  }
+
   void count_uses() {
     const auto count = [&](const Form& form) {
       for (const Term& term : form.terms) ++uses_[term.node];
@@ -78,6 +94,10 @@ class Printer {
       case Op::constant: return n.constant < 0.0 ? bracket(to_text(n.constant)) : to_text(n.constant);
       case Op::time: return "t";
       case Op::parameter: return name(program_.parameters, n.index);
+      case Op::ephemeris: {
+        static constexpr const char* parts[] = {"r.x", "r.y", "r.z", "v.x", "v.y", "v.z", "distance", "inverse_distance"};
+        return orbits_[static_cast<std::size_t>(n.index / Ephemeris::size)].first + "." + parts[n.index % Ephemeris::size];
+      }
       case Op::state:
         if (n.index < first_attitude) return std::string("omega.") + "xyz"[n.index];
         if (n.index < first_extra) return std::string("attitude.") + "xyzw"[n.index - first_attitude];
@@ -125,6 +145,7 @@ class Printer {
   const Graph& graph_;
   bool inlined_;
   std::string prefix_ = "n";
+  std::vector<std::pair<std::string, Ephemeris>> orbits_;
   std::map<int, int> uses_;
 };
 

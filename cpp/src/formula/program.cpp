@@ -68,6 +68,7 @@ Form Rewriter::make(int node) {
     case Op::time: return to_.time();
     case Op::state: return to_.state(n.index);
     case Op::parameter: return to_.parameter(n.index);
+    case Op::ephemeris: return to_.ephemeris(from_.ephemeris_of(n), n.index % Ephemeris::size);
     case Op::linear: {
       const Form& old = from_.linear(node);
       Form sum(old.constant);
@@ -118,7 +119,7 @@ std::vector<bool> find_live(const Graph& graph, const std::vector<Form>& forms,
 
 bool is_same(const Program& a, const Program& b) {
   if (a.graph.size() != b.graph.size() || a.outputs != b.outputs || a.parameters != b.parameters ||
-      a.states != b.states)
+      a.states != b.states || a.graph.ephemerides() != b.graph.ephemerides())
     return false;
   for (int i = 0; i < a.graph.size(); ++i) {
     const bool linear = a.graph[i].op == Op::linear && b.graph[i].op == Op::linear;

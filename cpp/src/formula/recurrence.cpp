@@ -64,4 +64,26 @@ void fill_wave(const Wave& wave, math::DD t, double unit, int order, double* row
   }
 }
 
+void Tape::fill_waves(math::DD t, double unit, int order, const std::vector<std::ptrdiff_t>& places, double* rows,
+                      std::ptrdiff_t stride) const {
+  const auto for_each = [&](int first, int end, const auto& use) {
+    for (std::size_t i = 0; i < waves_.size(); ++i)
+      if (places[i] >= 0 && waves_[i].seen >= first && waves_[i].seen < end) use(waves_[i], rows + places[i]);
+  };
+  for_each(-1, 0, [&](const Wave& wave, double* to) { fill_wave(wave, t, unit, order, to, static_cast<int>(stride)); });
+  std::vector<double> known;
+  for (int i = 0; i < static_cast<int>(ephemerides_.size()); ++i) {
+    const int first = Ephemeris::size * i;
+    bool is_used = false;
+    for_each(first, first + Ephemeris::size, [&](const Wave&, double*) { is_used = true; });
+    if (!is_used) continue;
+    known.resize(static_cast<std::size_t>(Ephemeris::size * (order + 1)));
+    ephemerides_[static_cast<std::size_t>(i)].path()->expand(t, unit, order, known.data());
+    for_each(first, first + Ephemeris::size, [&](const Wave& wave, double* to) {
+      const double* from = known.data() + (wave.seen - first);
+      for (int n = 0; n <= order; ++n) to[stride * n] = from[Ephemeris::size * n];
+    });
+  }
+}
+
 }  // namespace polhode::formula

@@ -17,14 +17,18 @@ class Reference {
     std::vector<double> start(tape_.state_slots().size());
     tape_.start(t, y, start.data());
     for (std::size_t i = 0; i < start.size(); ++i) at(0, tape_.state_slots()[i].slot) = start[i];
+    std::vector<std::ptrdiff_t> places(tape_.waves().size(), -1);
+    for (int slot = 0; slot < slots_; ++slot) {
+      const Slot& s = tape_.slots()[static_cast<std::size_t>(slot)];
+      if (s.kind == SlotKind::wave) places[static_cast<std::size_t>(s.index)] = slot;
+    }
+    tape_.fill_waves(t, unit, order_, places, values_.data(), slots_);
     for (int n = 0; n <= order_; ++n) {
       for (int slot = 0; slot < slots_; ++slot) {
         const Slot& s = tape_.slots()[static_cast<std::size_t>(slot)];
         const auto index = static_cast<std::size_t>(s.index);
         if (s.kind == SlotKind::linear) at(n, slot) = sum(tape_.forms()[index], n);
         if (s.kind == SlotKind::operation) at(n, slot) = advance(s.index, n);
-        if (s.kind == SlotKind::wave && n == 0)
-          fill_wave(tape_.waves()[index], t, unit, order_, &at(0, slot), slots_);
       }
       if (n == order_) return;
       for (const StateSlot& state : tape_.state_slots())

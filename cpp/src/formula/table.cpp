@@ -1,7 +1,9 @@
 #include "polhode/formula/table.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <map>
 #include <utility>
 
 #include "core/choose_level.hpp"
@@ -109,6 +111,26 @@ Table::Table(Tape tape) : tape_(std::move(tape)) {
   for (std::size_t i = 0; i < tape_.slots().size(); ++i)
     if (tape_.slots()[i].kind == SlotKind::wave)
       wave_columns_.push_back(packing.offset_of(static_cast<int>(i)) - 8 * parts_.first_wave);
+  known_ = group_known();
+}
+
+std::vector<std::vector<std::ptrdiff_t>> Table::group_known() const {
+  std::map<int, std::vector<std::ptrdiff_t>> groups;   // by the first number of a vector
+  for (std::size_t i = 0; i < tape_.waves().size(); ++i) {
+    const int seen = tape_.waves()[i].seen, number = seen % Ephemeris::size;
+    if (seen >= 0) groups[seen - (number < Ephemeris::distance ? number % 3 : 0)].push_back(wave_columns_[i]);
+  }
+  std::vector<std::vector<std::ptrdiff_t>> found;
+  for (auto& [first, columns] : groups) found.push_back(std::move(columns));
+  return found;
+}
+
+double Table::compute_known_size(const double* workspace, int row, int which) const {
+  const double* numbers = workspace + 8 * parts_.octets + static_cast<std::ptrdiff_t>(8 * parts_.waves) * row;
+  double largest = 0.0;
+  for (const std::ptrdiff_t column : known_[static_cast<std::size_t>(which)])
+    largest = std::max(largest, std::abs(numbers[column]));
+  return largest;
 }
 
 std::size_t Table::workspace_size(int order) const {
@@ -134,9 +156,7 @@ void Table::compute_series(SimdLevel level, math::DD t, double unit, const doubl
   for (std::size_t i = 0; i < start_columns_.size(); ++i) w.values[start_columns_[i]] = starts[i];
   if (parts_.waves > 0) {
     std::fill_n(w.waves, 8 * count * parts_.waves, 0.0);
-    const auto& waves = tape_.waves();
-    for (std::size_t i = 0; i < waves.size(); ++i)
-      fill_wave(waves[i], t, unit, order, w.waves + wave_columns_[i], 8 * parts_.waves);
+    tape_.fill_waves(t, unit, order, wave_columns_, w.waves, 8 * parts_.waves);
     std::copy_n(w.waves, 8 * parts_.waves, w.values + 8 * parts_.first_wave);
   }
   find_kernel(level)(parts_, tape_.operations().data(), w, unit, order, rows, extras);

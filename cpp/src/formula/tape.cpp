@@ -14,7 +14,7 @@ class Tape::Builder {
  public:
   Builder(Tape& tape, const Program& system, int states)
       : tape_(tape), graph_(system.graph), forms_(static_cast<std::size_t>(system.graph.size())) {
-    tape_.states_ = states;
+    tape_.states_ = states, tape_.ephemerides_ = graph_.ephemerides();
     for (int i = 0; i < states; ++i) add_state({.start = StartKind::given, .number = i});
     const auto is_known = [&](int node) {
       const Node& n = graph_[node];
@@ -105,6 +105,9 @@ class Tape::Builder {
       case Op::state:
         if (n.index >= tape_.states_) throw InvalidInput("formula", "a rate for each state", "a state without one");
         return Form::of(tape_.state_slots_[static_cast<std::size_t>(n.index)].slot);
+      case Op::ephemeris:
+        tape_.waves_.push_back({0.0, 0.0, false, n.index});
+        return Form::of(add_slot(SlotKind::wave, tape_.waves_.size() - 1));
       case Op::parameter: throw InvalidInput("formula", "numbers for all parameters", "a parameter without one");
       case Op::choose: throw InvalidInput("formula", "a mode for each switch", "a switch without one");
       case Op::linear: return Form::of(slot_of(translate(graph_.linear(node))));

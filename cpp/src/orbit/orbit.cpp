@@ -2,10 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 #include <utility>
 
 #include "orbit/kepler.hpp"
+#include "orbit/kepler_series.hpp"
 #include "orbit/path.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/math/detail/functions.hpp"
@@ -41,6 +43,30 @@ void require_finite(const char* name, double value) {
   if (!std::isfinite(value)) throw InvalidInput(name, "finite", to_text(value));
 }
 
+using Bits = std::vector<double>;
+
+Bits list_numbers(const OrbitStart& s) {
+  return {s.mu, s.r0[0], s.r0[1], s.r0[2], s.v0[0], s.v0[1], s.v0[2], s.t0};
+}
+Bits list_numbers(const OrbitElements& e) {
+  return {e.mu, e.periapsis_distance, e.semi_major_axis, e.e, e.inclination, e.node, e.periapsis, e.anomaly, e.t0, e.j2,
+          e.radius};
+}
+Bits list_numbers(const OrbitRows& rows) {
+  Bits all = rows.t;
+  all.push_back(rows.mu);
+  for (const auto* list : {&rows.r, &rows.v})
+    for (const Vector3d& one : *list) all.insert(all.end(), one.data(), one.data() + 3);
+  return all;
+}
+
+bool have_same_bits(const OrbitGiven& a, const OrbitGiven& b) {
+  if (a.index() != b.index()) return false;
+  const auto list = [](const auto& one) { return list_numbers(one); };
+  const Bits left = std::visit(list, a), right = std::visit(list, b);
+  return left.size() == right.size() && std::memcmp(left.data(), right.data(), sizeof(double) * left.size()) == 0;
+}
+
 /// How the plane of an orbit moves under the secular part of J2 [rad/s].
 struct Drift {
   double node = 0.0, periapsis = 0.0;
@@ -48,7 +74,8 @@ struct Drift {
 
 class ConicPath final : public Orbit::Path {
  public:
-  ConicPath(double mu, const Vector3d& r0, const Vector3d& v0, double t0) : mu_(mu), t0_(t0) {
+  ConicPath(double mu, const Vector3d& r0, const Vector3d& v0, double t0)
+      : Path(OrbitStart{mu, r0, v0, t0}), mu_(mu), t0_(t0) {
     const DDVector r = to_dd(r0), v = to_dd(v0);
     const DD distance = math::sqrt(dot(r, r)), root_mu = math::sqrt(DD(mu));
     const DDVector h = cross(r, v);
@@ -68,7 +95,7 @@ class ConicPath final : public Orbit::Path {
     start(kepler::find_chi(conic_, distance, sigma));
   }
 
-  explicit ConicPath(const OrbitElements& given) : mu_(given.mu), t0_(given.t0) {
+  explicit ConicPath(const OrbitElements& given) : Path(given), mu_(given.mu), t0_(given.t0) {
     const DD e(given.e);
     conic_.e = e;
     conic_.q = std::isnan(given.semi_major_axis) ? DD(given.periapsis_distance)
@@ -83,26 +110,19 @@ class ConicPath final : public Orbit::Path {
     start(chi);
   }
 
-  OrbitState at(double t) const override {
-    if (!std::isfinite(t)) throw InvalidInput("t", "finite", to_text(t));
-    const DD elapsed = math::two_diff(t, t0_);
-    DD n = elapsed * rate_ + since_periapsis_;   // sqrt(mu) times the time from a periapsis
-    if (radial_ && meets_centre(n)) throw InvalidInput("t", "before a radial orbit meets the centre", to_text(t));
-    if (conic_.alpha.hi > 0.0) n = n - DD(std::round((n / revolution_).hi)) * revolution_;
-    const kepler::Anomaly<double> u = kepler::solve(conic_, n.hi);
-    const double q = conic_.q.hi, e = conic_.e.hi;
-    const double distance = q + e * u.u2, across = std::sqrt(q * (1 + e));
-    const double x = q - u.u2, y = across * u.u1, fast = rate_.hi / distance;
-    const double vx = -fast * u.u1, vy = fast * across * u.u0;
-    if (drift_.node == 0.0 && drift_.periapsis == 0.0) {
-      const Vector3d side = z_.cross(x_);
-      return {x * x_ + y * side, vx * x_ + vy * side};
-    }
-    ConicPath now(*this);
-    now.rotate_plane(elapsed.hi);
-    const Vector3d side = now.z_.cross(now.x_), r = x * now.x_ + y * side;
-    const Vector3d spin = drift_.node * Vector3d(0.0, 0.0, 1.0) + drift_.periapsis * now.z_;
-    return {r, vx * now.x_ + vy * side + spin.cross(r)};
+  OrbitState at(DD t) const override {
+    const kepler::PlaneState now = find_state(t);
+    const auto [x_axis, z_axis] = find_axes(t);
+    const Vector3d side = z_axis.cross(x_axis), r = now.x * x_axis + now.y * side;
+    const Vector3d v = now.vx * x_axis + now.vy * side;
+    if (!drifts()) return {r, v};
+    return {r, v + (drift_.node * Vector3d(0.0, 0.0, 1.0) + drift_.periapsis * z_axis).cross(r)};
+  }
+
+  void expand(DD t, double unit, int order, double* rows) const override {
+    const auto [x_axis, z_axis] = find_axes(t);
+    const kepler::MovingPlane plane{x_axis, z_axis.cross(x_axis), drift_.node, drift_.periapsis};
+    kepler::expand(rate_.hi * rate_.hi, find_state(t), plane, unit, order, rows);
   }
 
   OrbitKind kind() const override {
@@ -124,6 +144,28 @@ class ConicPath final : public Orbit::Path {
   struct Angles {
     double inclination = 0.0, node = 0.0, periapsis = 0.0;
   };
+
+  bool drifts() const { return drift_.node != 0.0 || drift_.periapsis != 0.0; }
+
+  /// The axes to the periapsis and along the angular momentum.
+  std::pair<Vector3d, Vector3d> find_axes(DD t) const {
+    if (!drifts()) return {x_, z_};
+    ConicPath now(*this);
+    now.rotate_plane((t - DD(t0_)).hi);
+    return {now.x_, now.z_};
+  }
+
+  /// In the plane of the conic.
+  kepler::PlaneState find_state(DD t) const {
+    if (!std::isfinite(t.hi)) throw InvalidInput("t", "finite", to_text(t.hi));
+    DD n = (t - DD(t0_)) * rate_ + since_periapsis_;   // sqrt(mu) times the time from a periapsis
+    if (radial_ && meets_centre(n)) throw InvalidInput("t", "before a radial orbit meets the centre", to_text(t.hi));
+    if (conic_.alpha.hi > 0.0) n = n - DD(std::round((n / revolution_).hi)) * revolution_;
+    const kepler::Anomaly<double> u = kepler::solve(conic_, n.hi);
+    const double q = conic_.q.hi, e = conic_.e.hi;
+    const double distance = q + e * u.u2, across = std::sqrt(q * (1 + e)), fast = rate_.hi / distance;
+    return {q - u.u2, across * u.u1, -fast * u.u1, fast * across * u.u0};
+  }
 
   /// The time of the start from the periapsis, and that of a revolution; both times sqrt(mu).
   void start(DD chi) {
@@ -170,6 +212,18 @@ class ConicPath final : public Orbit::Path {
 
 }  // namespace
 
+void Orbit::Path::evaluate(DD t, double* numbers) const {
+  const OrbitState state = at(t);
+  const double distance = state.r.norm();
+  for (int i = 0; i < 3; ++i) numbers[i] = state.r[i], numbers[3 + i] = state.v[i];
+  numbers[formula::Ephemeris::distance] = distance, numbers[formula::Ephemeris::inverse_distance] = 1.0 / distance;
+}
+
+bool Orbit::Path::is_same(const formula::Ephemeris::Path& other) const {
+  const auto* path = dynamic_cast<const Path*>(&other);
+  return path != nullptr && have_same_bits(given_, path->given_);
+}
+
 std::string_view to_text(OrbitKind kind) {
   switch (kind) {
     case OrbitKind::circular: return "circular";
@@ -213,10 +267,10 @@ Orbit Orbit::from_elements(const OrbitElements& given) {
 }
 
 Orbit Orbit::table(std::vector<double> t, std::vector<Vector3d> r, std::vector<Vector3d> v, double mu) {
-  return Orbit(std::make_shared<OrbitTable>(std::move(t), std::move(r), std::move(v), mu));
+  return Orbit(std::make_shared<OrbitTable>(OrbitRows{std::move(t), std::move(r), std::move(v), mu}));
 }
 
-OrbitState Orbit::at(double t) const { return path_->at(t); }
+OrbitState Orbit::at(double t) const { return path_->at(DD(t)); }
 OrbitKind Orbit::kind() const { return path_->kind(); }
 double Orbit::mu() const { return path_->mu(); }
 double Orbit::e() const { return path_->e(); }
@@ -225,5 +279,20 @@ double Orbit::periapsis_distance() const { return path_->periapsis_distance(); }
 double Orbit::t0() const { return path_->t0(); }
 double Orbit::first_time() const { return path_->first_time(); }
 double Orbit::last_time() const { return path_->last_time(); }
+const OrbitGiven& Orbit::given() const { return path_->given(); }
+
+formula::Ephemeris Orbit::ephemeris(std::string name) const {
+  if (kind() == OrbitKind::table)
+    throw InvalidInput("orbit", "a conic where a torque takes it", "a table", "fit elements to the table");
+  return formula::Ephemeris(path_, std::move(name));
+}
+
+std::optional<Orbit> Orbit::from_ephemeris(const formula::Ephemeris& ephemeris) {
+  auto path = std::dynamic_pointer_cast<const Path>(ephemeris.path());
+  if (!path) return std::nullopt;
+  return Orbit(std::move(path));
+}
+
+bool operator==(const Orbit& a, const Orbit& b) { return a.path_ == b.path_ || a.path_->is_same(*b.path_); }
 
 }  // namespace polhode

@@ -7,8 +7,8 @@
 
 namespace polhode {
 
-OrbitTable::OrbitTable(std::vector<double> t, std::vector<Vector3d> r, std::vector<Vector3d> v, double mu)
-    : t_(std::move(t)), r_(std::move(r)), v_(std::move(v)), mu_(mu) {
+OrbitTable::OrbitTable(OrbitRows rows)
+    : Path(rows), t_(std::move(rows.t)), r_(std::move(rows.r)), v_(std::move(rows.v)), mu_(rows.mu) {
   if (t_.size() < 2) throw InvalidInput("t", "at least two times", std::to_string(t_.size()));
   if (r_.size() != t_.size() || v_.size() != t_.size())
     throw InvalidInput("r, v", "one row for each of the " + std::to_string(t_.size()) + " times",
@@ -21,7 +21,8 @@ OrbitTable::OrbitTable(std::vector<double> t, std::vector<Vector3d> r, std::vect
   if (mu_ <= 0.0 || std::isinf(mu_)) throw InvalidInput("mu", "positive and finite", to_text(mu_));
 }
 
-OrbitState OrbitTable::at(double t) const {
+OrbitState OrbitTable::at(math::DD time) const {
+  const double t = time.hi;
   if (!(t >= t_.front() && t <= t_.back()))
     throw InvalidInput("t", "within the table, " + to_text(t_.front()) + " to " + to_text(t_.back()) + " s", to_text(t));
   const auto next = std::upper_bound(t_.begin() + 1, t_.end() - 1, t);
@@ -32,6 +33,10 @@ OrbitState OrbitTable::at(double t) const {
   const double u = 1 - s;
   return {r_[i] + s * (rise + u * (u * a + s * b)),
           (rise + (1 - 2 * s) * (u * a + s * b) + s * u * (b - a)) / h};
+}
+
+void OrbitTable::expand(math::DD, double, int, double*) const {
+  throw InvalidInput("orbit", "a conic where a torque takes it", "a table");
 }
 
 }  // namespace polhode

@@ -13,9 +13,13 @@ using formula::Form;
 using formula::Node;
 using formula::Op;
 
+
+
 namespace {
 
 using Real = LawSeries::Real;
+
+constexpr int known_size = formula::Ephemeris::size;
 
 math::DD to_dd(Real x) {
   const double high = static_cast<double>(x);
@@ -40,7 +44,8 @@ SinCosReal compute_sincos(Real angle) {
 }
 
 LawSeries::LawSeries(const formula::Program& law, int order)
-    : law_(formula::rewrite(formula::expand_rotations(law))), parameters_(formula::list_values(law.parameters)) {
+    : law_(formula::rewrite(formula::expand_rotations(law))), parameters_(formula::list_values(law.parameters)),
+      order_(order) {
   const formula::Facts facts = formula::find_facts(law_);
   if (facts.has_switches || !law_.states.empty())
     throw InvalidInput("torques", "without switches and states, which the reference lacks", "a formula with them");
@@ -52,7 +57,7 @@ LawSeries::LawSeries(const formula::Program& law, int order)
     const int node = static_cast<int>(i);
     const Node& n = law_.graph[node];
     live_.push_back(node);
-    bool fixed = n.op != Op::time && n.op != Op::state;
+    bool fixed = n.op != Op::time && n.op != Op::state && n.op != Op::ephemeris;
     for (const int operand : n.operands) fixed = fixed && (operand < 0 || fixed_[static_cast<std::size_t>(operand)]);
     if (n.op == Op::linear)
       for (const formula::Term& term : law_.graph.linear(node).terms)
@@ -63,10 +68,20 @@ LawSeries::LawSeries(const formula::Program& law, int order)
 }
 
 void LawSeries::expand(Real t, int n, const Series* const* states, Real* tau) {
+  if (n == 0) expand_ephemerides(t);
   for (const int node : live_)
     if (n == 0 || !fixed_[static_cast<std::size_t>(node)])
       series(node)[static_cast<std::size_t>(n)] = compute(node, t, n, states);
   for (std::size_t i = 0; i < 3; ++i) tau[i] = sum(law_.outputs[i], n);
+}
+
+void LawSeries::expand_ephemerides(Real t) {
+  const auto& known = law_.graph.ephemerides();
+  ephemerides_.resize(known.size());
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    ephemerides_[i].resize(static_cast<std::size_t>(known_size * (order_ + 1)));
+    known[i].path()->expand(to_dd(t), 1.0, order_, ephemerides_[i].data());
+  }
 }
 
 Real LawSeries::sum(const Form& form, int n) const {
@@ -102,6 +117,8 @@ Real LawSeries::compute(int node, Real t, int n, const Series* const* states) {
     case Op::parameter: return n == 0 ? Real(parameters_[static_cast<std::size_t>(one.index)]) : 0;
     case Op::time: return n == 0 ? t : n == 1 ? 1 : 0;
     case Op::state: return (*states[one.index])[at];
+    case Op::ephemeris:
+      return ephemerides_[static_cast<std::size_t>(one.index / known_size)][known_size * at + static_cast<std::size_t>(one.index % known_size)];
     case Op::linear: return sum(law_.graph.linear(node), n);
     case Op::multiply:
       if (is_fixed(0)) return a[0] * b[at];

@@ -21,6 +21,7 @@ class LawSeries {
   void expand(Real t, int n, const Series* const* states, Real* tau);
 
  private:
+  void expand_ephemerides(Real t);
   Real sum(const formula::Form& form, int n) const;
   Real compute(int node, Real t, int n, const Series* const* states);
   Series& series(int node) { return series_[static_cast<std::size_t>(node)]; }
@@ -28,6 +29,8 @@ class LawSeries {
 
   formula::Program law_;
   std::vector<double> parameters_;
+  int order_;
+  std::vector<std::vector<double>> ephemerides_;   ///< rows of each
   std::vector<int> live_;
   std::vector<bool> fixed_;        ///< the same at all times
   std::vector<Series> series_;     ///< of the nodes

@@ -367,6 +367,23 @@ class MassProperties:
         """
         Mass [kg].
         """
+class _MagneticField:
+    @staticmethod
+    def dipole(arg0: typing.Any, arg1: typing.SupportsFloat | typing.SupportsIndex, arg2: typing.SupportsFloat | typing.SupportsIndex, arg3: typing.SupportsFloat | typing.SupportsIndex, arg4: typing.SupportsFloat | typing.SupportsIndex) -> _MagneticField:
+        ...
+    @staticmethod
+    def gauss(arg0: typing.Any, arg1: typing.SupportsFloat | typing.SupportsIndex, arg2: collections.abc.Sequence[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex]], arg3: collections.abc.Sequence[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex]], arg4: typing.SupportsFloat | typing.SupportsIndex, arg5: typing.SupportsFloat | typing.SupportsIndex) -> _MagneticField:
+        ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
+    @typing.overload
+    def at(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> numpy.typing.NDArray[numpy.float64]:
+        ...
+    @typing.overload
+    def at(self, arg0: typing.SupportsFloat | typing.SupportsIndex, arg1: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
+        ...
 class FreeMotion(exact._ClosedForm):
     """
     Torque-free motion of any rigid body, in closed form at any time.

@@ -209,13 +209,18 @@ class GravityGradient:
     ----------
     Hughes 1986, Spacecraft Attitude Dynamics, sec. 8.1
     """
+    @classmethod
+    def __new__(cls: typing.Any, *args: typing.Any, **numbers: typing.Any) -> typing.Any:
+        """
+        GravityGradient of an orbit is a class of its own.
+        """
     def __eq__(self, arg0: typing.Any) -> bool:
         ...
     def __getstate__(self) -> tuple[typing.Any, ...]:
         ...
     def __hash__(self) -> int:
         ...
-    def __init__(self, mean_motion: float, phase: float = 0.0) -> None:
+    def __init__(self, mean_motion: float = ..., phase: float = 0.0, *, orbit: typing.Any = ...) -> None:
         ...
     def __reduce__(self) -> tuple[typing.Any, ...]:
         """
@@ -271,6 +276,72 @@ class GravityGradient:
         ...
     @property
     def phase(self) -> typing.Any:
+        ...
+    @property
+    def traits(self) -> dict[str, typing.Any]:
+        """
+        dict: uses_time, uses_attitude, uses_rates, has_potential.
+        """
+class OrbitGradient:
+    """
+    OrbitGradient(orbit)
+
+    Gravity gradient on an orbit: tau_B = 3 mu / |r|^5 r x (I r), r = R_WB^T r_W.
+
+    Parameters
+    ----------
+    orbit : Orbit
+        the path of the centre of mass about the attracting one, or of that one about the body
+
+    Raises
+    ------
+    InvalidInput
+        For a wrong shape, or numbers that are not finite.
+
+    References
+    ----------
+    Hughes 1986, Spacecraft Attitude Dynamics, sec. 8.1
+    """
+    def __eq__(self, arg0: typing.Any) -> bool:
+        ...
+    def __getstate__(self) -> tuple[typing.Any, ...]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, orbit: typing.Any) -> None:
+        ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
+        ...
+    def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None, states: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Return the torque at one state.
+
+        Parameters
+        ----------
+        t : float
+            Time [s].
+        omega : array_like, shape (3,)
+            Rates in body axes [rad/s].
+        attitude : array_like, shape (4,)
+            Unit quaternion (x, y, z, w).
+        inertia : InertiaTensor or array_like, optional
+            Of the body, for a torque that depends on it [kg m^2].
+        states : dict, optional
+            Numbers of the torque's own states by name, each with the shape of its start; the starts if left out.
+
+        Returns
+        -------
+        ndarray, shape (3,)
+            In body axes [N m].
+        """
+    @property
+    def orbit(self) -> typing.Any:
         ...
     @property
     def traits(self) -> dict[str, typing.Any]:
@@ -449,7 +520,8 @@ class AngularDamping:
         """
 class Formula:
     """
-    Formula(function=None, *, text=None, let=None, potential=None, states=None, recognise=True, **parameters)
+    Formula(function=None, *, text=None, let=None, potential=None, states=None, orbits=None, recognise=True,
+            **parameters)
 
     A torque of your own as a formula: traced once from a Python function, or written as text.
 
@@ -473,6 +545,9 @@ class Formula:
         States of the torque's own, by name. Beside a function each has its start, a number or shape (n,). The function is
         then ``function(t, omega, attitude, p, s)`` and returns (torque, rates), a dict of the same names. Beside a text each
         is ``{"start": numbers, "rate": text}``.
+    orbits : dict of Orbit, optional
+        Orbits of a text by name: an orbit ``main`` gives ``main.r``, ``main.v`` [m, m/s], ``main.distance`` and
+        ``main.inverse_distance``. A function calls ``orbit.at(t)`` instead.
     recognise : bool
         Whether the formula may be replaced by torques of this module.
     **parameters : float or array_like, shape (n,)
@@ -494,7 +569,7 @@ class Formula:
         ...
     def __hash__(self) -> int:
         ...
-    def __init__(self, function: typing.Any = None, *, text: typing.Any = None, let: typing.Any = None, potential: typing.Any = None, states: typing.Any = None, recognise: typing.Any = True, **parameters: numpy.typing.ArrayLike) -> None:
+    def __init__(self, function: typing.Any = None, *, text: typing.Any = None, let: typing.Any = None, potential: typing.Any = None, states: typing.Any = None, orbits: typing.Any = None, recognise: typing.Any = True, **parameters: numpy.typing.ArrayLike) -> None:
         ...
     def __reduce__(self) -> tuple[typing.Any, ...]:
         """
@@ -621,6 +696,11 @@ class Formula:
     def let(self) -> dict[str, typing.Any]:
         """
         dict: names for shared parts of the text.
+        """
+    @property
+    def orbits(self) -> dict[str, typing.Any]:
+        """
+        dict: the orbits of the text by name.
         """
     @property
     def parameters(self) -> dict[str, typing.Any]:

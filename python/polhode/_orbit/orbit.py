@@ -11,6 +11,7 @@ import numpy.typing as npt
 from .. import _core
 from .._attitude.arrays import to_any, to_number
 from .._core import InvalidInput
+from .._formula.symbols import Symbol, joined
 from .._keywords import checked
 
 Array = npt.NDArray[np.float64]
@@ -130,7 +131,7 @@ class Orbit:
         Parameters
         ----------
         t : array_like, shape (...)
-            Times [s].
+            Times [s], or the time of a formula that is traced.
 
         Returns
         -------
@@ -141,6 +142,9 @@ class Orbit:
         InvalidInput
             For a time outside a table, or beyond one at which a radial orbit is at the centre.
         """
+        if isinstance(t, Symbol):
+            found = _core.symbols.see_orbit(self, t._items[()])
+            return joined(found[0]), joined(found[1])
         r, v = self._core.at(t)
         return r, v
 

@@ -13,7 +13,9 @@ import numpy as np
 
 from .. import _files, torques
 from .._core import InvalidInput, Rotor
+from .._orbit.orbit import Orbit
 from .bodies import attitude_of, body_inertia, body_model, place_meshes
+from .orbits import make_orbits, orbit_model
 from .scene import Scene, scene_folder
 from .validation import euler_model, kinds, model, one_of, validate
 from .write import save_scene as save_scene
@@ -45,12 +47,14 @@ def scene_model() -> Any:
                    samples=(Annotated[int, Field(ge=1, le=MOST_SAMPLES)] | None, None))
     any_torque: Any = Union[tuple(_torque_models())]  # noqa: UP007  as many as the list has
     torque: Any = Annotated[any_torque, Field(discriminator="kind")]
+    orbits: Any = dict[str, orbit_model()]   # type: ignore[misc]
     rotor: Any = model("Rotor", axis=(kind.vector, ...), momentum=(kind.number | None, None),
                        inertia=(kind.number | None, None), speed=(kind.number | None, None), free=(bool, False),
                        during=(kind.windows | None, None))
     return model("SceneFile", name=(str, ""), title=(str, ""), about=(str, ""),
                   want=(list[Literal["omega", "attitude"]], ["omega", "attitude"]),
                   body=(body_model(), ...), start=(start, ...), torques=(list[torque], []), rotors=(list[rotor], []),
+                  orbits=(orbits, {}),
                   times=(times, ...))
 
 
@@ -58,23 +62,38 @@ def _torque_models() -> list[Any]:
     """Return the models of all torques of scene files, distinguished by `kind`."""
     kind = kinds()
     models = []
-    for record in torques.records():
-        if record["key"] == "custom":
+    for key, records in _records_by_key().items():
+        record = records[0]
+        if key == "custom":
             continue   # a function cannot stand in a file
-        if record["key"] == "formula":
+        if key == "formula":
             models.append(_formula_model())
             continue
-        fields: dict[str, Any] = {"kind": (Literal[record["key"]], ...), "during": (kind.windows | None, None)}
-        for parameter in record["parameters"]:
+        fields: dict[str, Any] = {"kind": (Literal[key], ...), "during": (kind.windows | None, None)}
+        several = len(records) > 1   # of which the keys decide
+        for parameter in (p for one in records for p in one["parameters"]):
             default = ... if parameter["default"] is None else parameter["default"]
+            if several:
+                types = {"real": kind.number, "vector": kind.vector, "orbit": str}
+                fields[parameter["name"]] = (types[parameter["kind"]] | None, None)
+                continue
             if parameter["kind"] == "matrix":
                 fields[parameter["name"]], fields["diagonal"] = (kind.matrix | None, None), (kind.vector | None, None)
             elif parameter["kind"] == "choice":
                 fields[parameter["name"]] = (Literal[tuple(parameter["choices"])], default)
             else:
-                fields[parameter["name"]] = ({"real": kind.number, "vector": kind.vector}[parameter["kind"]], default)
+                types = {"real": kind.number, "vector": kind.vector, "orbit": str}
+                fields[parameter["name"]] = (types[parameter["kind"]], default)
         models.append(model(record["name"], **fields))
     return models
+
+
+def _records_by_key() -> dict[str, list[dict[str, Any]]]:
+    """Return the records of torques by `kind`. A kind with several has one a way of giving it."""
+    found: dict[str, list[dict[str, Any]]] = {}
+    for record in torques.records():
+        found.setdefault(record["key"], []).append(record)
+    return found
 
 
 def _formula_model() -> Any:
@@ -84,7 +103,7 @@ def _formula_model() -> Any:
     state: Any = model("State", start=(values, ...), rate=(str, ...))
     return model("Formula", kind=(Literal["formula"], ...), torque=(str | None, None), potential=(str | None, None),
                  let=(dict[str, str], {}), parameters=(dict[str, values], {}), states=(dict[str, state], {}),
-                 recognise=(bool, True), during=(kind.windows | None, None))
+                 orbits=(dict[str, str], {}), recognise=(bool, True), during=(kind.windows | None, None))
 
 
 def find_scene(source: str | os.PathLike[str]) -> pathlib.Path:
@@ -110,21 +129,49 @@ def read_toml(path: pathlib.Path) -> dict[str, Any]:
         raise InvalidInput(f"{path}: not TOML: {error}") from None
 
 
-def _torque(entry: Any) -> Any:
-    record = next(r for r in torques.records() if r["key"] == entry.kind)
+def _torque(entry: Any, orbits: dict[str, Orbit]) -> Any:
+    records = _records_by_key()[entry.kind]
     values = entry.model_dump(exclude={"kind", "diagonal", "during"})
+    if len(records) > 1:
+        values = {name: value for name, value in values.items() if value is not None}
+    record = _choose(records, values)
+    for parameter in record["parameters"]:
+        if parameter["kind"] == "orbit":
+            values[parameter["name"]] = _find_orbit(orbits, values[parameter["name"]])
     if hasattr(entry, "diagonal"):
         if (entry.diagonal is None) == (entry.matrix is None):
             raise InvalidInput(f"torques: {entry.kind}: give matrix or diagonal, one of them")
         values["matrix"] = entry.matrix if entry.diagonal is None else entry.diagonal
     if entry.kind == "formula":
-        reserved = {"function", "text", "let", "potential", "states", "recognise", "scale"} & set(values["parameters"])
+        arguments = {"function", "text", "let", "potential", "states", "recognise", "scale", "orbits"}
+        reserved = arguments & set(values["parameters"])
         if reserved:
             raise InvalidInput(f"torques: formula: must not name a parameter {', '.join(sorted(reserved))}")
         values = {"text": values.pop("torque"), **values.pop("parameters"), **values}
         values["states"] = values["states"] or None
+        names = values["orbits"]
+        own_names = {own: _find_orbit(orbits, name) for own, name in names.items()}
+        values["orbits"] = {**orbits, **own_names} or None
     torque = getattr(torques, record["name"])(**values)
     return torque if entry.during is None else torques.During(torque, entry.during)
+
+
+def _choose(records: list[dict[str, Any]], values: dict[str, Any]) -> dict[str, Any]:
+    """Return the record whose parameters are given."""
+    for record in records:
+        own = {parameter["name"] for parameter in record["parameters"]}
+        needed = {parameter["name"] for parameter in record["parameters"] if parameter["default"] is None}
+        if len(records) == 1 or needed <= set(values) <= own:
+            return record
+    ways = ", or ".join(" and ".join(p["name"] for p in record["parameters"]) for record in records)
+    raise InvalidInput(f"torques: {records[0]['key']}: must have {ways}; got {', '.join(values) or 'none of them'}")
+
+
+def _find_orbit(orbits: dict[str, Orbit], name: str) -> Orbit:
+    if name not in orbits:
+        raise InvalidInput(f"orbit: must name a table of [orbits], got {name!r}; "
+                           f"there are {', '.join(orbits) or 'none'}")
+    return orbits[name]
 
 
 def _rotors(entries: list[Any]) -> list[Rotor]:
@@ -149,11 +196,12 @@ def make_scene(data: dict[str, Any], where: str = "scene") -> Scene:
                                f"{times.span:g}")
         grid = np.linspace(start.t0, end, times.samples)
     try:
+        orbits = make_orbits(entry.orbits)
         return Scene(
             inertia=body_inertia(entry.body),
             omega=np.radians(start.omega_deg) if start.omega is None else start.omega,
             attitude=attitude_of(start),
-            torques=[_torque(torque) for torque in entry.torques],
+            torques=[_torque(torque, orbits) for torque in entry.torques],
             times=grid,
             want=entry.want,
             t0=start.t0,

@@ -10,6 +10,8 @@ import numpy as np
 
 from .. import _core, _files, torques
 from .._core import InvalidInput
+from .._orbit.orbit import Orbit
+from .orbits import Names, to_entry
 
 if TYPE_CHECKING:
     from .scene import Scene
@@ -37,9 +39,9 @@ def _table(lines: list[str], head: str, entries: dict[str, Any]) -> None:
     lines += ["", head, *(f"{_key(name)} = {_value(value)}" for name, value in entries.items())]
 
 
-def _torque(torque: Any, i: int) -> dict[str, Any]:
+def _torque(torque: Any, i: int, orbits: Names) -> dict[str, Any]:
     if isinstance(torque, torques.During):
-        return {**_torque(torque.torque, i), "during": torque.windows}
+        return {**_torque(torque.torque, i, orbits), "during": torque.windows}
     name = type(torque).__name__
     record = next((r for r in _core.torque_records() if r["name"] == name), None)
     if record is None or name == "Custom":
@@ -49,8 +51,11 @@ def _torque(torque: Any, i: int) -> dict[str, Any]:
         what = ("torque", torque.text) if torque.potential is None else ("potential", torque.potential)
         parts = {what[0]: what[1], "let": torque.let, "parameters": torque.parameters, "states": torque.states}
         entry |= {key: part for key, part in parts.items() if part}
+        if torque.orbits:
+            entry["orbits"] = {own: orbits.find(orbit, own) for own, orbit in torque.orbits.items()}
         return entry if torque.recognise else {**entry, "recognise": False}
-    return entry | {parameter["name"]: getattr(torque, parameter["name"]) for parameter in record["parameters"]}
+    values = {parameter["name"]: getattr(torque, parameter["name"]) for parameter in record["parameters"]}
+    return entry | {name: orbits.find(value) if isinstance(value, Orbit) else value for name, value in values.items()}
 
 
 def _rotor(rotor: Any) -> dict[str, Any]:
@@ -71,8 +76,12 @@ def to_toml(scene: Scene) -> str:
     _table(lines, "[body]", {"matrix": matrix, **({} if physical else {"physical": False})})
     _table(lines, "[start]", {"omega": scene.omega, "attitude": scene.attitude, "t0": scene.t0})
     _table(lines, "[times]", {"values": scene.times})
-    for i, torque in enumerate(scene.torques):
-        _table(lines, "[[torques]]", _torque(torque, i))
+    orbits = Names()
+    entries = [_torque(torque, i, orbits) for i, torque in enumerate(scene.torques)]
+    for name, orbit in orbits.orbits.items():
+        _table(lines, f"[orbits.{_key(name)}]", to_entry(orbit))
+    for entry in entries:
+        _table(lines, "[[torques]]", entry)
     for rotor in scene.rotors:
         _table(lines, "[[rotors]]", _rotor(rotor))
     return "\n".join(lines) + "\n"

@@ -231,7 +231,14 @@ def smoke_orbit():
     assert orbit.kind == "circular" and np.allclose(orbit.at(np.pi / 2)[0], (0, 1, 0))
 
 
+def smoke_magnetic_field():
+    field = ph.MagneticField.dipole(ph.Orbit(1.0, (1, 0, 0), (0, 1, 0)), 2.0)
+    assert np.allclose(field.at(0.0), (0, 0, -2)) and np.allclose(field.at(0.0, (0, 0, 1)), (0, 0, 4))
+    assert np.allclose(ph.torques.Dipole((1, 0, 0), field).value(0.0, (0, 0, 0), (0, 0, 0, 1)), (0, 2, 0))
+
+
 SMOKE = {
+    "MagneticField": smoke_magnetic_field,
     "Event": smoke_event,
     "DampedFree": smoke_damped_free,
     "FitResult": smoke_fit_result,

@@ -58,6 +58,7 @@ BATCH = dict(inertia=I, omega=W, attitude=Q, t=np.array(TIMES), out=None, want="
 CORNERS, SIDES = [[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
 MOTION, T30 = ph.solve(SCENE, 1e-6, dense=True, sensitivity="omega"), np.linspace(0, 10, 30)
 FORMULA = T.Formula(text="k * h * omega", k=1.0, states={"h": {"start": 1.0, "rate": "-h"}})
+ORBIT = ph.Orbit(1.0, (1, 0, 0), (0, 1, 0))
 RATES = ph.measured.Rates(T30, FREE.at(T30)[0], 0.01)
 
 # A callable, and arguments that it takes; one of them at a time becomes odd. Up to a comma the name is the public one.
@@ -92,6 +93,11 @@ DOORS = {
     "plan": (ph.plan, dict(scene=SCENE, accuracy=1e-6, method=None, certify=True, formulation="euler")),
     "lyapunov": (ph.lyapunov, dict(scene=SCENE, span=1e-3, accuracy=1e-6)),
     "fit": (ph.fit, dict(data=RATES, scene=SCENE, fit="omega", start="search", loss="linear", f_scale=1.0, seed=0)),
+    "MagneticField.dipole": (ph.MagneticField.dipole, dict(orbit=ORBIT, strength=1.0, tilt=0.1, spin=0.1, phase=0.0)),
+    "MagneticField.gauss": (ph.MagneticField.gauss, dict(orbit=ORBIT, radius=1.0, g=[[0], [1, 2]], h=[[0], [0, 1]],
+                                                         spin=0.1, phase=0.0)),
+    "MagneticField.at": (ph.MagneticField.dipole(ORBIT, 1.0).at, dict(t=1.0, r=(1, 0, 0))),
+    "torques.Dipole": (ph.torques.Dipole, dict(moment=W, field=ph.MagneticField.dipole(ORBIT, 1.0))),
     "judge": (ph.judge, dict(t=T30, attitude=FREE.at(T30)[1], omega=FREE.at(T30)[0], inertia=I, order="xyzw",
                              frame="body", euler=None, degrees=False, tolerance=1e-6, sigma=None)),
     "Judgement.fails": (ph.judge(T30, omega=FREE.at(T30)[0], inertia=I).fails, dict(level="warning")),
@@ -174,7 +180,8 @@ OUT = ("Judgement", "line", "to_dict",
        "MassProperties",
        "InertiaTensor", "IntegrationFailure", "InvalidInput", "animate", "plot", "inv", "magnitude", "as_matrix",
        "as_mrp", "atlas", "charts", "recipe", "report", "schema", "shapes", "ensemble", "methods", "build_info",
-       "cmake_prefix", "measured", "inertia", "records", "AngularDamping", "GravityGradient", "value")
+       "cmake_prefix", "measured", "inertia", "records", "AngularDamping", "GravityGradient", "OrbitGradient",
+       "MagneticField", "value")
 
 
 def test_every_public_callable_is_tried_or_left_out():

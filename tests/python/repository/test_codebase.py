@@ -31,7 +31,7 @@ MAY_USE = {
     "reference": ORDER[:11],
     "batch": ORDER[:12],
     "spectrum": ["core", "math"],
-    "orbit": ["core", "math"],
+    "orbit": ["core", "math", "formula"],
 }
 # The rooms of `solve`, and what each may use; solve.cpp stands above them.
 SOLVE_ROOMS = {"ground": [], "form": ["ground"], "run": ["ground"], "proof": ["ground"],

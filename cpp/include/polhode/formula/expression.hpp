@@ -224,6 +224,19 @@ inline Vec<double, 3> to_body(const Vec<double, 4>& attitude, const Vec<double, 
 template <class T>
 Vec<T, 3> to_space(const Vec<T, 4>& attitude, const Vec<T, 3>& v) { return rotate_to_space(attitude, v); }
 
+/// An ephemeris at a time: position, velocity, distance and 1 / distance.
+template <class T>
+struct Seen {
+  Vec<T, 3> r, v;
+  T distance, inverse_distance;
+};
+inline Seen<double> see(const Ephemeris& ephemeris, double t) {
+  const auto n = ephemeris.at(t);
+  return {{{n[0], n[1], n[2]}}, {{n[3], n[4], n[5]}}, n[6], n[7]};
+}
+/// @param t  the time itself. @throws InvalidInput for another expression
+Seen<Expr> see(const Ephemeris& ephemeris, const Expr& t);
+
 /// The states from a number on.
 template <std::size_t n>
 Vec<Expr, n> list_states(Graph& graph, int first) {

@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "polhode/formula/ephemeris.hpp"
 #include "polhode/formula/form.hpp"
 
 namespace polhode::formula {
@@ -28,7 +29,8 @@ enum class Op : std::uint8_t {
   tanh,         ///< tanh a
   angle,        ///< atan2(a, b)
   choose,       ///< a > 0 ? b : c; where `index` is 1, a friction's sign of the rate a, which may hold a at 0
-  to_body       ///< component `index` of R_WB^T (a, b, c)
+  to_body,      ///< component `index` of R_WB^T (a, b, c)
+  ephemeris     ///< number `index` modulo eight of the ephemeris `index` / 8, a known function of time
 };
 
 /// The states of a body by their numbers: the rates, the attitude (x, y, z, w), then those of the formula.
@@ -54,10 +56,13 @@ void require_finite(const Form& form);
 class Graph {
  public:
   static constexpr int most_nodes = 10'000;
+  static constexpr int most_ephemerides = 16;
 
   Form time();
   Form state(int number);
   Form parameter(int number);
+  /// A number of an Ephemeris by its place there. Equal ephemerides are one.
+  Form ephemeris(const Ephemeris& ephemeris, int number);
 
   Form multiply(const Form& a, const Form& b);
   Form divide(const Form& a, const Form& b);
@@ -80,6 +85,11 @@ class Graph {
   const Node& operator[](int node) const { return nodes_[static_cast<std::size_t>(node)]; }
   /// The form of a linear node.
   const Form& linear(int node) const { return forms_[static_cast<std::size_t>((*this)[node].index)]; }
+  const std::vector<Ephemeris>& ephemerides() const { return ephemerides_; }
+  /// That of a node.
+  const Ephemeris& ephemeris_of(const Node& node) const {
+    return ephemerides_[static_cast<std::size_t>(node.index / Ephemeris::size)];
+  }
 
  private:
   /// A node with the value of a form.
@@ -93,6 +103,7 @@ class Graph {
 
   std::vector<Node> nodes_;
   std::vector<Form> forms_;
+  std::vector<Ephemeris> ephemerides_;
   std::unordered_multimap<std::size_t, int> found_;
 };
 

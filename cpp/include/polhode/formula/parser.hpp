@@ -12,7 +12,8 @@ namespace polhode::formula {
 ///
 ///     torque = "-kp * attitude.xyz * attitude.w - kd * omega"
 ///
-/// Names: t, omega, attitude, pi, the parameters, the states, and what `let` defined before. Operators: + - * / ^ and
+/// Names: t, omega, attitude, pi, the parameters, the states, and what `let` defined before. An orbit `main` has main.r,
+/// main.v, main.distance and main.inverse_distance. Operators: + - * / ^ and
 /// comparisons, elementwise on vectors. Components: .x .y .z .w .xyz and [a, b, c]. Functions: abs atan2 clip cos cross
 /// dot exp hypot log max min norm sign sin sqrt sum tan tanh to_body to_space where. Exponents are numbers.
 struct Text {
@@ -22,6 +23,7 @@ struct Text {
   std::vector<std::string> rates;                          ///< of the states
   std::vector<std::pair<std::string, std::string>> let;    ///< names for shared parts, in order
   std::string potential = {};                              ///< V [J], whose negative gradient is the torque
+  std::vector<std::pair<std::string, Ephemeris>> orbits = {};   ///< by name, as `main` of main.r.x
 
   friend bool operator==(const Text&, const Text&) = default;
 };

@@ -93,10 +93,19 @@ class Table {
   void compute_series(SimdLevel level, math::DD t, double unit, const double* y, int order, double* rows,
                       double* extras, double* workspace) const;
 
+  /// Vectors and numbers of ephemerides that the tape uses.
+  int count_known() const { return static_cast<int>(known_.size()); }
+  /// The largest coefficient in a row of one of them, from the workspace of the last compute_series().
+  double compute_known_size(const double* workspace, int row, int which) const;
+
  private:
+  std::vector<std::vector<std::ptrdiff_t>> group_known() const;
+
   Tape tape_;
   TableParts parts_;
-  std::vector<int> start_columns_, wave_columns_;
+  std::vector<int> start_columns_;
+  std::vector<std::ptrdiff_t> wave_columns_;
+  std::vector<std::vector<std::ptrdiff_t>> known_;   ///< columns among the waves
 };
 
 }  // namespace polhode::formula

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -36,12 +37,13 @@ struct RecurrenceStart {
 /// @param a, b  the values of the operands; for Rule::cosine and its like b is the value of the partner
 RecurrenceStart start_recurrence(const Recurrence& operation, double a, double b);
 
-/// sin and cos of phase + rate * time.
+/// A known function of time: sin or cos of phase + rate * time, or a number of an ephemeris.
 struct Wave {
   double phase, rate;
   bool cosine;
+  int seen = -1;   ///< in an ephemeris: its number times eight and the number's place
 };
-/// Rows 0..order of a wave in powers of the time divided by `unit`, with the angle in double-double.
+/// Rows 0..order of a sine or cosine in powers of the time divided by `unit`, with the angle in double-double.
 void fill_wave(const Wave& wave, math::DD t, double unit, int order, double* rows, int stride);
 
 /// What a slot is; each slot has one number a row.
@@ -98,6 +100,13 @@ class Tape {
   int count(Rule rule) const;
 
   const std::vector<CarriedVector>& carried() const { return carried_; }
+  const std::vector<Ephemeris>& ephemerides() const { return ephemerides_; }
+
+  /// Rows 0..order of the waves in powers of the time divided by `unit`.
+  /// @param places  where in `rows` the numbers of each wave begin, negative for one that is left out
+  /// @param stride  from one number to the next
+  void fill_waves(math::DD t, double unit, int order, const std::vector<std::ptrdiff_t>& places, double* rows,
+                  std::ptrdiff_t stride) const;
 
   /// Starts of the state slots: given states, time, constants, and what is carried.
   void start(math::DD t, const double* y, double* values) const;
@@ -132,6 +141,7 @@ class Tape {
   std::vector<Form> forms_, extras_;
   std::vector<Recurrence> operations_;
   std::vector<CarriedVector> carried_;
+  std::vector<Ephemeris> ephemerides_;
 };
 
 /// Rounding of a b + c: once, as processors with fused operations do, or twice. It decides the bits.

@@ -301,7 +301,21 @@ class Taylor::Stepper : public ode::Stepper {
         least = tail > 0.0 ? std::min(least, radius + part) : least;
       }
     }
+    if constexpr (requires { problem_.count_known(); })
+      for (int b = 0; b < problem_.count_known(); ++b) least = std::min(least, limit_known(b));
     return least > 1000.0 ? std::numeric_limits<double>::infinity() : rough_exp2(least);
+  }
+
+  /// The same for a known function of time, which the problem's right side uses. It is in no norm of the state: its
+  /// tolerance is relative to its own size.
+  double limit_known(int b) const {
+    double least = std::numeric_limits<double>::infinity();
+    const RoughLog2 head(problem_.compute_known_size(0, b));
+    for (int m = 0; m < 2; ++m) {
+      const double tail = problem_.compute_known_size(order_ - 1 + m, b);
+      if (tail > 0.0) least = std::min(least, (head - RoughLog2(tail)) * inverse_[m + 2] + part_);
+    }
+    return least;
   }
 
   double compute_part(double tolerance) const { return std::min((rough_log2(tolerance) - 2.0) / (order_ - 1), 0.0); }

@@ -2,10 +2,14 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
+#include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "polhode/core/quat.hpp"
+#include "polhode/formula/ephemeris.hpp"
 
 namespace polhode {
 
@@ -30,6 +34,23 @@ struct OrbitElements {
   double j2 = 0.0;                                         ///< of an ellipse: the planet's flattening term
   double radius = 0.0;                                     ///< the planet's equatorial radius, with j2 [m]
 };
+
+/// A state at a time.
+struct OrbitStart {
+  double mu;
+  Vector3d r0, v0;
+  double t0;
+};
+
+/// Times, positions and velocities.
+struct OrbitRows {
+  std::vector<double> t;
+  std::vector<Vector3d> r, v;
+  double mu;   ///< NaN: not known
+};
+
+/// What an orbit was made of.
+using OrbitGiven = std::variant<OrbitStart, OrbitElements, OrbitRows>;
 
 /// The path of a body's centre of mass in space axes: a Kepler orbit on any conic, or a table.
 ///
@@ -62,6 +83,17 @@ class Orbit {
   double t0() const;                   ///< of the given state; the first time of a table [s]
   double first_time() const;           ///< of a table; else minus infinity
   double last_time() const;
+
+  const OrbitGiven& given() const;
+  /// The orbit for torques and formulas, which see it as a known function of time.
+  /// @param name  in the texts of formulas
+  /// @throws InvalidInput for a table, which has no Taylor series over its times
+  formula::Ephemeris ephemeris(std::string name = {}) const;
+  /// The orbit that an ephemeris is of.
+  static std::optional<Orbit> from_ephemeris(const formula::Ephemeris& ephemeris);
+
+  /// Made of the same numbers.
+  friend bool operator==(const Orbit& a, const Orbit& b);
 
   class Path;
 

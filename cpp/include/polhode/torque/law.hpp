@@ -55,6 +55,7 @@ concept HasKernel = requires(const Torque& torque) {
 ///   states                                      a struct of numbers like that of the parameters, named in
 ///                                               `state_names`, with their start(p); then compute(in, p, s) returns
 ///                                               LawResult{torque, rates}
+///   static void check(numbers)                  throws InvalidInput for numbers that do not fit together
 ///   formula::KnownTorque known() const          what it is among the torques with kernels
 ///   TorqueTraits traits() const                 claims beyond what its formula shows
 /// The name of the class stands in torque/list.hpp.
@@ -66,6 +67,7 @@ class Law {
   template <std::same_as<Numbers<double>> Given>
   explicit Law(const Given& numbers) : numbers_(numbers) {
     detail::require_finite_numbers(Own::about, numbers_);
+    if constexpr (requires { Own::check(numbers_); }) Own::check(numbers_);
     if constexpr (!HasKernel<Own>) made_ = std::make_shared<Made>();
   }
 

@@ -9,6 +9,7 @@
 #include "polhode/torque/formula.hpp"
 #include "polhode/torque/gravity.hpp"
 #include "polhode/torque/gravity_gradient.hpp"
+#include "polhode/torque/orbit_gradient.hpp"
 
 namespace polhode {
 
@@ -16,6 +17,7 @@ namespace polhode {
 using LastingTorque = std::variant<torques::Constant,         //
                                    torques::Gravity,          //
                                    torques::GravityGradient,  //
+                                   torques::OrbitGradient,    //
                                    torques::Damping,          //
                                    torques::AngularDamping,   //
                                    torques::Formula,          //

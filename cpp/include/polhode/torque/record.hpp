@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "polhode/core/quat.hpp"
+#include "polhode/formula/ephemeris.hpp"
 
 namespace polhode {
 
@@ -37,7 +38,7 @@ struct TorqueInput {
 
 /// One parameter of a torque, as shown in Python, scene files and docs.
 struct TorqueParameter {
-  enum class Kind { real, vector, matrix, choice };
+  enum class Kind { real, vector, matrix, choice, orbit };
   std::string_view name;
   Kind kind;
   std::string_view unit;
@@ -46,7 +47,7 @@ struct TorqueParameter {
   std::string_view choices = {};                             ///< for Kind::choice, separated by '|'
 };
 
-using TorqueValue = std::variant<double, Vector3d, Matrix3d, std::string>;
+using TorqueValue = std::variant<double, Vector3d, Matrix3d, std::string, formula::Ephemeris>;
 using TorqueValues = std::vector<TorqueValue>;
 
 /// The name, doc and parameters of a torque.

@@ -177,6 +177,10 @@ void FormulaSeries::compute_sizes(const double* row, double* sizes) const {
   }
 }
 
+double FormulaSeries::compute_known_size(int row, int which) const {
+  return table_->compute_known_size(align_to_line(workspace_), row, which);
+}
+
 /// From the first two derivatives: the rates' own, and those of the quaternion and the states.
 double FormulaSeries::compute_time_scale(DD t, const double* y) const {
   alignas(64) double rows[3 * most_width];
@@ -188,6 +192,7 @@ double FormulaSeries::compute_time_scale(DD t, const double* y) const {
     if (!(size[0][b] > 0.0)) continue;
     rate = std::max({rate, size[1][b] / size[0][b], std::sqrt(size[2][b] / size[0][b])});
   }
+  for (int k = 0; k < count_known(); ++k) rate = std::max(rate, compute_known_size(1, k) / compute_known_size(0, k));
   return rate > 0.0 && rate < std::numeric_limits<double>::infinity() ? 1.0 / rate : 0x1p900;
 }
 

@@ -74,6 +74,9 @@ class FormulaSeries {
   /// The same with the rows of the table's extras, aligned to 64 bytes, or null.
   void expand(math::DD t, double unit, const double* y, int order, double* rows, double* extras) const;
   void compute_sizes(const double* row, double* sizes) const;
+  /// Known functions of time in the torques, such as orbits, and their sizes in a row of the last expansion.
+  int count_known() const { return table_->count_known(); }
+  double compute_known_size(int row, int which) const;
   double compute_time_scale(math::DD t, const double* y) const;
   void start_carry(double* carry) const;
   void correct(math::DD t, long step, double* y, double* carry) const;

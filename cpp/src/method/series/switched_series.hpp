@@ -40,6 +40,8 @@ class SwitchedSeries {
   void measure_error(const double* y, const double* error, double* out) const { whole_.measure_error(y, error, out); }
   void compute_series(math::DD t, double unit, const double* y, const double* carry, int order, double* rows) const;
   void compute_sizes(const double* row, double* sizes) const { whole_.compute_sizes(row, sizes); }
+  int count_known() const { return mode().series.count_known(); }
+  double compute_known_size(int row, int which) const { return mode().series.compute_known_size(row, which); }
   double compute_time_scale(math::DD t, const double* y) const { return mode().series.compute_time_scale(t, y); }
   void start_carry(double* carry) const { whole_.start_carry(carry); }
   void correct(math::DD t, long step, double* y, double* carry) const { whole_.correct(t, step, y, carry); }

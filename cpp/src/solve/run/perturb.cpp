@@ -34,6 +34,7 @@ class Perturber {
       for (int j = 0; j < 3; ++j) apply(m(i, j));
   }
   void apply(std::string&) {}
+  void apply(formula::Ephemeris&) {}   // rounded much less than the torque
 
  private:
   int units_;

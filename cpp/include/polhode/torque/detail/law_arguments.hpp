@@ -32,6 +32,8 @@ class LawArguments<double> {
 
   static Vector vector(double x, double y, double z) { return {{x, y, z}}; }
 
+  /// An orbit at the time, in space axes.
+  formula::Seen<double> see(const formula::Ephemeris& orbit) const { return formula::see(orbit, t); }
   /// q_WB, unit length.
   formula::Vec<double, 4> attitude() const {
     const double d = q_[0] * q_[0] + q_[1] * q_[1] + q_[2] * q_[2] + q_[3] * q_[3];
@@ -100,6 +102,7 @@ class LawArguments<formula::Expr> {
 
   static Vector vector(double x, double y, double z) { return {{x, y, z}}; }
 
+  formula::Seen<Number> see(const formula::Ephemeris& orbit) const { return formula::see(orbit, t); }
   const formula::Vec<Number, 4>& attitude() const { return q_; }
   Vector to_body(const Vector& v) const { return formula::to_body(q_, v); }
   Vector to_space(const Vector& v) const { return formula::to_space(q_, v); }

@@ -37,6 +37,8 @@ template <class T>
 void visit_numbers(const formula::Mat<T>& m, auto&& use) { for (const T& one : m.entries) use(one); }
 inline void visit_numbers(Choice&, auto&&) {}
 inline void visit_numbers(const Choice&, auto&&) {}
+inline void visit_numbers(formula::Ephemeris&, auto&&) {}
+inline void visit_numbers(const formula::Ephemeris&, auto&&) {}
 
 /// Calls use(field) for each field of a struct.
 template <class Struct>
@@ -79,6 +81,11 @@ inline void read(const TorqueParameter& parameter, const TorqueValue& value, Cho
   field.number = find_choice(parameter.choices, std::get<std::string>(value));
 }
 
+inline void read(const TorqueParameter&, const TorqueValue& value, formula::Ephemeris& field) {
+  field = std::get<formula::Ephemeris>(value);
+}
+
+inline TorqueValue write(const TorqueParameter&, const formula::Ephemeris& field) { return field; }
 inline TorqueValue write(const TorqueParameter&, double field) { return field; }
 inline TorqueValue write(const TorqueParameter&, const formula::Vec<double, 3>& field) {
   return Vector3d(field[0], field[1], field[2]);
@@ -124,17 +131,18 @@ void require_finite_numbers(const TorqueRecord& record, const Numbers& numbers) 
   });
 }
 
-/// The choices of a struct in another of the same fields.
-template <class From, class To>
+/// The fields of a struct that are no numbers in another of the same fields: choices and orbits.
+template <class Kept = Choice, class From, class To>
 void copy_choices(const From& from, To& to) {
-  std::vector<Choice> choices;
+  std::vector<Kept> kept;
   for_each_field(from, [&]<class Field>(const Field& field) {
-    if constexpr (std::is_same_v<Field, Choice>) choices.push_back(field);
+    if constexpr (std::is_same_v<Field, Kept>) kept.push_back(field);
   });
   std::size_t next = 0;
   for_each_field(to, [&]<class Field>(Field& field) {
-    if constexpr (std::is_same_v<Field, Choice>) field = choices[next++];
+    if constexpr (std::is_same_v<Field, Kept>) field = kept[next++];
   });
+  if constexpr (std::is_same_v<Kept, Choice>) copy_choices<formula::Ephemeris>(from, to);
 }
 
 /// The fields as inputs of a formula, choices left out.

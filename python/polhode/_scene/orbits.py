@@ -1,0 +1,64 @@
+"""Orbits in scene files: tables `[orbits.NAME]`, which torques name."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+from .._core import InvalidInput
+from .._orbit.orbit import Orbit
+from .validation import kinds, model
+
+ELEMENTS = ("periapsis_distance", "a", "e", "inclination", "node", "periapsis", "anomaly", "t0", "j2", "radius")
+
+
+@cache
+def orbit_model() -> Any:
+    """Return the pydantic model of one orbit: the keys of `Orbit`, of `Orbit.from_elements` or of `Orbit.table`."""
+    kind = kinds()
+    numbers: dict[str, Any] = {name: (kind.number | None, None) for name in ELEMENTS}
+    rows = list[kind.vector] | None   # type: ignore[name-defined]
+    return model("Orbit", mu=(kind.number | None, None), r0=(kind.vector | None, None), v0=(kind.vector | None, None),
+                 t=(kind.numbers | None, None), r=(rows, None), v=(rows, None), **numbers)
+
+
+def make_orbits(entries: dict[str, Any]) -> dict[str, Orbit]:
+    """Return the orbits of a scene file by name.
+
+    Raises
+    ------
+    InvalidInput
+        With the name of the orbit.
+    """
+    orbits = {}
+    for name, entry in entries.items():
+        given = {key: value for key, value in entry.model_dump().items() if value is not None}
+        make = Orbit.table if "t" in given else Orbit if "r0" in given else Orbit.from_elements
+        try:
+            orbits[name] = make(**given)
+        except InvalidInput as error:
+            raise InvalidInput(f"orbits.{name}: {error}") from None
+    return orbits
+
+
+def to_entry(orbit: Orbit) -> dict[str, Any]:
+    """Return the keys of an orbit's table."""
+    return dict(orbit._given)
+
+
+class Names:
+    """The names of orbits in a file that is written, and their tables."""
+
+    def __init__(self) -> None:
+        self.orbits: dict[str, Orbit] = {}
+
+    def find(self, orbit: Orbit, wish: str = "main") -> str:
+        """Return the name of an orbit, and give it one if it has none."""
+        for name, known in self.orbits.items():
+            if known == orbit:
+                return name
+        name, number = wish, 1
+        while name in self.orbits:
+            name, number = f"{wish}{number + 1}", number + 1
+        self.orbits[name] = orbit
+        return name
