@@ -42,14 +42,21 @@ void expand(double mu, const PlaneState& start, const MovingPlane& plane, double
   x[1] = unit / distance * start.vx, y[1] = unit / distance * start.vy;
   for (std::size_t n = 0; n < end; ++n) {
     const auto k = static_cast<double>(n);
-    s[n] = n == 0 ? 1.0 : convolve(x, x, n) + convolve(y, y, n);
-    double sum = 0.0;
-    for (std::size_t j = 1; j <= n; ++j) sum -= (k + 0.5 * static_cast<double>(j)) * s[j] * u[n - j];
-    u[n] = n == 0 ? 1.0 : sum / k;
-    inverse[n] = convolve(s, u, n);
+    // Sums side by side, which wait for no other: s_n, then u_n, then what needs both.
+    double along = 0.0, across = 0.0, power = 0.0;
+    for (std::size_t j = 0; j <= n; ++j) along += x[j] * x[n - j], across += y[j] * y[n - j];
+    s[n] = n == 0 ? 1.0 : along + across;
+    for (std::size_t j = 1; j <= n; ++j) power -= (k + 0.5 * static_cast<double>(j)) * s[j] * u[n - j];
+    u[n] = n == 0 ? 1.0 : power / k;
+    double low = u[n], length = 0.0, pull_x = x[0] * u[n], pull_y = y[0] * u[n];
+    for (std::size_t j = 1; j <= n; ++j) {
+      low += s[j] * u[n - j], length += s[j] * inverse[n - j];
+      pull_x += x[j] * u[n - j], pull_y += y[j] * u[n - j];
+    }
+    inverse[n] = low, length += low;
     const double factor = -pull / ((k + 1.0) * (k + 2.0));
-    x[n + 2] = factor * convolve(x, u, n), y[n + 2] = factor * convolve(y, u, n);
-    rows[8 * n + 6] = convolve(s, inverse, n) * distance, rows[8 * n + 7] = inverse[n] / distance;
+    x[n + 2] = factor * pull_x, y[n + 2] = factor * pull_y;
+    rows[8 * n + 6] = length * distance, rows[8 * n + 7] = inverse[n] / distance;
   }
   rotate(x, y, plane.periapsis_rate * unit, end + 1);
   Row r[3];
