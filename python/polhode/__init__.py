@@ -33,6 +33,7 @@ from ._core import __version__ as __version__
 from ._core.exact import *  # noqa: F403  the list is the compiled one
 from ._orbit.field import MagneticField as MagneticField
 from ._orbit.orbit import Orbit as Orbit
+from ._orbit.plates import Plate as Plate
 from ._plot.closed_forms import attach as _attach
 from ._scene.scene import Scene as Scene
 from ._sensitivity.fit import fit as fit

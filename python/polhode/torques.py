@@ -7,8 +7,10 @@ from typing import Any
 from . import _core
 from ._core.torques import *  # noqa: F403  the list is the compiled one
 from ._orbit.field import Dipole
+from ._orbit.plates import Drag, SolarPressure
 
-__all__ = [record["name"] for record in _core.torque_records()] + ["During", "Dipole", "records"]  # noqa: F405
+_names = [record["name"] for record in _core.torque_records()]
+__all__ = [*_names, "During", "Dipole", "Drag", "SolarPressure", "records"]  # noqa: F405
 
 for _name in __all__[:-1]:
     globals()[_name].__module__ = "polhode.torques"

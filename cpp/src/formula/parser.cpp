@@ -255,6 +255,7 @@ Program parse(const Text& text) {
     add_name(names, name, {});   // refuses what is no name, or another's
     names.erase(name);
     orbits.emplace_back(name, Ephemeris(ephemeris.path(), name));
+    graph.ephemeris(orbits.back().second, 0);   // in their order
   }
   for (const auto& [name, definition] : text.let) {
     Value value = FieldParser(graph, names, orbits, definition, "let." + name).parse();

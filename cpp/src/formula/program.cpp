@@ -138,7 +138,8 @@ Program rewrite(const Program& program, const Change& change) {
   std::vector<std::array<int, 3>> inputs;   // kind, number, node
   for (int i = 0; i < program.graph.size(); ++i) {
     const Node& n = program.graph[i];
-    if (live[static_cast<std::size_t>(i)] && (n.op == Op::time || n.op == Op::state || n.op == Op::parameter))
+    const bool is_input = n.op == Op::time || n.op == Op::state || n.op == Op::parameter || n.op == Op::ephemeris;
+    if (live[static_cast<std::size_t>(i)] && is_input)
       inputs.push_back({static_cast<int>(n.op), n.index, i});
   }
   std::sort(inputs.begin(), inputs.end());

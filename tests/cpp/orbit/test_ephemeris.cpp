@@ -9,6 +9,7 @@
 #include "polhode/core/error.hpp"
 #include "polhode/torque/magnetic_field.hpp"
 #include "polhode/torque/orbit_gradient.hpp"
+#include "polhode/torque/plates.hpp"
 
 // An orbit as torques and formulas see it: its series against its closed form.
 TEST_SUITE("orbit") {
@@ -73,6 +74,16 @@ TEST_SUITE("orbit") {
     torques::make_dipole({1, 2, 3}, field).add({0.7, omega, attitude, inertia}, tau.data());
     const Vector3d turned = Vector3d(1, 2, 3).cross(field.at(0.7, now.r));
     CHECK((tau - turned).norm() <= 1e-14 * turned.norm());
+
+    tau.setZero();
+    torques::make_solar_pressure({{2.0, {0, 0, 3}, {1, 0, 0}}}, {0, 0, 5}, 0.5).add({0.7, omega, attitude, inertia},
+                                                                                    tau.data());
+    CHECK((tau - Vector3d(0, 1, 0)).norm() <= 1e-15);
+    tau.setZero();
+    torques::make_drag({{2.0, now.v, {1, 0, 0}}}, orbit.ephemeris(), 2.2, {0.1, now.r.norm(), 1.0})
+        .add({0.7, omega, attitude, inertia}, tau.data());
+    const Vector3d dragged = -0.22 * now.v.norm() * Vector3d(1, 0, 0).cross(now.v);
+    CHECK((tau - dragged).norm() <= 1e-14 * dragged.norm());
 
     const auto pushed = torques::Formula::from([&](const auto& in) { return formula::see(orbit.ephemeris(), in.t).v; });
     tau.setZero();

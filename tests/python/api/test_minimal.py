@@ -237,7 +237,13 @@ def smoke_magnetic_field():
     assert np.allclose(ph.torques.Dipole((1, 0, 0), field).value(0.0, (0, 0, 0), (0, 0, 0, 1)), (0, 2, 0))
 
 
+def smoke_plate():
+    light = ph.torques.SolarPressure(ph.Plate(1.0, (0, 0, 1), (1, 0, 0)), (0, 0, 1), 1.0)
+    assert np.allclose(light.value(0.0, (0, 0, 0), (0, 0, 0, 1)), (0, 1, 0))
+
+
 SMOKE = {
+    "Plate": smoke_plate,
     "MagneticField": smoke_magnetic_field,
     "Event": smoke_event,
     "DampedFree": smoke_damped_free,
