@@ -17,7 +17,9 @@ namespace polhode {
 using LastingTorque = std::variant<torques::Constant,         //
                                    torques::Gravity,          //
                                    torques::GravityGradient,  //
+#ifndef POLHODE_WITHOUT_ORBITS   // as in the browser, whose scenes have none
                                    torques::OrbitGradient,    //
+#endif
                                    torques::Damping,          //
                                    torques::AngularDamping,   //
                                    torques::Formula,          //
