@@ -78,8 +78,13 @@ py::dict make_report(const PlannedScene& planned) {
   }();
   py::list candidates;
   for (const Candidate& candidate : report.candidates) candidates.append(describe_candidate(candidate));
+  py::list left_out;
+  for (const LeftOut& left : report.left_out) {
+    left_out.append(py::dict("torque"_a = left.torque, "name"_a = left.name, "omega"_a = left.omega,
+                             "attitude"_a = left.attitude, "reason"_a = left.reason));
+  }
   return py::dict("facts"_a = describe_facts(report.facts), "candidates"_a = candidates,
-                  "reasons"_a = py::cast(report.reasons), "left_out"_a = py::cast(report.left_out));
+                  "reasons"_a = py::cast(report.reasons), "left_out"_a = left_out);
 }
 
 }  // namespace
@@ -106,6 +111,15 @@ void bind_solve_plan(py::module_& m) {
         return describe_plan(planned.plan(), planned.plan().state, planned.plan().rtol);
       })
       .def_property_readonly("report", &make_report);
+  m.def("effect", [](const Scene& scene, std::size_t torque) {
+    const Effect found = [&] {
+      const WithoutGil nogil;
+      return compute_effect(scene, torque);
+    }();
+    return py::dict("omega"_a = found.omega, "attitude"_a = found.attitude,
+                    "first_order"_a = py::make_tuple(found.first_omega, found.first_attitude),
+                    "kind"_a = found.is_bounded() ? "bounded" : "refused", "reason"_a = found.refusal);
+  }, py::arg("scene"), py::arg("torque"), "A bound on what one torque changes, by the names of its record.");
   m.def("closed_forms", [] {
     py::list list;
     for (const ClosedFormRecord* form : closed_forms()) {

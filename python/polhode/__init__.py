@@ -42,6 +42,7 @@ from ._sensitivity.lyapunov import Lyapunov as Lyapunov
 from ._sensitivity.lyapunov import lyapunov as lyapunov
 from ._sensitivity.result import FitResult as FitResult
 from ._sensitivity.sensitivity import Sensitivity as Sensitivity
+from ._solve.effect import effect as effect
 from ._solve.motion import Motion as Motion
 from ._solve.plan import Plan as Plan
 from ._solve.plan import plan as plan

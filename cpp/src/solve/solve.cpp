@@ -10,6 +10,7 @@
 #include "polhode/solve/invariants.hpp"
 #include "polhode/solve/plan.hpp"
 #include "solve/ground/custom_check.hpp"
+#include "solve/plan/leave_out.hpp"
 #include "solve/plan/plan.hpp"
 #include "solve/certify/certify.hpp"
 #include "solve/ground/formulas.hpp"
@@ -97,6 +98,7 @@ PlannedScene::PlannedScene(const Scene& given, const SolveOptions& options) : op
   check_options(scene, options);
   check_torques(scene);
   Decision decision = decide(scene, options);
+  if (!decision.left_out.empty()) number_as_given(given, decision.left_out);
   decision.recognised = std::move(recognised);
   decision.crosses_switches = !by_series && has_switches(given);
   decision_ = std::make_shared<const Decision>(std::move(decision));
@@ -122,6 +124,7 @@ Motion PlannedScene::run(const SolveOptions& options) const {
   check_options(decision_->scene, run);
   Motion motion = run.proof ? prove(*decision_, run) : run_divided(decision_, run);
   if (!motion.all_finite()) refuse_samples(motion);
+  for (const LeftOut& left : decision_->left_out) motion.message.append("; ").append(describe(left));
   motion.stats.seconds = find_seconds_since(begin);
   return motion;
 }

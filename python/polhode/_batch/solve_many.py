@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _core, _export
-from .._attitude.arrays import require_text, to_items
+from .._attitude.arrays import require_bool, require_text, to_items
 from .._keywords import checked
 from .._scene.plain import to_plain
 from .._scene.scene import Scene
@@ -136,6 +136,7 @@ def solve_many(
     atol: float | None = None,
     step: float | None = None,
     max_steps: int = 10_000_000,
+    leave_out: bool = True,
     threads: int | None = None,
     errors: str = "raise",
     sensitivity: str | Sequence[str] | None = None,
@@ -159,7 +160,7 @@ def solve_many(
         With one scene: the starts' angular velocities in body axes [rad/s].
     attitude : array_like, shape (bodies, 4), or Rotation, optional
         With one scene: the starts' attitudes (x, y, z, w). Shapes (3,) and (4,) hold for all bodies.
-    accuracy, method, rtol, atol, step, max_steps
+    accuracy, method, rtol, atol, step, max_steps, leave_out
         As in `solve`, for each body.
     threads : int, optional
         The number of threads; by default all of the machine. The result of a body has the same bits for any number of
@@ -218,10 +219,11 @@ def solve_many(
     want = listed[0].want if listed else ("omega", "attitude")
     out = {name: np.empty((bodies, times, width)) if name in want else None for name, width in WIDTHS.items()}
     options = {"accuracy": accuracy, "method": method, "rtol": rtol, "atol": atol, "step": step,
-               "max_steps": check_max_steps(max_steps)}
+               "max_steps": check_max_steps(max_steps), "leave_out": require_bool(leave_out, "leave_out")}
     found = _core._solve_many(listed, *starts, bodies, times, out["omega"], out["attitude"], options, workers,
                                refuse)
-    given |= {name: value for name, value in options.items() if value is not None and value != 10_000_000}
+    given |= {name: value for name, value in options.items()
+              if value is not None and value != 10_000_000 and value is not True}
     given |= {} if refuse else {"errors": "nan"}
     derivatives = None
     if groups and bodies:

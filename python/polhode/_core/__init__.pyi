@@ -1507,6 +1507,10 @@ def closed_forms() -> list[typing.Any]:
     """
 def drift(arg0: Scene, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Any, arg3: typing.Any) -> dict[str, float]:
     ...
+def effect(scene: Scene, torque: typing.SupportsInt | typing.SupportsIndex) -> dict[str, typing.Any]:
+    """
+    A bound on what one torque changes, by the names of its record.
+    """
 def energy(arg0: Scene, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg3: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
     ...
 def find_closed_form(scene: Scene) -> typing.Any:

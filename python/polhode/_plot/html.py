@@ -72,7 +72,7 @@ def of_plan(plan: Plan) -> str:
         table = _table(rows, ("candidate", "error", "time", ""), strong)
         parts.append(f"<details><summary>{len(rows)} candidates</summary>{table}</details>")
     return _frame(f"Plan: {plan.model} by {plan.method}", f"{plan.scene.name or 'scene'}, {asked}",
-                  _list((*plan.reasons, *plan.left_out)), *parts)
+                  _list(plan.reasons), *parts)
 
 
 def of_motion(motion: Motion) -> str:

@@ -37,6 +37,16 @@ class Piece(NamedTuple):
     ran: str | None = None      # what ran in its place, where the closed form did not hold at the piece's start
 
 
+class LeftOut(NamedTuple):
+    """A torque that is not computed, with its part of the bound of all that are left out."""
+
+    torque: int                 # its number among the scene's torques
+    name: str                   # its class
+    omega: float                # bound on the change of omega, relative to the largest rate
+    attitude: float             # bound on the change of the attitude [rad]
+    reason: str
+
+
 class Plan:
     """The model and the method for a scene and an accuracy, with the reasons; prints as a table.
 
@@ -69,10 +79,14 @@ class Plan:
         is the measured time of a call of your own torques; no choice depends on it.
     candidates : tuple of Candidate
         All models and methods that were considered, exact models first.
-    reasons, left_out : tuple of str
+    reasons : tuple of str
         Why this model and this method; what is not computed, and why that is safe.
+    left_out : tuple of LeftOut
+        The torques that are not computed: torque (its number), name, omega (bound relative to the largest rate),
+        attitude (bound [rad]), reason. The body is then free. The bound is part of `motion.error`. Events see the
+        motion without these torques.
     wishes : dict
-        The options of the plan: "method" and "formulation" as they were passed to `plan` or `solve`.
+        The options of the plan: "method", "formulation" and "leave_out" as they were passed to `plan` or `solve`.
     """
 
     model: str
@@ -121,13 +135,13 @@ class Plan:
 
     @property
     def reasons(self) -> tuple[str, ...]:
-        """The reasons for this model and this method."""
+        """The reasons for this model and this method, and for what is not computed."""
         return tuple(self._report["reasons"])
 
     @property
-    def left_out(self) -> tuple[str, ...]:
-        """What is not computed, and why that is safe."""
-        return tuple(self._report["left_out"])
+    def left_out(self) -> tuple[LeftOut, ...]:
+        """The torques that are not computed, each with its bound."""
+        return tuple(LeftOut(**record) for record in self._report["left_out"])
 
     def as_dict(self) -> dict[str, Any]:
         """Return the whole plan as a dict for JSON."""
@@ -140,7 +154,8 @@ class Plan:
             "predicted_error": number(self.predicted_error), "predicted_seconds": number(self.predicted_seconds),
             "pieces": [piece._asdict() for piece in self.pieces],
             "facts": self.facts, "candidates": [candidate._asdict() for candidate in self.candidates],
-            "reasons": list(self.reasons), "left_out": list(self.left_out), "costs": costs.describe(),
+            "reasons": list(self.reasons), "left_out": [record._asdict() for record in self.left_out],
+            "costs": costs.describe(),
         }
 
     def __str__(self) -> str:
@@ -213,7 +228,8 @@ def _name(torque: Any) -> str:
 
 def _describe_torques(plan: Plan) -> str:
     facts = plan.facts
-    parts = [_name(torque) for torque in plan.scene.torques]
+    gone = {record.torque for record in plan.left_out}
+    parts = [_name(torque) + (" (left out)" if i in gone else "") for i, torque in enumerate(plan.scene.torques)]
     if count := len(plan.scene.rotors):
         parts.append(f"{count} rotor{'' if count == 1 else 's'}")
     names = ", ".join(parts) or "none"
@@ -295,8 +311,7 @@ def _lines(plan: Plan) -> list[str]:
         lines += ["", *_table(plan)]
     lines.append("")
     lines.append(f"  choice   {_describe_choice(plan)}, state: {plan.state}")
-    for name, texts in (("because", plan.reasons), ("left out", plan.left_out)):
-        lines += [f"  {name if i == 0 else '':<9}{text}" for i, text in enumerate(texts)]
+    lines += [f"  {'because' if i == 0 else '':<9}{text}" for i, text in enumerate(plan.reasons)]
     if not math.isnan(plan.accuracy):
         lines.append(f"  costs    {costs.describe()}")
     return lines
@@ -304,7 +319,7 @@ def _lines(plan: Plan) -> list[str]:
 
 @checked
 def plan(scene: Scene, accuracy: float | None = None, *, method: str | None = None,
-         certify: bool | Literal["proof"] = True, formulation: str = "euler") -> Plan:
+         certify: bool | Literal["proof"] = True, formulation: str = "euler", leave_out: bool = True) -> Plan:
     """Choose the simplest model and the cheapest method for a scene, without running them.
 
     Parameters
@@ -318,6 +333,8 @@ def plan(scene: Scene, accuracy: float | None = None, *, method: str | None = No
         Bound the error; otherwise it is only expected. "proof": as in `solve`.
     formulation : {"euler", "lagrangian"}
         As in `solve`.
+    leave_out : bool
+        As in `solve`: whether torques may be left out that change nothing within a third of the accuracy.
 
     Returns
     -------
@@ -333,7 +350,9 @@ def plan(scene: Scene, accuracy: float | None = None, *, method: str | None = No
         raise _core.InvalidInput(f"scene: must be a polhode.Scene, got {type(scene).__name__}")
     for name, value in (("method", method), ("certify", certify), ("formulation", formulation)):
         require_text(value, name)
-    asked = {"method": method, "formulation": str(formulation)}
+    asked: dict[str, Any] = {"method": method, "formulation": str(formulation)}
+    if not require_bool(leave_out, "leave_out"):
+        asked["leave_out"] = False
     if not isinstance(certify, str):
         certify = require_bool(certify, "certify")
     planned = _core.PlannedScene(scene, {**asked, "accuracy": accuracy, "certify": certify,

@@ -122,6 +122,7 @@ def solve(
     max_steps: int = 10_000_000,
     dense: bool = False,
     formulation: str = "euler",
+    leave_out: bool = True,
     events: Iterable[Any] = (),
     progress: Callable[[float, float], object] | bool | None = None,
     sensitivity: str | Sequence[str] | None = None,
@@ -162,6 +163,10 @@ def solve(
     formulation : {"euler", "lagrangian"}
         Euler's equations with a quaternion, or Lagrange's in the textbook's z-x-z angles. The latter fail at theta = 0
         and pi.
+    leave_out : bool
+        Leave out torques whose effect on every sample is proved to be within a third of the accuracy, all together.
+        The closed form of the free body then answers, and `motion.error` includes the bound: see `effect`. Events and
+        `motion.sensitivity` differ: events see the motion without these torques, derivatives include them.
     events : iterable of Event or callables
         Functions whose zeros are located. A callable may have attributes `direction` and `terminal`. The errors of
         their times are not bounded.
@@ -196,11 +201,16 @@ def solve(
     require_text(formulation, "formulation")
     if not isinstance(certify, str):
         certify = require_bool(certify, "certify")
+    leave_out = require_bool(leave_out, "leave_out")
     given: dict[str, Any] = {"accuracy": accuracy, "method": method, "rtol": rtol, "atol": atol, "step": step}
     planned = None
     if plan is not None:
         _check_plan(plan, scene, given, certify, formulation)
         accuracy, formulation = plan.accuracy, plan.wishes.get("formulation", "euler")
+        if leave_out != plan.wishes.get("leave_out", True):
+            if not leave_out:
+                raise _core.InvalidInput("leave_out: must be True with plan=, which may leave torques out, got False")
+            leave_out = False
         if method is None and bool(certify) == bool(plan.certify):
             planned = plan._planned
         if method is None:   # pieces have a method each, and a proof has none
@@ -210,14 +220,19 @@ def solve(
     with shown(progress, f"solving {scene.name}".strip()) as callback:
         answer = _core.solve(scene, {
             **given, "certify": certify, "max_steps": check_max_steps(max_steps), "dense": require_bool(dense, "dense"),
-            "formulation": str(formulation),
+            "formulation": str(formulation), "leave_out": leave_out,
             "events": [_with_states(event, scene) for event in found] if scene.states else found,
             "progress": callback, "cost_factors": factors()}, planned)
-    asked = None if method is None and formulation == "euler" else {"method": method, "formulation": formulation}
+    asked: dict[str, Any] | None
+    plain = method is None and formulation == "euler" and leave_out
+    asked = None if plain else {"method": method, "formulation": formulation}
+    if not leave_out and asked is not None:
+        asked["leave_out"] = False
     options = {name: value for name, value in given.items() if value is not None}
     options |= {"certify": certify} if certify is not True else {}
     options |= {"max_steps": max_steps} if max_steps != 10_000_000 else {}
     options |= {"formulation": formulation} if formulation != "euler" else {}
+    options |= {} if leave_out else {"leave_out": False}
     motion = Motion(scene, answer, asked, options)
     if sensitivity is not None:
         for name, value in (("events", found or None), ("rtol", rtol), ("atol", atol), ("step", step)):

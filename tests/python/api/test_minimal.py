@@ -161,6 +161,12 @@ def smoke_plan():
     assert isinstance(made, ph.Plan) and made.method == "exact" and made.model in str(made)
 
 
+def smoke_effect():
+    weak = scene(torques=[ph.torques.Constant((1e-15, 0, 0))])
+    found = ph.effect(weak)
+    assert found.kind == "bounded" and 0 < found.omega < 1e-9 and ph.plan(weak, 1e-9).left_out[0].torque == 0
+
+
 def smoke_event():
     spin = ph.Event(lambda t, omega, attitude: omega[0], terminal=True)
     assert ph.solve(scene(times=[0.0, 5.0]), events=[spin]).status == "event"
@@ -276,6 +282,7 @@ SMOKE = {
     "lyapunov": smoke_lyapunov,
     "Lyapunov": smoke_lyapunov,
     "free_sensitivity": smoke_free_sensitivity,
+    "effect": smoke_effect,
     "generalised_forces": smoke_generalised_forces,
     "gyrostat": smoke_gyrostat,
     "heavy_top": smoke_heavy_tops,

@@ -302,6 +302,7 @@ OUT = {
         "DampedFree", "FreeMotion", "Gyrostat", "HeavyTop", "Pendulum", "DampedFree.slowed_time", "Event", "Rotor",
         "Orbit", "Orbit.from_elements", "Orbit.table", "MagneticField", "Plate",
         "InertiaTensor", "MassProperties", "PrincipalAxes", "shapes.", "torques.", "formula.", "generalised_forces",
+        "effect",
         "inertia.check", "inertia.diagnose", "inertia.equivalent_box", "inertia.equivalent_ellipsoid",
         "inertia.Diagnosis", "inertia.Finding", "inertia.Flaw"),
     "holds a result, or is an exception": (

@@ -34,8 +34,8 @@ MAY_USE = {
     "orbit": ["core", "math", "formula"],
 }
 # The rooms of `solve`, and what each may use; solve.cpp stands above them.
-SOLVE_ROOMS = {"ground": [], "form": ["ground"], "run": ["ground"], "proof": ["ground"],
-               "plan": ["ground", "form", "run"], "certify": ["ground", "form", "run", "proof", "plan"]}
+SOLVE_ROOMS = {"ground": [], "form": ["ground"], "run": ["ground"], "proof": ["ground"], "effect": ["ground"],
+               "plan": ["ground", "form", "run", "effect"], "certify": ["ground", "form", "run", "proof", "plan"]}
 
 
 def sources(*folders, suffixes=(".hpp", ".cpp", ".inl", ".def")):

@@ -92,7 +92,8 @@ def test_sentences_about_the_code_are_short_and_plain(collect):
 def test_reasons_of_plans_are_short_and_plain():
     found = {}
     for plan in make_plans():
-        texts = (*plan.reasons, *plan.left_out, *(candidate.why_not for candidate in plan.candidates))
+        texts = (*plan.reasons, *(record.reason for record in plan.left_out),
+                 *(candidate.why_not for candidate in plan.candidates))
         found |= {f"{plan.scene.name} {plan.accuracy:g}: {text}": text for text in texts}
     assert len(found) > 100 and not find_faults(found)
 

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "polhode/solve/effect.hpp"
 #include "polhode/solve/facts.hpp"
 #include "polhode/solve/solve.hpp"
 
@@ -26,8 +27,8 @@ struct PlanReport {
   Plan plan;
   Facts facts;
   std::vector<Candidate> candidates = {};   ///< exact models first, then methods, in the order of their lists
-  std::vector<std::string> reasons = {};    ///< for this model and this method
-  std::vector<std::string> left_out = {};   ///< what is not computed, and why that is safe
+  std::vector<std::string> reasons = {};    ///< for this model and this method, and for what is not computed
+  std::vector<LeftOut> left_out = {};       ///< torques that are not computed, each with its bound
 };
 
 struct Decision;

@@ -25,6 +25,7 @@ struct SolveOptions {
   bool dense = false;                     ///< keep the continuous extension, for motion.at(t)
   Formulation formulation = Formulation::euler;
   std::vector<SceneEvent> events = {};
+  bool leave_out = true;                  ///< torques that change nothing within a third of the accuracy: see effect.hpp
   const CostFactors* cost_factors = nullptr;   ///< for the choice between methods
   Progress progress = {};
 };

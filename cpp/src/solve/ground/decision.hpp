@@ -24,6 +24,7 @@ struct Decision {
   bool probed = false;                     ///< the pilot run probed the user's own torques over the whole span
   Probes probes = {};                      ///< what it found; the span is divided at its breaks
   bool crosses_switches = false;           ///< the method steps over the switches of a formula
+  std::vector<LeftOut> left_out = {};      ///< torques of the scene as given that `scene` is without
   bool may_cut = true;                     ///< a run may end early where a torque of the user's own is found to jump
   std::vector<std::string> recognised = {};   ///< what the formulas are that are torques of the list
   ode::Counts pilot = {};                  ///< what the pilot run of a user's own torque took

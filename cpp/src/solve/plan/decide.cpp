@@ -1,6 +1,7 @@
 #include "solve/plan/plan.hpp"
 
 #include "polhode/core/error.hpp"
+#include "solve/plan/leave_out.hpp"
 #include "solve/plan/candidates.hpp"
 #include "solve/ground/options.hpp"
 
@@ -38,6 +39,14 @@ Decision decide(const Scene& scene, const SolveOptions& options) {
     decision.plan.accuracy = get_accuracy(options);
     decision.facts = compute_facts(scene);
     return decision;
+  }
+  if (std::optional<Negligible> negligible = find_negligible(scene, options)) {
+    SolveOptions rest = options;
+    rest.leave_out = false;
+    Decision free = decide(scene.with_torques({}), rest);
+    free.plan.predicted_error += negligible->error;
+    free.left_out = std::move(negligible->torques);
+    return free;
   }
   if (has_windows(scene)) {
     Pieces pieces = cut(scene);

@@ -5,6 +5,7 @@
 
 #include "method/method.hpp"
 #include "solve/plan/candidates.hpp"
+#include "solve/plan/leave_out.hpp"
 #include "solve/ground/distance.hpp"
 #include "solve/plan/plan.hpp"
 #include "solve/ground/options.hpp"
@@ -153,8 +154,9 @@ void explain_rotors(const Scene& scene, PlanReport& report) {
   }
 }
 
-void explain_left_out(const Scene& scene, const Facts& facts, const SolveOptions& options, PlanReport& report) {
-  auto& left = report.left_out;
+/// What is not computed, and why that is safe.
+void explain_savings(const Scene& scene, const Facts& facts, const SolveOptions& options, PlanReport& report) {
+  auto& left = report.reasons;
   std::string names;
   for (const AnyTorque& torque : scene.torques()) {
     if (!traits(torque).vanishes) continue;
@@ -209,7 +211,7 @@ PlanReport explain_decision(const Decision& decision, const SolveOptions& option
   }
   explain_rotors(scene, report);
   if (facts.only_at_end) report.reasons.push_back("Only one sample time is given, so nothing is interpolated.");
-  explain_left_out(scene, facts, options, report);
+  explain_savings(scene, facts, options, report);
   return report;
 }
 
@@ -217,7 +219,10 @@ PlanReport explain_decision(const Decision& decision, const SolveOptions& option
 
 PlanReport explain(const Decision& decision, const SolveOptions& options) {
   PlanReport report = explain_decision(decision, options);
-  report.reasons.insert(report.reasons.begin(), decision.recognised.begin(), decision.recognised.end());
+  std::vector<std::string> first = decision.recognised;
+  for (const LeftOut& left : decision.left_out) first.push_back(describe(left));
+  report.reasons.insert(report.reasons.begin(), first.begin(), first.end());
+  report.left_out = decision.left_out;
   return report;
 }
 

@@ -88,11 +88,11 @@ PlanReport explain_pieces(const Decision& decision, const SolveOptions& options)
   }
   for (const AnyTorque& torque : scene.torques()) {
     if (traits(torque).vanishes) {
-      report.left_out.push_back(std::string(torque_name(torque)) + ": always zero.");
+      report.reasons.push_back(std::string(torque_name(torque)) + ": always zero.");
     }
   }
   if (!scene.want().attitude && report.plan.state == "omega") {
-    report.left_out.push_back("The attitude: it was not requested and no torque depends on it.");
+    report.reasons.push_back("The attitude: it was not requested and no torque depends on it.");
   }
   return report;
 }

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "polhode/solve/effect.hpp"
+
+// The effect of torques that act together on a free body.
+namespace polhode::effect {
+
+/// The bounds of all together, and the part of each, in the order given.
+struct Together {
+  Effect all;
+  std::vector<double> omega, attitude;   ///< they add up to the bounds
+};
+
+/// Bounds what some torques do together to the free body that remains without them. The scene may have no other torque
+/// that acts, and no rotors.
+Together bound_together(const Scene& scene, std::span<const std::size_t> torques);
+
+}  // namespace polhode::effect
