@@ -38,6 +38,9 @@ def measure(scene, accuracy=1e-12):
 TIGHT = {
     # J w' = tau along w: dw = tau t / J and the angle tau t^2 / 2 J.
     "sphere": (make(TORQUES.Constant((1e-9, 0, 0)), (2, 2, 2), (3, 0, 0), 10.0), 1e-9 * 10 / 2, 1e-9 * 100 / 4),
+    # Columns that are nearly multiples of one rotation.
+    "near sphere": (make(TORQUES.Constant((1e-9, 0, 0)), (2, 2 + 2e-8, 2 + 5e-8), (0.3, 0, 0), 2.0), 1e-9 * 2 / 2,
+                    1e-9 * 4 / 4),
     # About the axis of the least moment of a body with two equal moments: w1 changes alone.
     "axis of a symmetric body": (make(TORQUES.Constant((0, 0, 1e-9)), (2, 2, 1), (0, 0, 3), 10.0), 1e-9 * 10,
                                  1e-9 * 100 / 2),

@@ -52,12 +52,36 @@ struct Direction {
   std::vector<double> first_rates, first_rotations;
 };
 
+/// The bound without columns, if it is small enough. Windows count as open.
+bool bound_crudely(const FreeBody& free, const std::vector<TorqueSize>& sizes, double span, double most_margin,
+                   double enough, Direction& found) {
+  constexpr double most_growth = 4.0, margin = 1e-3;   // of the rates
+  if (!(enough > 0.0 && free.rate_growth * span <= most_growth)) return false;
+  double whole = 0.0;
+  std::vector<double> parts;
+  for (const TorqueSize& size : sizes) {
+    parts.push_back(size.fixed + (1.0 + margin) * size.per_rate * free.most_rate);
+    whole += parts.back();
+  }
+  const Bounds bounds = bound_by_growth(free, whole, span);
+  const double rate = free.w.norm();
+  if (!bounds.refusal.empty() || !(bounds.rate <= std::min({enough, margin, most_margin / rate}) * rate)) return false;
+  if (!(bounds.rotation <= enough)) return false;
+  found.bounds = bounds;
+  for (const double part : parts) {
+    found.first_rates.push_back(part * span / free.least);
+    found.first_rotations.push_back(0.5 * part * span * span / free.least);
+  }
+  return true;
+}
+
 Direction bound_direction(const Principal& body, const std::vector<TorqueSize>& sizes, double t0, double span,
-                          int direction, double most_margin) {
+                          int direction, double most_margin, double enough) {
   // Backwards the body moves as forwards from the opposite rates.
   const FreeBody free(body.moments, direction * body.omega);
-  const FreeTable table(free, span);
   Direction found;
+  if (bound_crudely(free, sizes, span, most_margin, enough, found)) return found;
+  const FreeTable table(free, span);
   if (!table.refusal().empty()) {
     found.bounds.refusal = table.refusal();
     return found;
@@ -83,7 +107,7 @@ Direction bound_direction(const Principal& body, const std::vector<TorqueSize>& 
 
 }  // namespace
 
-Together bound_together(const Scene& scene, std::span<const std::size_t> torques) {
+Together bound_together(const Scene& scene, std::span<const std::size_t> torques, double enough) {
   Together found;
   found.omega.assign(torques.size(), 0.0), found.attitude.assign(torques.size(), 0.0);
   const auto refuse_all = [&](std::string why) {
@@ -131,7 +155,7 @@ Together bound_together(const Scene& scene, std::span<const std::size_t> torques
   for (const int direction : {1, -1}) {
     const double span = spans[direction > 0 ? 0 : 1];
     if (span == 0.0) continue;
-    const Direction one = bound_direction(body, sizes, t0, span, direction, most_margin);
+    const Direction one = bound_direction(body, sizes, t0, span, direction, most_margin, enough);
     if (!one.bounds.refusal.empty()) return refuse_all(one.bounds.refusal);
     Effect& all = found.all;
     all.omega = std::max(all.omega, one.bounds.rate), all.attitude = std::max(all.attitude, one.bounds.rotation);

@@ -100,7 +100,7 @@ bool FreeTable::choose_cells() {
     return true;
   }
   if (!(span_ > body_.period) || rate * body_.period / most_cells > most_growth) {
-    refusal_ = "the motion stays too long near the separatrix";
+    refusal_ = "the motion stays too long near the separatrix, or the body is too thin";
     return false;
   }
   periodic_ = true;

@@ -11,27 +11,30 @@ namespace polhode::effect {
 
 /// An upper bound on the largest singular value of a matrix, within a few thousandths of it.
 ///
-/// The characteristic cubic of A^T A has three real roots of the mean m, none above m + 2 sqrt(p) (Laguerre 1880, of three
-/// real roots). Newton's steps from there fall towards the largest root and never pass it, so that each is a bound.
+/// With the mean m of the eigenvalues of A^T A and 6 p = |A^T A - m|^2, the largest of them is m + sqrt(p) x, where x is
+/// the largest root of x^3 - 3 x = 2 r, 2 r = det(A^T A - m) / p^(3/2). It is at most 2. Newton's steps from 2 fall
+/// towards it and never pass it, so that each is a bound. Without the shift by m, three roots that are nearly equal would
+/// drown in rounding.
 inline double bound_norm(const Matrix3d& A) {
-  const Matrix3d M = A.transpose() * A;
+  Matrix3d M = A.transpose() * A;
   const double trace = M.trace();
   if (!(trace > 0.0)) return trace == 0.0 ? 0.0 : HUGE_VAL;
-  const double minors = M(0, 0) * M(1, 1) - M(0, 1) * M(0, 1) + M(1, 1) * M(2, 2) - M(1, 2) * M(1, 2) +
-                        M(2, 2) * M(0, 0) - M(2, 0) * M(2, 0);
-  const double determinant = M.determinant();
-  constexpr double close = 4e-3, rounding = 1e-12;
-  const double mean = trace / 3.0, p = std::max(0.0, mean * mean - minors / 3.0);
-  double root = mean + 2.0 * std::sqrt(p);
-  for (int i = 0; i < 8; ++i) {
-    const double value = ((root - trace) * root + minors) * root - determinant;
-    const double slope = (3.0 * root - 2.0 * trace) * root + minors;
-    if (!(value > 0.0 && slope > 0.0)) break;
-    const double step = value / slope;
-    root -= step;
-    if (step < close * root) break;
+  const double mean = trace / 3.0;
+  for (int i = 0; i < 3; ++i) M(i, i) -= mean;
+  const double p = M.squaredNorm() / 6.0, width = std::sqrt(p);
+  constexpr double close = 4e-3, rounding = 1e-12, least_slope = 1e-3;
+  double x = 2.0;
+  if (width > rounding * mean) {
+    const double twice_r = M.determinant() / (p * width);
+    for (int i = 0; i < 8; ++i) {
+      const double value = (x * x - 3.0) * x - twice_r, slope = 3.0 * (x * x - 1.0);
+      if (!(value > 0.0 && slope > least_slope)) break;
+      const double step = value / slope;
+      x -= step;
+      if (step < close) break;
+    }
   }
-  return std::sqrt(root + rounding * trace);
+  return std::sqrt(mean + width * x + rounding * trace);
 }
 
 /// (e^x - 1) / x, the mean of e^y over 0 <= y <= x.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "polhode/math/detail/functions.hpp"
+#include "solve/effect/norms.hpp"
 
 namespace polhode::effect {
 namespace {
@@ -120,6 +121,18 @@ Bounds bound_by_majorant(const FreeTable& table, const Share& share, double most
     return {.rate = rate, .rotation = close_rotation(of.rotation + second * unit.rotation, table.span() * rate)};
   }
   return refuse("the torque grows with the rates that it causes");
+}
+
+Bounds bound_by_growth(const FreeBody& body, double size, double span) {
+  const double root = std::sqrt(body.least), slow = body.rate_growth * span;
+  const double kappa = span * mean_growth(body.growth * span), beta = size * kappa / root;
+  const double x = body.c * kappa * beta;
+  if (!(x <= 0.25)) return refuse("the torque is too large for the second order");
+  const double u = beta * 2.0 / (1.0 + std::sqrt(1.0 - 4.0 * x));
+  // |J^-1/2 S J^1/2| <= e^(g t), and Psi is its integral.
+  const double source = size / body.least + body.c * u * u / root;
+  const double rate = source * span * mean_growth(slow);
+  return {.rate = rate, .rotation = close_rotation(source * 0.5 * span * span * math::exp(slow), span * rate)};
 }
 
 Bounds bound_by_tube(const FreeTable& table, const Share& share, double most_margin) {

@@ -19,6 +19,10 @@ struct Bounds {
 /// @param most_margin  of the rates, up to which the torque's size holds
 Bounds bound_by_majorant(const FreeTable& table, const Share& share, double most_margin);
 
+/// The same with the bounds on growth alone, in place of the columns: good for less than about a revolution.
+/// @param size  of the torque for rates within `margin` of the free body's
+Bounds bound_by_growth(const FreeBody& body, double size, double span);
+
 /// Alekseev 1961; Groebner 1960: the change is int dF_{t-s}/dy(y(s)) J^-1/2 tau ds along the motion with the torque,
 /// which stays within a tube about the free one. On the rotations the angle is at most the length of the path
 /// s -> flow over t - s of the state at s.

@@ -16,6 +16,7 @@ namespace polhode {
 namespace {
 
 constexpr double share_of_accuracy = 1.0 / 3.0;
+constexpr double crude_share = 1.0 / 30.0;   // of the accuracy: a bound below it need not be sharp
 
 struct Wants {
   bool omega, attitude;
@@ -86,7 +87,7 @@ std::optional<Negligible> find_negligible(const Scene& scene, const SolveOptions
   std::vector<std::size_t> acting;
   for (std::size_t i = 0; i < torques.size(); ++i)
     if (!traits(torques[i]).vanishes) acting.push_back(i);
-  const effect::Together found = effect::bound_together(scene, acting);
+  const effect::Together found = effect::bound_together(scene, acting, crude_share * accuracy);
   if (!found.all.is_bounded()) return std::nullopt;
   const double error = std::max(want.omega ? found.all.omega / rate : 0.0, want.attitude ? found.all.attitude : 0.0);
   if (!(error <= share_of_accuracy * accuracy)) return std::nullopt;
