@@ -51,7 +51,7 @@ TEST_CASE("effect: norms are bounds, and close, also of matrices near a multiple
 
 TEST_CASE("effect: over whole periods the columns are below the sums of the table") {
   const Vector3d moments{1.0, 1.7, 2.6};
-  for (const Vector3d omega : {Vector3d(0.4, 0.7, 1.3), Vector3d(1.5, 0.6, 0.2)}) {
+  for (const Vector3d& omega : {Vector3d(0.4, 0.7, 1.3), Vector3d(1.5, 0.6, 0.2)}) {
     const effect::FreeBody body(moments, omega);
     CHECK(body.period == doctest::Approx(FreeMotion(moments, omega).period()).epsilon(1e-12));
     const effect::FreeTable table(body, 400.0);
