@@ -109,7 +109,8 @@ def judge(case):
     bound = max(effect.omega / rate, effect.attitude)
     first = max(effect.first_order[0] / rate, effect.first_order[1])
     row = {"case": case, "body": body, "torque": torque, "accuracy": accuracy, "bound": bound, "first": first,
-           "turns": rate * float(scene.times[-1]) / (2 * math.pi), "left_out": bool(plan.left_out), "reason": effect.reason, "decision": with_decision - without}
+           "turns": rate * float(scene.times[-1]) / (2 * math.pi), "left_out": bool(plan.left_out),
+           "reason": effect.reason, "decision": with_decision - without}
     truth = ph.solve(scene, max(1e-13, accuracy / 100), leave_out=False)
     free = ph.solve(ph.Scene(inertia=scene.inertia, omega=scene.omega, times=scene.times), 1e-12)
     row["effect"], row["truth_error"] = compute_apart(free, truth), truth.error

@@ -17,8 +17,8 @@ struct Together {
 
 /// Bounds what some torques do together to the free body that remains without them. The scene may have no other torque
 /// that acts, and no rotors.
-/// @param enough  a cruder bound is taken, in a few microseconds, if it is below this: omega relative to the rate of the
-///                start, the attitude in rad
+/// @param enough  a cruder bound is taken, in a few microseconds, if it is below this: omega relative to the start's
+///                rate, the attitude in rad
 Together bound_together(const Scene& scene, std::span<const std::size_t> torques, double enough = 0.0);
 
 }  // namespace polhode::effect

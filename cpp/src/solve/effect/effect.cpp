@@ -96,7 +96,8 @@ Direction bound_direction(const Principal& body, const std::vector<TorqueSize>& 
   found.bounds = bound_by_tube(table, all, most_margin);
   // The second order costs more sums, and is smaller only where the tube is wide.
   constexpr double narrow = 1.1;
-  if (found.bounds.rate <= narrow * all.fixed.rate && found.bounds.rotation <= narrow * all.fixed.rotation) return found;
+  if (found.bounds.rate <= narrow * all.fixed.rate && found.bounds.rotation <= narrow * all.fixed.rotation)
+    return found;
   const Bounds other = bound_by_majorant(table, all, most_margin);
   if (!other.refusal.empty()) return found;
   found.bounds.rate = std::min(found.bounds.rate, other.rate);
@@ -142,7 +143,8 @@ Together bound_together(const Scene& scene, std::span<const std::size_t> torques
     if (!size.refusal.empty()) return refuse_all(size.refusal);
     size = scale(std::move(size), moment_unit, rate_unit);
     all_zero = all_zero && size.is_zero();
-    if (size.windows.empty()) impulse += (size.fixed + size.per_rate * body.omega.norm()) * std::max(spans[0], spans[1]);
+    const double longest = std::max(spans[0], spans[1]);
+    if (size.windows.empty()) impulse += (size.fixed + size.per_rate * body.omega.norm()) * longest;
     // A formula's size holds in its region alone.
     if (size.per_rate == 0.0 && traits(scene.torques()[number]).uses_rates)
       most_margin = std::ldexp(region.margin, -rate_unit);
