@@ -21,6 +21,7 @@ struct Facts {
   double stiffness = 0.0;          ///< decay x span, which limits the steps of explicit methods
   bool piloted = false;            ///< a pilot run has counted `turns`, `effort` and `stiffness`
   double effort = 0.0;             ///< of a pilot run: the revolutions that take as many steps as this motion
+  double foldings = 0.0;           ///< of a pilot run: the e-foldings of |omega| over the span
   double call_seconds = 0.0;       ///< measured time of a call of the user's own torques; 0 without them [s]
 
   double span() const { return before + after; }
@@ -57,8 +58,13 @@ double estimate_turns(const Scene& scene, const TorqueSum& torques, double span)
 /// True if a torque may increase |omega| without bound: it has no potential and is not pure damping.
 bool may_spin_up(const Scene& scene, const TorqueSum& torques);
 
-/// The fastest rate at which the torques damp omega at the start [1/s], from the symmetric part of their derivative by
-/// omega. It is 0 if no torque depends on the rates.
-double compute_decay_rate(const Scene& scene, const TorqueSum& torques);
+/// The rates at which torques damp omega [1/s].
+struct DecayRates {
+  double fastest = 0.0, slowest = 0.0;
+};
+
+/// The rates of decay at the start, from the symmetric part of the torques' derivative by omega. They are 0 if no
+/// torque depends on the rates.
+DecayRates compute_decay_rates(const Scene& scene, const TorqueSum& torques);
 
 }  // namespace polhode

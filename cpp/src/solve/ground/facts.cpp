@@ -160,8 +160,10 @@ double estimate_turns(const Scene& scene, const TorqueSum& torques, double span)
   return angle / (2 * std::numbers::pi);
 }
 
-double compute_decay_rate(const Scene& scene, const TorqueSum& torques) {
-  return torques.uses_rates ? std::max(0.0, -compute_drive_rates(scene)[0]) : 0.0;
+DecayRates compute_decay_rates(const Scene& scene, const TorqueSum& torques) {
+  if (!torques.uses_rates) return {};
+  const Vector3d growth = compute_drive_rates(scene);
+  return {std::max(0.0, -growth[0]), std::max(0.0, -growth[2])};
 }
 
 Facts compute_facts(const Scene& scene) {
@@ -187,7 +189,7 @@ Facts compute_facts(const Scene& scene) {
   facts.only_at_end = equal;
   facts.turns = estimate_turns(scene, facts.torques, facts.span());
   facts.may_spin_up = may_spin_up(scene, facts.torques);
-  facts.decay = compute_decay_rate(scene, facts.torques);
+  facts.decay = compute_decay_rates(scene, facts.torques).fastest;
   facts.stiffness = facts.decay * facts.span();
   return facts;
 }

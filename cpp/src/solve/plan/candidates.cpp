@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numbers>
 
 #include "method/method.hpp"
 #include "method/series/switched_series.hpp"
@@ -89,7 +90,11 @@ Candidate evaluate_method(const Scene& scene, const Facts& facts, const SolveOpt
   const double factor = find_factor(options.cost_factors, record.name);
   const double samples = static_cast<double>(scene.times().size());
   candidate.predicted_seconds = factor * solve_seconds;
-  const auto count = [&](double rtol) { return forecast.compute_steps(rtol, facts.work(), facts.stiffness); };
+  const auto count = [&](double rtol) {
+    if (!facts.piloted) return forecast.compute_steps(rtol, facts.turns, facts.stiffness);
+    const double further = record.implicit ? 0.0 : std::max(0.0, facts.foldings - followed_foldings);
+    return forecast.compute_steps_of_radians(rtol, 2 * std::numbers::pi * facts.effort + further, facts.stiffness);
+  };
   const auto add_run = [&](double rtol, double share, double share_of_calls) {
     const double calls = share_of_calls * count(rtol) * forecast.calls_per_step;
     candidate.predicted_calls += calls;

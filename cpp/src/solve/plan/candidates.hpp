@@ -21,6 +21,9 @@ inline constexpr double carried_cost = 2.4, carried_cost_stiff = 3.0;
 inline constexpr double pair_cost = 3.0, alike_pair_cost = 4.5, implicit_pair_cost = 1.5;
 /// The same for calls of the user's own torque, whose pilot run makes the forecast better.
 inline constexpr double pair_calls = 1.6, implicit_pair_calls = 1.2;
+/// The e-foldings after which a rate is negligible. An implicit method follows no more of them, by its absolute
+/// tolerance; an explicit one has none, and follows all.
+inline constexpr double followed_foldings = 30.0;
 inline constexpr double pair_ratio = 5.0;             ///< ratio of the tolerances of the two runs of a certificate
 
 double get_accuracy(const SolveOptions& options);

@@ -21,7 +21,7 @@ constexpr std::size_t pilot_stride = 4;         // samples between two probes at
 constexpr long most_pilot_steps = 300;    // some 4000 calls
 constexpr double usual_steps = 1.4;       // steps at this tolerance over their forecast, by benchmarks/planner
 constexpr double stiff_steps = 100.0;     // explicit steps of stability from which the pilot run is implicit
-constexpr double followed_decay = 30.0;   // e-foldings until a rate is negligible, as in the forecast of steps
+constexpr double most_foldings = 700.0;   // from one to the least float64
 constexpr int timed_calls = 4;            // the first may compile the function, and any may be interrupted
 
 /// Probes the torques along a run whose first rows, `first` of them, are others. Removes the rows of the probes.
@@ -32,12 +32,15 @@ void take_probes(Decision& decision, std::size_t first, double accuracy, Traject
   if (!run.attitude.empty()) run.attitude.resize(4 * first);
 }
 
-/// Averages the rate of decay over the times of the run, and keeps the fastest. Where the run ended early, its last
-/// state stands for the later ones, so that damping which begins late is seen.
-void measure_decay(const Scene& scene, const std::vector<double>& times, const Trajectory& run, Decision& decision) {
+/// Averages the fastest rate of decay over the times of the run, and keeps the largest. Where the run ended early, its
+/// last state stands for the later ones, so that damping which begins late is seen.
+/// @return the slowest rate of decay from each time to the next [1/s]
+std::vector<double> measure_decay(const Scene& scene, const std::vector<double>& times, const Trajectory& run,
+                                  Decision& decision) {
   Facts& facts = decision.facts;
-  double sum = facts.decay;
-  int probes = 1;
+  std::vector<double> slowest;
+  double sum = 0.0;
+  int probes = 0;
   for (std::size_t i = pilot_stride; i < times.size(); i += pilot_stride, ++probes) {
     const std::size_t row = std::min(i, run.t.size() - 1);
     SceneParts parts = scene.parts();
@@ -49,12 +52,24 @@ void measure_decay(const Scene& scene, const std::vector<double>& times, const T
     }
     parts.times = {times[i]};
     if (!parts.omega.allFinite()) break;
-    const double decay = compute_decay_rate(Scene(std::move(parts)), facts.torques);
+    const DecayRates decay = compute_decay_rates(Scene(std::move(parts)), facts.torques);
     decision.pilot.derivatives += 6;
-    sum += decay;
-    facts.decay = std::max(facts.decay, decay);
+    sum += decay.fastest;
+    facts.decay = std::max(facts.decay, decay.fastest);
+    slowest.insert(slowest.end(), pilot_stride, decay.slowest);
   }
-  facts.stiffness = sum / probes * facts.span();
+  facts.stiffness = probes > 0 ? sum / probes * facts.span() : facts.stiffness;
+  return slowest;
+}
+
+/// The e-foldings of |omega| over the span. The slowest decay stands for those that the run did not reach or resolve.
+double count_foldings(const PilotRun& run, double resolved, const std::vector<double>& slowest, double span) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < slowest.size(); ++i) {
+    const bool measured = i + 1 < run.rate.size() && std::min(run.rate[i], run.rate[i + 1]) > resolved;
+    sum += measured ? std::abs(math::fast_log(run.rate[i + 1] / run.rate[i])) : slowest[i] * span / intervals;
+  }
+  return std::min(sum, most_foldings);
 }
 
 }  // namespace
@@ -112,20 +127,25 @@ void pilot_custom(Decision& decision, const SolveOptions& options) {
   if (run.t.empty() || run.status == Status::stopped) return;
   const double sampled = static_cast<double>(run.t.size() - 1) / intervals;
   const double share = std::clamp(std::max(sampled, std::abs(run.t_reached - scene.t0()) / facts.span()), 1e-12, 1.0);
-  const double turns =
-      measure_rotation(run, run.t[0], math::hypot(run.omega[0], run.omega[1], run.omega[2])).revolutions();
+  const PilotRun rotation = measure_rotation(run, run.t[0], math::hypot(run.omega[0], run.omega[1], run.omega[2]));
+  const double turns = rotation.revolutions();
   if (!std::isfinite(turns)) return;
   if (sampled > 0) facts.turns = turns / std::max(sampled, 1.0 / intervals);
-  if (facts.torques.uses_rates) measure_decay(scene, times, run, decision);
+  if (facts.torques.uses_rates) {
+    const std::vector<double> slowest = measure_decay(scene, times, run, decision);
+    facts.foldings = count_foldings(rotation, 10 * absolute, slowest, facts.span());
+  }
   const double steps = static_cast<double>(run.stats.steps + run.stats.rejected) / share;
-  const double a_turn =
-      usual_steps * 2 * std::numbers::pi * forecast.steps_per_radian * math::fast_pow(custom_rtol, -forecast.power);
+  const double a_radian = usual_steps * forecast.steps_per_radian * math::fast_pow(custom_rtol, -forecast.power);
   facts.piloted = true;
   // Where damping limits the steps, they tell nothing of those that accuracy needs.
   const bool is_stiff = forecast.stability > 0 && facts.stiffness / forecast.stability > 0.5 * steps;
   // The decay itself makes errors, as much as rotation by one radian for each e-folding that is followed.
-  const double decaying = std::min(facts.stiffness, followed_decay) / (2 * std::numbers::pi);
-  facts.effort = is_stiff ? facts.turns + decaying : (steps - 1) / a_turn;
+  const double stiff = facts.turns + std::min(facts.stiffness, followed_foldings) / (2 * std::numbers::pi);
+  const double near_end = std::min(facts.foldings, followed_foldings);
+  const double further = starts_stiff ? 0.0 : facts.foldings - near_end;   // e-foldings that the run followed
+  const double radians = std::max((steps - 1) / a_radian - further, near_end);
+  facts.effort = is_stiff ? stiff : radians / (2 * std::numbers::pi);
 }
 
 }  // namespace polhode

@@ -41,7 +41,10 @@ struct Forecast {
 
   double compute_steps(double rtol, double turns, double stiffness) const {
     // A decaying rate is followed by some thirty e-foldings, each as long as a radian, until it is negligible.
-    const double radians = 2 * std::numbers::pi * turns + std::min(stiffness, 30.0);
+    return compute_steps_of_radians(rtol, 2 * std::numbers::pi * turns + std::min(stiffness, 30.0), stiffness);
+  }
+
+  double compute_steps_of_radians(double rtol, double radians, double stiffness) const {
     const double accurate = 1 + radians * steps_per_radian * math::fast_pow(rtol, -power);
     return stability > 0.0 ? std::max(accurate, stiffness / stability) : accurate;
   }
