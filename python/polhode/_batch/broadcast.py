@@ -130,10 +130,10 @@ def in_place(target: Any, others: Iterable[Any]) -> bool:
     return not any(other is not target and np.may_share_memory(target, other) for other in others)
 
 
-def warn_poisoned(poisoned: int, level: int, refuse: bool = True) -> None:
+def warn_failed(failed: int, level: int, refuse: bool = True) -> None:
     """Warn that so many rows are NaN."""
     why = "not finite or beyond float64" if refuse else "not finite, beyond float64, or of no possible body"
-    warnings.warn(f"{poisoned} rows are NaN because their input is {why}", RuntimeWarning, stacklevel=level)
+    warnings.warn(f"{failed} rows are NaN because their input is {why}", RuntimeWarning, stacklevel=level)
 
 
 def _evaluate_one(
@@ -154,9 +154,9 @@ def _evaluate_one(
         fits = in_place(target, [*parameters, t, *targets.values()])
         results[name] = target if fits else np.empty((*t.shape, WIDTHS[name]), dtype)
     flat = [array[None] for array in parameters]
-    poisoned = kernel(*flat, t.reshape(-1), results)
-    if poisoned:
-        warn_poisoned(poisoned, 6, refuse)
+    failed = kernel(*flat, t.reshape(-1), results)
+    if failed:
+        warn_failed(failed, 6, refuse)
     for name, target in targets.items():
         if results[name] is not target:
             target[...] = results[name]
@@ -177,16 +177,16 @@ def flatten(
     flat = []
     for array, core in parameters:
         tail = array.shape[array.ndim - core :]
-        spread = np.broadcast_to(array, (*shape, *tail))
-        spread = spread.transpose(*order, *range(len(shape), len(shape) + core))
+        expanded = np.broadcast_to(array, (*shape, *tail))
+        expanded = expanded.transpose(*order, *range(len(shape), len(shape) + core))
         first = (slice(None),) * len(bodies) + (0,) * len(times)   # the parameters are the same at all times
-        spread = spread[first] if all(shape[k] for k in times) else spread.reshape(0, *tail)
-        flat.append(np.ascontiguousarray(spread).reshape(-1, *tail))
+        expanded = expanded[first] if all(shape[k] for k in times) else expanded.reshape(0, *tail)
+        flat.append(np.ascontiguousarray(expanded).reshape(-1, *tail))
     own_times = any(size != 1 for k, size in enumerate((1,) * (len(shape) - t.ndim) + t.shape) if k in bodies)
-    spread_t = np.broadcast_to(t, shape).transpose(order)
+    expanded_t = np.broadcast_to(t, shape).transpose(order)
     if own_times or n_times == 0 or n_bodies == 0:
-        return flat, np.ascontiguousarray(spread_t).reshape(n_bodies, n_times)
-    return flat, np.ascontiguousarray(spread_t[(0,) * len(bodies)]).reshape(n_times)
+        return flat, np.ascontiguousarray(expanded_t).reshape(n_bodies, n_times)
+    return flat, np.ascontiguousarray(expanded_t[(0,) * len(bodies)]).reshape(n_times)
 
 
 def evaluate(
@@ -228,9 +228,9 @@ def evaluate(
             results[name] = target
         else:
             results[name] = np.empty((*body_shape, *time_shape, WIDTHS[name]), dtype)
-    poisoned = kernel(*flat, flat_t, results) if n_bodies and n_times else 0
-    if poisoned:
-        warn_poisoned(poisoned, 5, refuse)
+    failed = kernel(*flat, flat_t, results) if n_bodies and n_times else 0
+    if failed:
+        warn_failed(failed, 5, refuse)
 
     inverse = [*np.argsort(order), len(shape)]
     for name in names:

@@ -61,7 +61,7 @@ class Ensemble:
         self.out, self.failed = task.out, failed or {}
         self._recipe: EnsembleRecipe = recipes.from_message(task.recipe)
         self.points = tuple(point.settings for point in self._recipe.points)
-        self._seen: tuple[int, Any] = (-1, None)
+        self._cached: tuple[int, Any] = (-1, None)
 
     # ---- what is done
 
@@ -100,12 +100,12 @@ class Ensemble:
 
     def _merged(self) -> tuple[summary.Summaries, dict[str, float]]:
         chunks = self.chunks
-        if self._seen[0] != len(chunks):
+        if self._cached[0] != len(chunks):
             rows = self._rows
             reader = store.Reader(self.out) if rows is None and self.out is not None else None
             found = merge(self._task, chunks, reader.record if reader else (rows or {}).__getitem__)
-            self._seen = (len(chunks), found)
-        return self._seen[1]   # type: ignore[no-any-return]
+            self._cached = (len(chunks), found)
+        return self._cached[1]   # type: ignore[no-any-return]
 
     @property
     def summary(self) -> summary.Summaries:

@@ -97,8 +97,8 @@ def check_memory(recipe: EnsembleRecipe) -> None:
         of = "value" if wanted.of == "function" else wanted.of
         unit = {"angle": {"nominal": np.array([0.0, 0.0, 0.0, 1.0])},
                 "axis_angle": {"axis": np.array([0.0, 0.0, 1.0]), "target": np.array([0.0, 0.0, 1.0])}}
-        alone = new_summary([{"of": of, **wanted.bounds, **unit.get(of, {})}], 1)
-        bins += 20 if of == "attitude" else alone.edges(0).size
+        single = new_summary([{"of": of, **wanted.bounds, **unit.get(of, {})}], 1)
+        bins += 20 if of == "attitude" else single.edges(0).size
     needed = 8 * bins * recipe.times.size * len(recipe.points)
     if needed > MOST_BYTES:
         raise InvalidInput(f"times, sweep: must be fewer: the histograms of {recipe.times.size} times at "

@@ -7,7 +7,7 @@ import os
 from functools import cache
 
 M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3   # of glibc's malloc.h
-KEPT = 2**30
+RESERVED = 2**30
 
 
 @cache
@@ -22,4 +22,4 @@ def keep() -> bool:
     mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
     if mallopt is None:
         return False
-    return bool(mallopt(M_TRIM_THRESHOLD, KEPT) and mallopt(M_MMAP_THRESHOLD, KEPT))
+    return bool(mallopt(M_TRIM_THRESHOLD, RESERVED) and mallopt(M_MMAP_THRESHOLD, RESERVED))

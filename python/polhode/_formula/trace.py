@@ -12,7 +12,7 @@ from .._core import InvalidInput
 from .._core import symbols as _core
 from .symbols import Symbol, joined, numbers_of
 
-_LOOKS, _ACCURACY = 8, 1e-12
+_PROBES, _ACCURACY = 8, 1e-12
 _NEAR = 8   # calls some units of rounding beside a look
 
 
@@ -124,7 +124,7 @@ def compare(function: Callable[..., Any], parameters: dict[str, Any], states: di
         value = formula.value(t, omega, attitude, states=at if states else None)
         return own, np.concatenate([value, *(np.ravel(rates[name]) for name in sorted(states))])
 
-    for _ in range(_LOOKS):
+    for _ in range(_PROBES):
         t, omega, attitude = float(rng.uniform(0, 10)), rng.normal(size=3), rng.normal(size=4)
         attitude /= np.linalg.norm(attitude)
         at = {name: np.asarray(start) + rng.normal(size=np.shape(start)) for name, start in states.items()}

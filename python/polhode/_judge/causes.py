@@ -214,8 +214,8 @@ def _interpolated(spacing: int) -> Push:
         part = np.where(inside, t[track.index] - t[np.where(inside, first, 0)], 0.0) / np.where(inside, span, 1.0)
         between = angle_vector(multiply(conjugate(a), b).reshape(-1, 4)).reshape(*part.shape, 3)
         made = multiply(a, exponential((part[..., None] * between).reshape(-1, 3)).reshape(*part.shape, 4))
-        apart = angle_vector(multiply(conjugate(track.attitude), made).reshape(-1, 4)).reshape(*part.shape, 3)
-        out[..., 3:] = np.where(inside[..., None], c[0] * apart, 0.0)
+        angles = angle_vector(multiply(conjugate(track.attitude), made).reshape(-1, 4)).reshape(*part.shape, 3)
+        out[..., 3:] = np.where(inside[..., None], c[0] * angles, 0.0)
         return out
 
     return show
@@ -313,9 +313,9 @@ def standing_out(track: Track) -> int | None:
     rest = track.deviation()
     if len(rest) < 8:
         return None
-    apart = np.linalg.norm(rest, axis=1)
+    angles = np.linalg.norm(rest, axis=1)
     bend = np.full(len(rest), 0.0)
     bend[1:-1] = np.linalg.norm(rest[1:-1] - 0.5 * (rest[2:] + rest[:-2]), axis=1)
     bend[0] = np.linalg.norm(rest[0] - 2 * rest[1] + rest[2])
     bend[-1] = np.linalg.norm(rest[-1] - 2 * rest[-2] + rest[-3])
-    return int(np.argmax(bend)) if np.any(apart > 0) else None
+    return int(np.argmax(bend)) if np.any(angles > 0) else None

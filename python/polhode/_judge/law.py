@@ -13,7 +13,7 @@ from .._core import InertiaTensor
 from .._scene.scene import Scene
 from .._sensitivity.free import free_sensitivity
 from ..torques import Custom
-from .states import Array, State, difference, moved, rms
+from .states import Array, State, difference, displace, rms
 
 Field = Callable[[Array, Array, Array], State]
 GROUPS = ("omega", "attitude", "inertia", "axes")
@@ -105,7 +105,7 @@ class Law:
             step = np.zeros(6)
             step[k] = size[k]
             columns.append(
-                difference(end, self.flow(t, dt, moved(state, np.broadcast_to(step, (len(t), 6))))) / size[k]
+                difference(end, self.flow(t, dt, displace(state, np.broadcast_to(step, (len(t), 6))))) / size[k]
             )
         return end, np.stack(columns, axis=-1)
 

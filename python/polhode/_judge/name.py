@@ -20,7 +20,7 @@ DIGIT = 1.7  # the step of the last digit over the floor that it sets
 # What the errors of a method may look like, and which part of them stays as a pattern then.
 IMITATED, PATTERN = ("lag", "clock", "units of rates", "inertia", "damping", "kinematics"), 0.005
 # Causes that are one and the same for some motions; the first is named, the other stands in its rivals.
-TWINS = {("clock", "units of rates"), ("lag", "kinematics")}
+EQUIVALENT = {("clock", "units of rates"), ("lag", "kinematics")}
 
 
 @dataclasses.dataclass(eq=False)
@@ -92,7 +92,7 @@ def weigh(track: Track, floor: Numbers, sigma: Numbers | None, known: bool) -> V
     verdict = Verdict("named", track, ranking, best, rivals, margin, alone[lead], float(after[lead]), alone, floor)
     if not all(_explains(best, track, k, before[k], after[k], low[k]) for k in {lead, int(np.argmax(before))}):
         verdict.kind = "unexplained"
-    elif margin < MARGIN and not _twins(best, rivals):
+    elif margin < MARGIN and not _equivalent(best, rivals):
         verdict.kind = "cannot tell"
     elif _like_a_method(best, track, lead, alone[lead], float(after[lead]), floor[lead]):
         verdict.kind, verdict.rivals = "cannot tell", tuple(dict.fromkeys((*rivals, "integrator")))
@@ -119,7 +119,7 @@ def _leader(ranking: list[Score]) -> tuple[Score, tuple[str, ...], float]:
     """Return the best score, the names of its rivals, and its lead over other causes in nats."""
     best = ranking[0]
     near = [s for s in ranking if best.gain - s.gain < MARGIN]
-    for first, second in TWINS:
+    for first, second in EQUIVALENT:
         names = {s.cause.name for s in near if s.cause}
         if best.cause and best.cause.name == second and first in names:
             best = next(s for s in near if s.cause and s.cause.name == first)
@@ -129,16 +129,16 @@ def _leader(ranking: list[Score]) -> tuple[Score, tuple[str, ...], float]:
     for score in ranking:
         if score.cause and score.cause.name != best.cause.name:
             lead = best.gain - score.gain
-            if (best.cause.name, score.cause.name) not in TWINS or lead > MARGIN:
+            if (best.cause.name, score.cause.name) not in EQUIVALENT or lead > MARGIN:
                 margin = min(margin, lead)
             if lead < MARGIN:
                 rivals[score.cause.name] = None
     return best, tuple(rivals), float(margin)
 
 
-def _twins(best: Score, rivals: tuple[str, ...]) -> bool:
+def _equivalent(best: Score, rivals: tuple[str, ...]) -> bool:
     assert best.cause is not None
-    return all((best.cause.name, rival) in TWINS for rival in rivals)
+    return all((best.cause.name, rival) in EQUIVALENT for rival in rivals)
 
 
 def decide(
@@ -168,7 +168,7 @@ def second(verdict: Verdict, floor: Numbers, sigma: Numbers | None, known: bool)
         return None
     push, show = slopes(own, Scope(track), first.c) if not own.substeps else pattern(own, Scope(track))
     nuisance = carry(track.phi, push) + show
-    causes = [c for c in catalogue(track, known) if c.name != own.name and (own.name, c.name) not in TWINS]
+    causes = [c for c in catalogue(track, known) if c.name != own.name and (own.name, c.name) not in EQUIVALENT]
     none, *others = rank(track, causes, floor, sigma, nuisance)
     if not others or others[0].gain < 2 * GAIN:
         return None

@@ -248,7 +248,7 @@ def _step(values: Array | None) -> float:
     return float(top * 10.0 ** (1 - significant) / 2) if significant <= 12 else 0.0
 
 
-def _tells_nothing(values: Array) -> bool:
+def _has_few_values(values: Array) -> bool:
     """Return True if all columns have few values, so that they do not show how many digits there are."""
     some = values[:: max(1, len(values) // 1000)]
     return all(len(np.unique(column)) <= 0.3 * len(column) for column in some.T)
@@ -265,7 +265,7 @@ def _floors(
 ) -> None:
     """Set how far off the samples may be by their digits alone, and say that they are few."""
     attitude, omega = steps
-    if rates is not None and not omega and attitude and _tells_nothing(rates):
+    if rates is not None and not omega and attitude and _has_few_values(rates):
         omega = attitude  # of the same file, with as many decimals
     coarse = [(step, what) for step, what in ((attitude, "in the attitude"), (omega, "rad/s")) if step]
     if coarse:

@@ -9,7 +9,7 @@ import numpy as np
 from .causes import Cause, Scope, slopes
 from .score import Numbers, Rated, Score, compress, rate
 from .shooting import Track, carry
-from .states import Array, difference, moved, rms
+from .states import Array, difference, displace, rms
 
 MOST_SUBSTEPS = 48
 
@@ -51,19 +51,19 @@ def _run(
         shown = cause.show(scope, c) if cause.show and not held else np.zeros((segments, length, 6))
         if not (np.all(np.isfinite(push)) and np.all(np.isfinite(shown)) and np.all(np.isfinite(d_push))):
             return None
-        end = moved(scope.end, push)
+        end = displace(scope.end, push)
         goal = now.omega[:, 1:].reshape(-1, 3), now.attitude[:, 1:].reshape(-1, 4)
         forced = np.concatenate([d_push, difference(goal, end).reshape(segments, length - 1, 6, 1)], axis=-1)
         both = carry(phi, forced)
         columns, own = both[..., :-1] + d_show, both[..., -1:]
-        output = moved((now.omega, now.attitude), shown)
+        output = displace((now.omega, now.attitude), shown)
         residual = difference(output, seen)[..., None] - own
         rows = compress(now, np.concatenate([carried, columns, residual], axis=-1))
         found = rate(rows, floor, count, sigma, extra=1 if held else 0)
         change = (carried @ found.start[:, None, :, None] + both[..., :-1] @ found.c[:, None] + own)[..., 0]
         c = c + found.c
         angle = np.linalg.norm(change[..., 3:], axis=-1, keepdims=True)
-        now.omega, now.attitude = moved(
+        now.omega, now.attitude = displace(
             (now.omega, now.attitude), change * np.minimum(1, 1 / np.maximum(1e-300, angle))
         )
         size = max(rms(change[..., :3]) / now.data.scale, rms(change[..., 3:]))
@@ -78,6 +78,6 @@ def _run(
         last = size
     assert found is not None
     shown = cause.show(Scope(now), c) if cause.show and not held else np.zeros((segments, length, 6))
-    now.residual = difference(moved((now.omega, now.attitude), shown), seen)
+    now.residual = difference(displace((now.omega, now.attitude), shown), seen)
     now.phi, now.carried = phi, carried
     return Score(cause, c, found.likelihood, found.rest, found.sigma, True, now, held)

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from .law import Law
-from .states import Array, State, difference, moved, rms
+from .states import Array, State, difference, displace, rms
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -202,7 +202,7 @@ def fit(data: Data, law: Law, length: int, rounds: int = 6) -> Track:
         if not np.all(np.isfinite(change)):
             break
         angle = np.linalg.norm(change[..., 3:], axis=-1, keepdims=True)
-        track.omega, track.attitude = moved(
+        track.omega, track.attitude = displace(
             (track.omega, track.attitude), change * np.minimum(1.0, 1.0 / np.maximum(1e-300, angle))
         )
         size = max(rms(change[..., :3]) / data.scale, rms(change[..., 3:]))

@@ -20,11 +20,11 @@ ACCURACY, SURE = 1e-12, 1e-11
 
 
 def check_start(
-    track: Track, scene: Scene, floor: Numbers, sigma: Numbers | None, alone: bool = True
+    track: Track, scene: Scene, floor: Numbers, sigma: Numbers | None, from_scene: bool = True
 ) -> Finding | None:
     """Return a finding if the fitted start of the whole motion is not the scene's.
 
-    `alone` stands for a motion without a cause, which is compared with the scene's own; another at first order.
+    `from_scene` stands for a motion without a cause, which is compared with the scene's own; another at first order.
     """
     data, law = track.data, track.law
     here = np.array([scene.t0])
@@ -38,7 +38,7 @@ def check_start(
         return tuple(float(np.sum((residual[:, part] / scale) ** 2)) / rows for part, scale in data.channels)
 
     after, before = squares(track.residual[0]), squares(track.residual[0] - track.carried[0] @ offset)
-    if alone and (own := _own(scene, data)) is not None:  # exact, where the motion amplifies what is nearly nothing
+    if from_scene and (own := _own(scene, data)) is not None:  # exact, where the motion amplifies rounding
         before = squares(difference(own, data.state))
     elif max(np.max(np.abs(offset[part])) / size for part, size in data.channels) < 10 * max(floor):
         return None

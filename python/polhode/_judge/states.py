@@ -49,7 +49,7 @@ def difference(state: State, other: State) -> Array:
     return np.concatenate([other[0] - state[0], angle_vector(multiply(conjugate(state[1]), other[1]))], axis=-1)
 
 
-def moved(state: State, by: Array) -> State:
+def displace(state: State, by: Array) -> State:
     """Return states moved by six numbers each: the reverse of `difference`."""
     return state[0] + by[..., :3], multiply(state[1], exponential(by[..., 3:]))
 

@@ -67,18 +67,18 @@ def draw(track: Track, parts: tuple[str, ...], ax: Axes | None, marks: Any, dark
     """Draw what was taken of a motion."""
     from .picture import Picture
 
-    wanted, look = _choose(track, parts), style.DARK if dark else style.LIGHT
-    drawing = Drawing(track, look, _find_marks(marks, track))
+    wanted, palette = _choose(track, parts), style.DARK if dark else style.LIGHT
+    drawing = Drawing(track, palette, _find_marks(marks, track))
     if ax is not None:
         if len(parts) != 1:
             raise InvalidInput(f"ax: must be given with one part, got {len(parts)}")
-        with style.settings(look):
+        with style.settings(palette):
             DRAW[parts[0]](ax, drawing)
         figure: Any = ax.get_figure()
         return figure   # type: ignore[no-any-return]
     columns = {1: 1, 2: 2, 4: 2}.get(len(wanted), 3)
     rows = -(-len(wanted) // columns)
-    with style.settings(look):
+    with style.settings(palette):
         width, height = 5.0 * columns, 4.3 * rows + 0.9
         figure = Picture(figsize=(width, height))
         grid = figure.add_gridspec(rows, columns, left=0.75 / width, right=1 - 0.3 / width, bottom=0.55 / height,
@@ -90,7 +90,7 @@ def draw(track: Track, parts: tuple[str, ...], ax: Axes | None, marks: Any, dark
                 angles(drawing, [figure.add_subplot(inner[k]) for k in range(3)])
             else:
                 DRAW[part](figure.add_subplot(cell), drawing)
-        style.heading(figure, *_words(track), 0.3 / width, look.quiet)
+        style.heading(figure, *_words(track), 0.3 / width, palette.quiet)
     return figure   # type: ignore[no-any-return]
 
 

@@ -21,7 +21,7 @@ class Drawing(NamedTuple):
     """A motion, the colours of its picture, and the times that get a mark [s]."""
 
     track: Track
-    look: style.Palette
+    palette: style.Palette
     marks: Floats
 
 
@@ -36,36 +36,36 @@ def _faded(axes: Any, points: Floats, front: Any, colour: str, width: float, zor
 def _mark_times(axes: Any, drawing: Drawing) -> None:
     """A faint line at each marked time, for axes with time to the right."""
     for t in drawing.marks:
-        axes.axvline(t, color=drawing.look.floor, linewidth=0.9, linestyle=(0, (4, 3)), zorder=1)
+        axes.axvline(t, color=drawing.palette.floor, linewidth=0.9, linestyle=(0, (4, 3)), zorder=1)
 
 
 def _mark_path(axes: Any, drawing: Drawing, path: Floats) -> None:
     """A dot with its time on a path that has a point for each time of the curve."""
-    curve, look = drawing.track.curve, drawing.look
+    curve, palette = drawing.track.curve, drawing.palette
     for t in drawing.marks:
         if curve.t[0] <= t <= curve.t[-1]:
             x, y = (float(np.interp(t, curve.t, path[:, k])) for k in (0, 1))
-            axes.plot(x, y, marker="o", markersize=4.5, color=look.paper, markeredgecolor=look.ink, zorder=8.5)
+            axes.plot(x, y, marker="o", markersize=4.5, color=palette.paper, markeredgecolor=palette.ink, zorder=8.5)
             axes.annotate(f"{t:.3g} s", (x, y), xytext=(5, 4), textcoords="offset points", fontsize=7.5,
-                          color=look.ink, zorder=9)
+                          color=palette.ink, zorder=9)
 
 
-def _solid(axes: Any, semi: Floats, view: Any, look: style.Palette) -> None:
+def _solid(axes: Any, semi: Floats, view: Any, palette: style.Palette) -> None:
     axes.set_aspect("equal")
     axes.set_axis_off()
-    axes.fill(*outline(semi, view).T, facecolor=look.solid, edgecolor=look.floor, linewidth=1.0, zorder=1)
+    axes.fill(*outline(semi, view).T, facecolor=palette.solid, edgecolor=palette.floor, linewidth=1.0, zorder=1)
 
 
-def _principal_axes(axes: Any, semi: Floats, paper: Floats, look: style.Palette) -> None:
+def _principal_axes(axes: Any, semi: Floats, paper: Floats, palette: style.Palette) -> None:
     for k in range(3):
         tip, beyond = (reach * semi[k] * paper[k] for reach in (1.0, 1.18))
-        axes.plot(*np.stack([tip, beyond]).T, color=look.quiet, linewidth=1.0, zorder=1.5)
-        axes.annotate(f"axis {k + 1}", beyond, color=look.quiet, fontsize=8, ha="center", va="center", zorder=7,
+        axes.plot(*np.stack([tip, beyond]).T, color=palette.quiet, linewidth=1.0, zorder=1.5)
+        axes.annotate(f"axis {k + 1}", beyond, color=palette.quiet, fontsize=8, ha="center", va="center", zorder=7,
                       xytext=14 * beyond / np.linalg.norm(beyond), textcoords="offset points")
 
 
 def _polhode(axes: Any, drawing: Drawing) -> None:
-    (scene, *_), curve, look = drawing.track, drawing.track.curve, drawing.look
+    (scene, *_), curve, palette = drawing.track, drawing.track.curve, drawing.palette
     view = make_view()
     paper = np.stack([view.right, view.up], axis=1)
     moments = np.asarray(scene.carrier_inertia.moments)
@@ -76,25 +76,25 @@ def _polhode(axes: Any, drawing: Drawing) -> None:
         axes.set_title("polhode: the body starts at rest")
         return
     semi = np.sqrt(energies[0] / moments)
-    _solid(axes, semi, view, look)
+    _solid(axes, semi, view, palette)
     plain, separatrix = family(moments, float(energies[0]))
-    curves = ((plain, look.floor, 0.7), (separatrix, look.quiet, 1.2))
+    curves = ((plain, palette.floor, 0.7), (separatrix, palette.quiet, 1.2))
     for points, colour, width in () if scene.rotors else curves:   # the family is that of free bodies
         for path in points:
             _faded(axes, path @ paper, in_front(path, semi, view), colour, width, 2)
-    _principal_axes(axes, semi, paper, look)
-    moved = np.ptp(energies) > 1e-6 * energies.max()
-    front = w @ view.towards >= 0 if moved else in_front(w, semi, view)
-    _faded(axes, w @ paper, front, look.accent, 2.0, 4)
-    axes.plot(*(w[0] @ paper), marker="o", markersize=6, color=look.ink, zorder=8)
+    _principal_axes(axes, semi, paper, palette)
+    varies = np.ptp(energies) > 1e-6 * energies.max()
+    front = w @ view.towards >= 0 if varies else in_front(w, semi, view)
+    _faded(axes, w @ paper, front, palette.accent, 2.0, 4)
+    axes.plot(*(w[0] @ paper), marker="o", markersize=6, color=palette.ink, zorder=8)
     _mark_path(axes, drawing, w @ paper)
-    axes.set_title("polhode: the tip of ω on the ellipsoid of its energy" if not moved else
+    axes.set_title("polhode: the tip of ω on the ellipsoid of its energy" if not varies else
                    "path of ω; ellipsoid of the start's energy", pad=16)
 
 
 def _momentum(axes: Any, drawing: Drawing) -> None:
     """The momentum in body axes on the sphere of its length, with the curves that free bodies follow there."""
-    (scene, *_), curve, look = drawing.track, drawing.track.curve, drawing.look
+    (scene, *_), curve, palette = drawing.track, drawing.track.curve, drawing.palette
     view = make_view()
     paper = np.stack([view.right, view.up], axis=1)
     inertia = scene.carrier_inertia
@@ -105,23 +105,24 @@ def _momentum(axes: Any, drawing: Drawing) -> None:
         axes.set_title("momentum sphere: L is 0 at the start")
         return
     path, sphere, moments = momentum / size, np.ones(3), np.asarray(inertia.moments)
-    _solid(axes, sphere, view, look)
+    _solid(axes, sphere, view, palette)
     plain, separatrix = family(moments, 1.0)
-    for points, colour, width in () if scene.rotors else ((plain, look.floor, 0.7), (separatrix, look.quiet, 1.2)):
+    curves = () if scene.rotors else ((plain, palette.floor, 0.7), (separatrix, palette.quiet, 1.2))
+    for points, colour, width in curves:
         for w in points:   # I omega has one length along a polhode: drawn on the sphere of that length
             shown = w * moments / np.linalg.norm(w * moments, axis=1, keepdims=True)
             _faded(axes, shown @ paper, in_front(shown, sphere, view), colour, width, 2)
-    _principal_axes(axes, sphere, paper, look)
-    moved = np.ptp(np.linalg.norm(path, axis=1)) > 1e-6
-    _faded(axes, path @ paper, path @ view.towards >= 0, look.accent, 2.0, 4)
-    axes.plot(*(path[0] @ paper), marker="o", markersize=6, color=look.ink, zorder=8)
+    _principal_axes(axes, sphere, paper, palette)
+    varies = np.ptp(np.linalg.norm(path, axis=1)) > 1e-6
+    _faded(axes, path @ paper, path @ view.towards >= 0, palette.accent, 2.0, 4)
+    axes.plot(*(path[0] @ paper), marker="o", markersize=6, color=palette.ink, zorder=8)
     _mark_path(axes, drawing, path @ paper)
-    axes.set_title("path of L in the body; sphere of the start" if moved else
+    axes.set_title("path of L in the body; sphere of the start" if varies else
                    "momentum sphere: the tip of L in the body", pad=16)
 
 
 def _herpolhode(axes: Any, drawing: Drawing) -> None:
-    curve, look = drawing.track.curve, drawing.look
+    curve, palette = drawing.track.curve, drawing.palette
     assert curve.attitude is not None
     rotation = Rotation.from_quat(curve.attitude)
     momentum = rotation[0].apply(compute_momentum(drawing.track.scene, curve.t[:1], curve.omega[:1])[0])
@@ -131,10 +132,10 @@ def _herpolhode(axes: Any, drawing: Drawing) -> None:
     if not np.linalg.norm(momentum) > 0:
         return
     path = herpolhode(rotation.apply(curve.omega), momentum)
-    axes.plot(*path.T, color=look.path, linewidth=1.1)
-    axes.plot(*path[0], marker="o", markersize=6, color=look.ink)
-    axes.plot(0, 0, marker="+", markersize=9, color=look.quiet)
-    axes.annotate("L", (0, 0), xytext=(5, 4), textcoords="offset points", color=look.quiet, fontsize=9)
+    axes.plot(*path.T, color=palette.path, linewidth=1.1)
+    axes.plot(*path[0], marker="o", markersize=6, color=palette.ink)
+    axes.plot(0, 0, marker="+", markersize=9, color=palette.quiet)
+    axes.annotate("L", (0, 0), xytext=(5, 4), textcoords="offset points", color=palette.quiet, fontsize=9)
     _mark_path(axes, drawing, path)
     reach = 1.12 * max(float(np.abs(path).max()), 1e-300)   # the same room on both axes, the origin included
     axes.set_xlim(-reach, reach)
@@ -143,30 +144,30 @@ def _herpolhode(axes: Any, drawing: Drawing) -> None:
 
 def _axis(axes: Any, drawing: Drawing) -> None:
     """The path of body z on the unit sphere."""
-    curve, look, view = drawing.track.curve, drawing.look, make_view(-60.0, 30.0)
+    curve, palette, view = drawing.track.curve, drawing.palette, make_view(-60.0, 30.0)
     assert curve.attitude is not None
     z = Rotation.from_quat(curve.attitude).apply(np.array([0.0, 0.0, 1.0]))
     paper, sphere = np.stack([view.right, view.up], axis=1), np.ones(3)
-    _solid(axes, sphere, view, look)
+    _solid(axes, sphere, view, palette)
     angle = np.linspace(0, 2 * math.pi, 181)
     for height in (-60, -30, 0, 30, 60):
         r, h = math.cos(math.radians(height)), math.sin(math.radians(height))
         ring = np.stack([r * np.cos(angle), r * np.sin(angle), np.full(181, h)], axis=1)
-        _faded(axes, ring @ paper, in_front(ring, sphere, view), look.floor, 1.0 if height == 0 else 0.5, 2)
+        _faded(axes, ring @ paper, in_front(ring, sphere, view), palette.floor, 1.0 if height == 0 else 0.5, 2)
     up = np.array([[0, 0, 1.0], [0, 0, 1.22]]) @ paper
-    axes.plot(*up.T, color=look.quiet, linewidth=1.0, zorder=1.5)
-    axes.annotate("space z", up[1], xytext=(0, 6), textcoords="offset points", color=look.quiet, fontsize=8,
+    axes.plot(*up.T, color=palette.quiet, linewidth=1.0, zorder=1.5)
+    axes.annotate("space z", up[1], xytext=(0, 6), textcoords="offset points", color=palette.quiet, fontsize=8,
                   ha="center")
-    _faded(axes, z @ paper, in_front(z, sphere, view), look.path, 1.4, 4)
-    axes.plot(*(z[0] @ paper), marker="o", markersize=6, color=look.ink, zorder=8)
+    _faded(axes, z @ paper, in_front(z, sphere, view), palette.path, 1.4, 4)
+    axes.plot(*(z[0] @ paper), marker="o", markersize=6, color=palette.ink, zorder=8)
     _mark_path(axes, drawing, z @ paper)
     axes.set_title("path of the body's z axis in space", pad=16)
 
 
 def _components(axes: Any, drawing: Drawing, values: Floats, names: str) -> None:
-    t, look = drawing.track.curve.t, drawing.look
+    t, palette = drawing.track.curve.t, drawing.palette
     for k, name in enumerate(names):
-        axes.plot(t, values[:, k], color=look.lines[k], linewidth=1.3, label=name)
+        axes.plot(t, values[:, k], color=palette.lines[k], linewidth=1.3, label=name)
     _mark_times(axes, drawing)
     axes.set_xlabel("t [s]")
     axes.legend(frameon=False, fontsize=8.5, ncols=len(names), loc="lower right", bbox_to_anchor=(1.0, 0.99),
@@ -196,7 +197,7 @@ def angles(drawing: Drawing, axes: list[Any]) -> None:
     values = np.array(rotation.as_euler("ZXZ"))
     values[np.asarray(rotation.gimbal_lock("ZXZ"))] = np.nan   # there phi and psi are one angle
     one = len(axes) == 1
-    for k, (name, colour) in enumerate(zip("φθψ", drawing.look.lines)):
+    for k, (name, colour) in enumerate(zip("φθψ", drawing.palette.lines)):
         place = axes[0] if one else axes[k]
         good = np.isfinite(values[:, k])
         if k != 1:
@@ -223,16 +224,16 @@ def _energy(axes: Any, drawing: Drawing) -> None:
     total = np.asarray(energy(track.scene, track.t, track.omega, track.attitude)) if kept or not needs or (
         track.attitude is not None) else compute_kinetic(track)
     total = total[order]
-    moved = total - total[0]
+    change = total - total[0]
     size = max(float(compute_kinetic(track).max()), float(np.abs(total).max()))
     if kept and size > 0:
-        moved = moved / size
-    axes.plot(track.t[order], moved, color=drawing.look.accent, marker=".", markersize=3,
+        change = change / size
+    axes.plot(track.t[order], change, color=drawing.palette.accent, marker=".", markersize=3,
               linewidth=0.8, alpha=0.8)
     _mark_times(axes, drawing)
     axes.set_xlabel("t [s]")
     axes.set_ylabel("relative" if kept else "J")
-    axes.set_title(f"energy drifted by {to_error(float(np.abs(moved).max()))}" if kept else
+    axes.set_title(f"energy drifted by {to_error(float(np.abs(change).max()))}" if kept else
                    "energy less that of the start")
 
 
@@ -241,7 +242,7 @@ def _invariants(axes: Any, drawing: Drawing) -> None:
     track = drawing.track
     series = find_moves(track)
     order = np.argsort(track.t, kind="stable")
-    colours = drawing.look.lines[1], drawing.look.lines[0]
+    colours = drawing.palette.lines[1], drawing.palette.lines[0]
     axes.set_xlabel("t [s]")
     if series:
         for (name, values), colour in zip(series.items(), colours):

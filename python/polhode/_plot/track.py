@@ -133,8 +133,8 @@ def find_moves(track: Track | Motion) -> dict[str, Floats]:
     if track.attitude is not None and {"angular_momentum", "vertical_momentum"} & set(track.drift):
         momentum = np.asarray(track.angular_momentum)
         size = float(np.linalg.norm(momentum, axis=1).max())
-        moved = momentum - momentum[0]
-        away = np.linalg.norm(moved, axis=1) if "angular_momentum" in track.drift else np.abs(moved[:, 2])
+        change = momentum - momentum[0]
+        away = np.linalg.norm(change, axis=1) if "angular_momentum" in track.drift else np.abs(change[:, 2])
         name = "angular momentum" if "angular_momentum" in track.drift else "vertical angular momentum"
         found[name] = away / size if size > 0 else away
     if "jacobi" in track.drift:

@@ -58,7 +58,7 @@ class DrivenState(State):
         return {"attitude": rotations.log(self.attitude), "omega": self.omega, "inertia": self.seconds, **self.numbers,
                 "bias": self.bias}
 
-    def moved(self, step: Array, slices: dict[str, slice]) -> DrivenState:
+    def displaced(self, step: Array, slices: dict[str, slice]) -> DrivenState:
         """Return the state after a step of the parameters; the small rotation of the start is applied on the left."""
         attitude, omega, seconds, bias = self.attitude, self.omega, self.seconds, self.bias
         numbers = dict(self.numbers)

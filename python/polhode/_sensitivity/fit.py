@@ -88,7 +88,7 @@ def _start_driven(problem: Problem, state: State, loss: str, scale: float) -> St
             step[problem.slices["attitude"]] = rotations.log(error)
     spans = np.quantile(np.abs(problem.t), SPANS)
     best: Minimum | None = None
-    for begin in (state.moved(step, problem.slices), state):
+    for begin in (state.displaced(step, problem.slices), state):
         for windows in (spans, spans[2:], spans[-1:]):
             try:
                 found = grown(problem, begin, windows, loss, scale)

@@ -91,9 +91,9 @@ def free_sensitivity(
     tails = [(3,), (4,), (3, count), (3, count)]
     targets = _targets(out, [(*shape, *tail) for tail in tails])
     broadcast.require_memory(math.prod(shape), 8 * sum(math.prod(tail) for tail in tails))
-    bodies, alone = broadcast.split_axes(shape, loops)
-    order = bodies + alone
-    flat, flat_t = broadcast.flatten(parameters, times, shape, bodies, alone)
+    bodies, inner = broadcast.split_axes(shape, loops)
+    order = bodies + inner
+    flat, flat_t = broadcast.flatten(parameters, times, shape, bodies, inner)
 
     spread = [shape[k] for k in order]
     inputs: list[Array] = [*(array for array, _ in parameters), times]
@@ -101,9 +101,9 @@ def free_sensitivity(
                else np.empty((*spread, *tail)) for target, tail in zip(targets, tails, strict=True)]
     common = (inertia,) if isinstance(inertia, InertiaTensor) else ()
     arguments: tuple[Any, ...] = (*common, *flat, flat_t, wrt, side, *results, workers)
-    poisoned = _core._free_sensitivity(*arguments) if all(shape) else 0
-    if poisoned:
-        broadcast.warn_poisoned(poisoned, 3)
+    failed = _core._free_sensitivity(*arguments) if all(shape) else 0
+    if failed:
+        broadcast.warn_failed(failed, 3)
     inverse = [int(k) for k in np.argsort(order)]
     for k, target in enumerate(targets):
         axes = [*inverse, *range(len(shape), results[k].ndim)]

@@ -64,7 +64,7 @@ def minimise(problem: Problem, state: State, *, loss: str = "linear", scale: flo
     """Find a minimum from a start. `low` and `high` bound the parameters that are no rotations, as values."""
     if low is not None and high is not None:
         now = values_of(problem, state)
-        state = state.moved(np.where(np.isnan(now), 0.0, np.clip(now, low, high) - now), problem.slices)
+        state = state.displaced(np.where(np.isnan(now), 0.0, np.clip(now, low, high) - now), problem.slices)
     residuals, jacobian = problem.residuals_and_jacobian(state)
     cost, nfev, damping, status = cost_of(residuals, loss, scale), 1, 1e-4, 0
     while nfev < most:
@@ -83,7 +83,7 @@ def minimise(problem: Problem, state: State, *, loss: str = "linear", scale: flo
                 now = values_of(problem, state)
                 step = bounded_step(normal + damping * np.eye(len(size)), gradient, (low - now) * size,
                                     (high - now) * size) / size
-            other = state.moved(step, problem.slices)
+            other = state.displaced(step, problem.slices)
             nfev += 1
             try:
                 tried = problem.residuals_and_jacobian(other)

@@ -96,11 +96,11 @@ def lyapunov(scene: Scene, span: float | None = None, *, accuracy: float = 1e-9)
     rate = rate or parts / length
     for k, t in enumerate(times):
         s = differentiate(now.replace(times=[t]), ("omega", "attitude"), accuracy, certify=False)
-        moved = s.transition[0] @ (vector * np.repeat([rate, 1.0], 3))
+        displaced = s.transition[0] @ (vector * np.repeat([rate, 1.0], 3))
         rate = max(rate, float(np.linalg.norm(s.omega[0])))
-        moved[:3] /= rate
-        grown = float(np.linalg.norm(moved))
+        displaced[:3] /= rate
+        grown = float(np.linalg.norm(displaced))
         log_growth[k + 1] = log_growth[k] + math.log(grown)
-        vector = moved / grown
+        vector = displaced / grown
         now = now.replace(omega=s.omega[0], attitude=s.attitude[0], t0=t)
     return Lyapunov(float(log_growth[-1] / length), np.concatenate([[0.0], times - scene.t0]), log_growth)

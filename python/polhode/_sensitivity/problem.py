@@ -36,7 +36,7 @@ class State:
         a, b = np.exp(np.clip(self.ratios, -80, 80))
         return np.array([b + 1, a + 1, a + b])
 
-    def moved(self, step: Array, slices: dict[str, slice]) -> State:
+    def displaced(self, step: Array, slices: dict[str, slice]) -> State:
         """Return the state after a step of the parameters; small rotations are applied on the left."""
         def part(name: str, width: int) -> Array:
             return step[slices[name]] if name in slices else np.zeros(width)
@@ -169,12 +169,12 @@ class Problem:
 
     def fun(self, x: Array) -> Array:
         """Residuals at a step `x` from the base, for SciPy's `least_squares`."""
-        return self.residuals(self.base.moved(np.asarray(x, dtype=float), self.slices))
+        return self.residuals(self.base.displaced(np.asarray(x, dtype=float), self.slices))
 
     def jac(self, x: Array) -> Array:
         """The derivative of `fun`."""
         x = np.asarray(x, dtype=float)
-        _, jacobian = self.residuals_and_jacobian(self.base.moved(x, self.slices))
+        _, jacobian = self.residuals_and_jacobian(self.base.displaced(x, self.slices))
         for group in ("attitude", "axes"):   # a step of the rotation vector rotates by its left Jacobian
             if group in self.slices:
                 here = self.slices[group]

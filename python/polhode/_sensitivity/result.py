@@ -168,19 +168,19 @@ def covariance(jacobian: Array, names: tuple[str, ...]) -> tuple[Array, list[str
         return cov, hidden
     _, values, right = np.linalg.svd(jacobian[:, seen] / size[seen], full_matrices=False)
     keep = values > HIDDEN * values[0]
-    lost = np.zeros(seen.size, dtype=bool)
+    unresolved = np.zeros(seen.size, dtype=bool)
     for row in right[~keep]:
         involved = np.abs(row) > 0.05
-        lost |= involved
+        unresolved |= involved
         hidden.append("a combination of " + ", ".join(names[k] for k in seen[involved]))
     inverse = right[keep].T / values[keep]
     found = inverse @ inverse.T / size[seen] / size[seen][:, None]
-    found[lost], found[:, lost] = np.nan, np.nan
+    found[unresolved], found[:, unresolved] = np.nan, np.nan
     cov[np.ix_(seen, seen)] = found
     return cov, hidden
 
 
-def _twins(problem: Problem, moments: Array) -> tuple[str, ...]:
+def _find_twins(problem: Problem, moments: Array) -> tuple[str, ...]:
     kinds = {type(m) for m in problem.data}
     found = []
     if kinds == {Axis} and "inertia" in problem.slices:
@@ -253,5 +253,5 @@ def make_result(problem: Problem, found: Minimum, scene: Scene | None, largest: 
     return FitResult(x, found.cost, found.residuals, found.jacobian, found.nfev, found.status, message,
                      bool(found.status > 0 and good), state.omega, attitude, inertia, cov, stderr, correlation,
                      problem.names, chi2, dof, pool.candidates(), tuple(unobservable + hidden),
-                     _twins(problem, moments) + aliases(problem, pool), left_out, state.bias,
+                     _find_twins(problem, moments) + aliases(problem, pool), left_out, state.bias,
                      scene_out, problem.with_data(problem.data, state), state, numbers)

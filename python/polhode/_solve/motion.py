@@ -186,12 +186,12 @@ class Motion:
             kept = self.__dict__["_drift"] = dict(_core.drift(self.scene, self.t, self.omega, self.attitude))
         return kept
 
-    def _moved(self) -> str:
-        moved = {name: value for name, value in self.drift.items() if not value <= self.asked}
-        if not moved:
+    def _describe_drift(self) -> str:
+        drifted = {name: value for name, value in self.drift.items() if not value <= self.asked}
+        if not drifted:
             return ""
-        name = max(moved, key=lambda key: moved[key])
-        return f"{name} drifted by {moved[name]:.2g} (relative), more than the requested {self.asked:.2g}"
+        name = max(drifted, key=lambda key: drifted[key])
+        return f"{name} drifted by {drifted[name]:.2g} (relative), more than the requested {self.asked:.2g}"
 
     @property
     def success(self) -> bool:
@@ -204,7 +204,7 @@ class Motion:
             return False
         if not all(np.isfinite(part).all() for part in (self.omega, self.attitude) if part is not None):
             return False
-        return not self._moved() if math.isnan(self.error) else self.error <= self.asked
+        return not self._describe_drift() if math.isnan(self.error) else self.error <= self.asked
 
     def _describe_columns(self) -> str:
         """The columns of `sensitivity` whose error is above the accuracy of the call; empty where there are none."""
@@ -224,8 +224,8 @@ class Motion:
         kept: str | None = self.__dict__.get("_message")
         if kept is None:
             assert self._answer is not None
-            moved = self._moved() if self.status in ("finished", "event") and math.isnan(self.error) else ""
-            notes = [note for note in (self._answer.message, moved, self._describe_columns()) if note]
+            drifted = self._describe_drift() if self.status in ("finished", "event") and math.isnan(self.error) else ""
+            notes = [note for note in (self._answer.message, drifted, self._describe_columns()) if note]
             kept = self.__dict__["_message"] = "; ".join(notes)
         return kept
 

@@ -37,7 +37,7 @@ class Shown:
     def __init__(self, title: str) -> None:
         self._title, self._start = title, time.monotonic()
         self._bar: Any = None
-        self._begun, self._told = False, -1
+        self._begun, self._last_tenth = False, -1
 
     def __call__(self, reached: float, last: float) -> bool:
         if time.monotonic() - self._start < PATIENCE:
@@ -47,8 +47,8 @@ class Shown:
         done = min(1.0, reached / last) if last else 1.0
         if self._bar is not None:
             self._bar.update(self._bar.task_ids[0], completed=done)
-        elif (tenth := int(100 * done) // EVERY) != self._told:
-            self._told = tenth
+        elif (tenth := int(100 * done) // EVERY) != self._last_tenth:
+            self._last_tenth = tenth
             with contextlib.suppress(OSError):   # a full disk is no reason to stop the work
                 print(f"{self._title}: {EVERY * tenth} %", file=sys.stderr, flush=True)
         return True

@@ -113,8 +113,8 @@ def _measure(
     processes: int, progress: Callable[[int, int, str], object],
 ) -> None:
     """Measure the rows of all families; write each family after its last row."""
-    dear_first = sorted(families, key=lambda f: -f.cost)   # so that all processes end together
-    jobs = [Job(f.name, e.name, quick, limit) for f in dear_first for e in rows_of(f)]
+    costliest_first = sorted(families, key=lambda f: -f.cost)   # so that all processes end together
+    jobs = [Job(f.name, e.name, quick, limit) for f in costliest_first for e in rows_of(f)]
     by_name = {f.name: f for f in families}
     order = {f.name: [e.name for e in rows_of(f)] for f in families}
     rows: dict[str, dict[str, list[Point]]] = {f.name: {} for f in families}

@@ -36,7 +36,7 @@ CLAIMS: dict[str, dict[str, str]] = {
     "dmv8": {"step": "holds", "gimbal": "holds", "long": "degrades", "near": "degrades", "scales": "holds",
              "norm": "holds"},
 }
-KEPT = ("energy", "L")   # conserved quantities of a record, and the invariant of `Motion.drift` that measures each
+CONSERVED = ("energy", "L")   # conserved quantities of a record, and the invariant of `Motion.drift` that measures each
 DRIFT = {"energy": "energy", "L": "angular_momentum"}
 ROUNDING = 1e-9   # of a conserved invariant, after up to a million turns
 
@@ -53,7 +53,7 @@ def find_broken(results: list[FamilyResult]) -> list[str]:
             if verdict.level not in LEVELS[:LEVELS.index(least) + 1]:
                 broken.append(f"{name}, {result.family.name}: {verdict.level} ({verdict.text}), but should be at "
                               f"least {least}{': ' + verdict.why if verdict.why else ''}")
-    return broken + _not_kept(results) + _overclaimed(results)
+    return broken + _drifted(results) + _overclaimed(results)
 
 
 def _overclaimed(results: list[FamilyResult]) -> list[str]:
@@ -69,7 +69,7 @@ def _overclaimed(results: list[FamilyResult]) -> list[str]:
     return broken
 
 
-def _not_kept(results: list[FamilyResult]) -> list[str]:
+def _drifted(results: list[FamilyResult]) -> list[str]:
     """Find invariants that a record promises and the family of long times contradicts."""
     broken = []
     for result in results:
@@ -77,7 +77,7 @@ def _not_kept(results: list[FamilyResult]) -> list[str]:
             continue
         for entrant in entrants():
             promised = [name.strip() for name in entrant.record.get("keeps", "").split(",")]
-            for what in KEPT:
+            for what in CONSERVED:
                 # A method that conserves |L| alone may change the direction of L.
                 if what not in promised:
                     continue

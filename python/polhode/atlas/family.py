@@ -14,7 +14,7 @@ from .entrants import PER_TURN, Entrant
 from .run import Failed, Refused, run, values_of
 
 LEVELS = ("holds", "degrades", "fails", "unknown", "none")
-LOST = 0.1   # rad: an attitude off by more is lost
+WRONG = 0.1   # rad: an attitude off by more is lost
 SURE = 1.2   # times the limit: what is foreseen to take longer is not tried
 CLEAR = 0.1  # seconds: from less no time is foreseen
 LATE = ("not done within", "the one before", "would take")   # reasons

@@ -28,8 +28,8 @@ def _listed(content: dict[str, Any], family: str, level: str) -> str:
 
 def costs(seconds: dict[str, float]) -> str:
     """Return the CPU time of a family's rows, and the three longest."""
-    dear = [f"{name} {spent:.0f} s" for name, spent in seconds.items() if spent >= 1][:3]
-    return f"{sum(seconds.values()):.0f} s of CPU{', of them ' if dear else ''}{', '.join(dear)}"
+    costliest = [f"{name} {spent:.0f} s" for name, spent in seconds.items() if spent >= 1][:3]
+    return f"{sum(seconds.values()):.0f} s of CPU{', of them ' if costliest else ''}{', '.join(costliest)}"
 
 
 def page(content: dict[str, Any], pictures: str = "", introduction: str = "") -> str:

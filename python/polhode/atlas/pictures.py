@@ -14,7 +14,7 @@ from .results import FamilyResult, matrix
 from .style import LEVELS, WORDS, line_styles
 
 PANEL, MARGIN, LABELS = 4.6, 0.85, 1.75   # inches: a panel, what is left of it, the names at its right
-APART = 0.034                            # of the axes' height: names closer than that share a line
+LINE_GAP = 0.034                            # of the axes' height: names closer than that share a line
 
 
 def draw_family(result: FamilyResult, folder: pathlib.Path) -> list[pathlib.Path]:
@@ -58,7 +58,7 @@ def _points(points: list[Point], series: str) -> list[Point]:
 def _panel(axes: Any, result: FamilyResult, series: str, title: str, y: str, label: str,
            limits: tuple[float, float] | None) -> None:
     """The curves of one series, or of one more value."""
-    family, everyone = result.family, line_styles([*entrants(), WITNESS])
+    family, styles = result.family, line_styles([*entrants(), WITNESS])
     curves = {name: _points(points, series) for name, points in result.rows.items()}
     curves = {name: sorted(points, key=lambda p: p.x) for name, points in curves.items() if points}
     values = sorted({p.x for points in curves.values() for p in points}, reverse=family.x_inverted)
@@ -76,7 +76,7 @@ def _panel(axes: Any, result: FamilyResult, series: str, title: str, y: str, lab
     if family.y_log:
         axes.set_yscale("log")
     for name, points in curves.items():
-        line_style = everyone[name]
+        line_style = styles[name]
         xs, ys = [places[p.x] for p in points], [clip(abs(p.get(y))) for p in points]
         axes.plot(xs, ys, clip_on=False, **line_style)
         broken = [(x, y) for x, y, p in zip(xs, ys, points) if p.status == "failed"]
@@ -106,7 +106,7 @@ def _panel(axes: Any, result: FamilyResult, series: str, title: str, y: str, lab
     axes.set_ylabel(label)
     if title:
         axes.set_title(title)
-    _names(axes, ends, low, high, family.y_log, everyone)
+    _names(axes, ends, low, high, family.y_log, styles)
 
 
 def _tick(x: float) -> str:
@@ -121,7 +121,7 @@ def _range(family: Family, y: str, curves: dict[str, list[Point]]) -> tuple[floa
 
 
 def _names(axes: Any, ends: list[tuple[float, str]], low: float, high: float, log: bool,
-           everyone: dict[str, dict[str, Any]]) -> None:
+           styles: dict[str, dict[str, Any]]) -> None:
     """Write the names at the curves' ends; those that end together share a line, and lines keep apart."""
     def height(value: float) -> float:
         return math.log(value / low) / math.log(high / low) if log else (value - low) / (high - low)
@@ -129,7 +129,7 @@ def _names(axes: Any, ends: list[tuple[float, str]], low: float, high: float, lo
     groups: list[tuple[float, list[str]]] = []
     for value, name in sorted(ends):
         at = height(value)
-        if groups and at - groups[-1][0] < APART:
+        if groups and at - groups[-1][0] < LINE_GAP:
             groups[-1][1].append(name)
         else:
             groups.append((at, [name]))
@@ -137,17 +137,17 @@ def _names(axes: Any, ends: list[tuple[float, str]], low: float, high: float, lo
     # From below: each block at its place, or above the one before it; then down again where the top is passed.
     tops, floor = [], -1.0
     for at, lines, _ in blocks:
-        half = APART * len(lines) / 2
+        half = LINE_GAP * len(lines) / 2
         centre = max(at, floor + half)
         tops.append(centre)
         floor = centre + half
     ceiling = 1.06
     for i in range(len(blocks) - 1, -1, -1):
-        half = APART * len(blocks[i][1]) / 2
+        half = LINE_GAP * len(blocks[i][1]) / 2
         tops[i] = min(tops[i], ceiling - half)
         ceiling = tops[i] - half
     for (at, lines, names), centre in zip(blocks, tops):
-        colours = {everyone[name]["color"] for name in names}
+        colours = {styles[name]["color"] for name in names}
         colour = colours.pop() if len(colours) == 1 else style.INK
         axes.annotate("\n".join(lines), (1, at), xycoords="axes fraction", xytext=(1.05, centre),
                       textcoords="axes fraction", fontsize=7.8, va="center", ha="left", color=colour,

@@ -40,8 +40,8 @@ class FamilyResult:
         """The cell of the matrix; one without points is empty, and says why."""
         who = next((e for e in rows_of(self.family) if e.name == entrant), None)
         if who is None or entrant not in self.rows:
-            everyone = {e.name: e for e in [*entrants(), WITNESS]}
-            return Verdict("none", "", why=self.family.takes(everyone[entrant]) if entrant in everyone else "not there")
+            known = {e.name: e for e in [*entrants(), WITNESS]}
+            return Verdict("none", "", why=self.family.takes(known[entrant]) if entrant in known else "not there")
         points = self.rows[entrant]
         broken = [p for p in points if math.isnan(p.x)]   # a fault, a crash or a hang
         if broken:

@@ -110,11 +110,11 @@ def judge(
         for report in reports[:10]:
             say(report.error)
         return 2
-    alone = reports[0].judgement
-    if picture is not None and alone is not None:
-        alone.plot(picture)
-    if fix is not None and alone is not None:
-        write_repaired(fix, alone.repaired)
+    single = reports[0].judgement
+    if picture is not None and single is not None:
+        single.plot(picture)
+    if fix is not None and single is not None:
+        write_repaired(fix, single.repaired)
     _print(reports, form, fail_on)
     for file in filter(None, (picture, fix)):
         print(f"wrote {file}", file=sys.stderr if form != "text" else sys.stdout)

@@ -30,16 +30,16 @@ def run(files: list[str], options: Options) -> int:
         reports = check(list(files), path=options.path, package=packages, ignore=excuses, xacro=options.xacro)
     if not reports:
         raise InvalidInput(f"{files[0]}: must hold a robot description: {robots.formats.NAMES} or xacro")
-    alone = len(files) == 1 and not pathlib.Path(files[0]).is_dir()
+    single = len(files) == 1 and not pathlib.Path(files[0]).is_dir()
     if all(report.error for report in reports):
-        if alone:
+        if single:
             raise InvalidInput(reports[0].error)
         for report in reports[:10]:
             say(str(report.error))
         return 2
     stale = [f"ignore {rule}: no longer applies ({rule.reason})" for rule in excuses if not rule.used]
     written = [_write_repaired(report, files) for report in reports] if options.fix else []
-    _print(reports, options, alone)
+    _print(reports, options, single)
     for line in stale:
         print(line, file=sys.stderr)
     return 1 if any(report.fails(options.fail_on) for report in reports) or not all(written) else 0
@@ -83,10 +83,10 @@ def _write_repaired(report: Report, given: list[str]) -> bool:
     return True
 
 
-def _print(reports: list[Report], options: Options, alone: bool) -> None:
+def _print(reports: list[Report], options: Options, single: bool) -> None:
     if options.form == "json":
         contents = [to_dict(report, options.fail_on) for report in reports]
-        write_json(contents[0] if alone else contents)
+        write_json(contents[0] if single else contents)
     elif options.form == "sarif":
         write_json(writers.sarif(map(content, reports), RULES))
     elif options.form == "junit":
@@ -94,7 +94,7 @@ def _print(reports: list[Report], options: Options, alone: bool) -> None:
     elif options.form == "github":
         for line in writers.github(map(content, reports)):
             print(line)
-    elif alone:
+    elif single:
         show_robots.robot(to_dict(reports[0], options.fail_on))
     else:
         show_robots.robots([to_dict(report, options.fail_on) for report in reports])

@@ -116,10 +116,10 @@ def judge(mass: float | None, com: Array | None, matrix: Array, geometry: ev.Geo
         findings.append(finding)
     margin, bits = _judged(matrix)
     given = ev.single(mass, com, matrix)
-    alone = ev.weigh(given, geometry)
-    broken = breaches(given, alone, bits, margin, geometry)
+    evidence = ev.weigh(given, geometry)
+    broken = breaches(given, evidence, bits, margin, geometry)
     misfit = ev.apart(given, geometry) if geometry.references else None
-    cause = _explain(given, alone, {breach.what for breach in broken}, geometry, more)
+    cause = _explain(given, evidence, {breach.what for breach in broken}, geometry, more)
     if cause is not None and not broken:
         apart, left = (100 * ev.apart(body, geometry) for body in (given, cause.body))
         broken = [Breach("geometry", apart, f"differs from a uniform body of its geometry by {apart:.3g} % of the "
@@ -139,10 +139,10 @@ def _judged(matrix: Array) -> tuple[float, Flaw]:
     return float(margin), Flaw(int(flaws))
 
 
-def _explain(given: ev.Bodies, alone: ev.Evidence, broken: set[str], geometry: ev.Geometry,
+def _explain(given: ev.Bodies, evidence: ev.Evidence, broken: set[str], geometry: ev.Geometry,
              more: Sequence[Cause]) -> Cause | None:
     """Return the cause that explains the data best, if it does so much better than bad luck."""
-    if not broken and not (geometry.references and alone.misfit[0] > 0.01):
+    if not broken and not (geometry.references and evidence.misfit[0] > 0.01):
         return None
     causes = [*more, *undo(given, geometry, only_units=broken == {"density"})]
     weighed = ev.weigh(ev.stack([given, *(cause.body for cause in causes)]), geometry)

@@ -12,7 +12,7 @@ from ..._harness.truth import Truth, attitude_errors
 from .. import scenes
 from ..case import stored
 from ..entrants import Entrant
-from ..family import LOST, Family, Point, Verdict, judge_no_answer, to_short, too_long, tried_points
+from ..family import WRONG, Family, Point, Verdict, judge_no_answer, to_short, too_long, tried_points
 from ..run import run
 
 TOLERANCES = tuple(10.0**-k for k in range(4, 17))
@@ -40,7 +40,7 @@ def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
             n = motion.t.size
             assert motion.attitude is not None
             known = Truth(truth.omega[:n], truth.attitude[:n], "stored", "", 0.0, None)
-            off = np.flatnonzero(attitude_errors(motion.attitude, known) > LOST)
+            off = np.flatnonzero(attitude_errors(motion.attitude, known) > WRONG)
             point.values = {"horizon": float(motion.t[off[0]] if off.size else motion.t[-1]),
                             "steps": motion.stats["steps"]}
             if math.isfinite(motion.error):
@@ -60,7 +60,7 @@ def judge(points: list[Point]) -> Verdict:
         return Verdict("fails", "burst", 0.0, tried_points(points)[0].why)
     best = max(horizons)
     for p in points:
-        if p.values.get("lost") and p.values["claims"] and p.values["stated"] <= LOST:
+        if p.values.get("lost") and p.values["claims"] and p.values["stated"] <= WRONG:
             said = f"says {to_short(p.values['stated'])} rad to the end, lost at {p.get('horizon'):.0f} s"
             return Verdict("fails", "overclaims", p.get("horizon"), said)
     level = "holds" if best >= 180 else "degrades" if best >= 60 else "fails"

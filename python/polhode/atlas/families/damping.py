@@ -13,7 +13,7 @@ from ..family import Family, Point, Verdict, judge_no_answer, tried_points
 from ..run import Failed, Refused, run, values_of
 
 GOAL = 1e-6
-CHEAP = 10_000    # steps
+FEW_STEPS = 10_000    # steps
 ASKEW = 1e9       # where S7b stands among the strengths: behind them all
 TOLERANCES = (1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12)
 STEPS = (1e3, 1e4, 1e5, 1e6, 1e7)
@@ -93,7 +93,7 @@ def judge(points: list[Point]) -> Verdict:
         text = "not S7b" if first.x == ASKEW else text
         return Verdict("fails", text, max(reached, default=0.0), first.why)
     steps = max(int(p.values["steps"]) for p in tried)
-    level = "holds" if steps <= CHEAP else "degrades"
+    level = "holds" if steps <= FEW_STEPS else "degrades"
     return Verdict(level, f"{to_few(steps)} steps", steps)
 
 
@@ -107,6 +107,6 @@ FAMILY = Family(
           "short enough for that rate. Its cost grows with the damping; the cost of a stiffly stable method "
           "does not. Scene S7b damps about axes that are not the body's.",
     measure=measure, judge=judge, cost=53, x_label="damping c [N m s]", y="steps", y_label="steps for an error of 1e-6",
-    x_scale="list", tick_names=((ASKEW, "S7b"),), lines=((CHEAP, "holds"),),
+    x_scale="list", tick_names=((ASKEW, "S7b"),), lines=((FEW_STEPS, "holds"),),
     takes=lambda entrant: "no closed form" if entrant.kind in ("exact", "witness") else "",
 )

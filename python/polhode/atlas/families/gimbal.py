@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from .. import scenes
 from ..entrants import Entrant
-from ..family import LOST, Family, Point, Verdict, judge_no_answer, measure_cases, to_short, tried_points
+from ..family import WRONG, Family, Point, Verdict, judge_no_answer, measure_cases, to_short, tried_points
 
 STEP = 1e-3    # s, a 1500th of a turn: what is left is the angles' doing
 NOISE = 1e-10  # rad: below this a ratio says nothing
@@ -30,7 +30,7 @@ def judge(points: list[Point]) -> Verdict:
         near = max(p.get("error") for p in sweep)
         error = max(error, near)
         worst = max(worst, near / max(far, NOISE))
-    if error > LOST:   # lost at any theta, or burst
+    if error > WRONG:   # lost at any theta, or burst
         return Verdict("fails", "burst" if error > 1e3 else "lost", error, f"largest error {to_short(error)} rad")
     level = "holds" if worst <= 2 else "degrades"
     text = "blind" if worst <= 2 else f"x {to_short(worst)}"

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 from .. import scenes
 from ..entrants import Entrant
-from ..family import LOST, Family, Point, Verdict, judge_no_answer, measure_cases, to_short, tried_points
+from ..family import WRONG, Family, Point, Verdict, judge_no_answer, measure_cases, to_short, tried_points
 
-KEPT = 1e-3   # relative
+SMALL_DRIFT = 1e-3   # relative
 
 
 def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
@@ -23,15 +23,15 @@ def judge(points: list[Point]) -> Verdict:
         return none
     last = max(tried_points(points), key=lambda p: p.x)
     error = last.get("error")
-    moved = max(last.get("energy"), last.get("angular_momentum"))
+    drift = max(last.get("energy"), last.get("angular_momentum"))
     turns = f"after {to_short(last.x)} turns"
     why = f"{turns}: energy moved by {to_short(last.get('energy'))}, L by {to_short(last.get('angular_momentum'))}"
     if last.status == "failed":
         return Verdict("fails", "burst", error, f"{turns}: {last.why}")
     if error <= 1e-7:
         return Verdict("holds", to_short(error), error, why)
-    if error <= LOST or moved <= KEPT:
-        return Verdict("degrades", to_short(error) if error <= LOST else "phase lost", error, why)
+    if error <= WRONG or drift <= SMALL_DRIFT:
+        return Verdict("degrades", to_short(error) if error <= WRONG else "phase lost", error, why)
     return Verdict("fails", "lost", error, why)
 
 
@@ -48,5 +48,5 @@ FAMILY = Family(
     measure=measure, judge=judge, cost=120, x_label="turns", y="error", y_label="error of the attitude [rad]",
     also=(("energy", "energy moved by, relative", (1e-16, 10.0)),
           ("angular_momentum", "angular momentum in space moved by, relative", (1e-16, 10.0))),
-    lines=((1e-7, "holds"), (LOST, "lost")), y_limits=(1e-16, 10.0),
+    lines=((1e-7, "holds"), (WRONG, "lost")), y_limits=(1e-16, 10.0),
 )

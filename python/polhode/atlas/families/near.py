@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from .. import scenes
 from ..entrants import Entrant
-from ..family import LOST, Family, Point, Verdict, judge_no_answer, measure_cases, to_short, tried_points
+from ..family import WRONG, Family, Point, Verdict, judge_no_answer, measure_cases, to_short, tried_points
 
 
 def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
@@ -21,8 +21,8 @@ def judge(points: list[Point]) -> Verdict:
     if (none := judge_no_answer(points)) is not None:
         return none
     worst = max(p.get("error") for p in tried_points(points))
-    level = "holds" if worst <= 1e-9 else "degrades" if worst <= LOST else "fails"
-    return Verdict(level, to_short(worst) if worst <= LOST else "lost", worst)
+    level = "holds" if worst <= 1e-9 else "degrades" if worst <= WRONG else "fails"
+    return Verdict(level, to_short(worst) if worst <= WRONG else "lost", worst)
 
 
 FAMILY = Family(
@@ -37,5 +37,5 @@ FAMILY = Family(
     measure=measure, judge=judge, cost=4, x_label="difference of moments d", x_inverted=True, x_scale="list",
     y="error", y_label="error after 1000 turns [rad]",
     series=(("sphere", "moments 1, 1 + d, 1 + 2d"), ("symmetric", "moments 1, 1 + d, 0.5")),
-    lines=((1e-9, "holds"), (LOST, "lost")), y_limits=(1e-16, 10.0),
+    lines=((1e-9, "holds"), (WRONG, "lost")), y_limits=(1e-16, 10.0),
 )

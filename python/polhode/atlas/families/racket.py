@@ -12,7 +12,7 @@ from ..._solve.motion import Motion
 from .. import scenes
 from ..case import Case, stored, turn_of
 from ..entrants import PER_TURN, Entrant
-from ..family import LOST, Family, Point, Verdict, judge_no_answer, measure_cases, to_short, tried_points
+from ..family import WRONG, Family, Point, Verdict, judge_no_answer, measure_cases, to_short, tried_points
 from ..run import Failed, Refused, run
 
 
@@ -46,7 +46,7 @@ def measure(entrant: Entrant, quick: bool, limit: float) -> Iterator[Point]:
 
         def lost(motion: Motion, truth: Truth, case: Case = case) -> dict[str, float]:
             assert motion.attitude is not None
-            off = np.flatnonzero(attitude_errors(motion.attitude, truth) > LOST)
+            off = np.flatnonzero(attitude_errors(motion.attitude, truth) > WRONG)
             return {"lost": float(motion.t[off[0]])} if off.size else {}
 
         (point,) = measure_cases("racket", [case], entrant, limit, more=lost)
@@ -91,6 +91,6 @@ FAMILY = Family(
           "digits, and a closed form needs none.",
     measure=measure, judge=judge, x_label="distance from the axis e [rad/s]", x_inverted=True,
     y="error", y_label="largest error over 200 s [rad]",
-    also=(("flip", "first flip off by [s]", (1e-16, 10.0)),), lines=((1e-9, "holds"), (LOST, "lost")),
+    also=(("flip", "first flip off by [s]", (1e-16, 10.0)),), lines=((1e-9, "holds"), (WRONG, "lost")),
     y_limits=(1e-16, 10.0),
 )

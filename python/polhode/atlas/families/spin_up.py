@@ -12,7 +12,7 @@ from ..._solve.motion import Motion
 from .. import scenes
 from ..case import Case, truth_of
 from ..entrants import PER_TURN, Entrant
-from ..family import LOST, Family, Point, Verdict, judge_no_answer, measure_cases, to_short, tried_points
+from ..family import WRONG, Family, Point, Verdict, judge_no_answer, measure_cases, to_short, tried_points
 
 BRIEF = 1e-3   # seconds: less says nothing about a forecast
 
@@ -38,13 +38,13 @@ def judge(points: list[Point]) -> Verdict:
     if (none := judge_no_answer(points)) is not None:
         return none
     worst = max(p.get("error") for p in tried_points(points))
-    level = "holds" if worst <= 1e-6 else "degrades" if worst <= LOST else "fails"
+    level = "holds" if worst <= 1e-6 else "degrades" if worst <= WRONG else "fails"
     longest = max(p.x for p in tried_points(points))
     why = f"up to {to_short(longest)} s" if any(p.status == "left out" for p in points) else ""
     times = [p.get("foreseen") / p.get("took") for p in tried_points(points) if p.values.get("took", 0.0) > BRIEF]
     if times and not math.isnan(min(times)):
         why = f"its plan foresaw {min(times):.1f} to {max(times):.1f} times the time it took"
-    return Verdict(level, to_short(worst) if worst <= LOST else "lost", worst, why)
+    return Verdict(level, to_short(worst) if worst <= WRONG else "lost", worst, why)
 
 
 FAMILY = Family(
@@ -58,5 +58,5 @@ FAMILY = Family(
           "nearly all the work is at the end. A step that was right at the start is wrong by then. Fixed steps "
           "are chosen here for the last turn.",
     measure=measure, judge=judge, cost=165, x_label="time it burns [s]", y="error", y_label="largest error [rad]",
-    lines=((1e-6, "holds"), (LOST, "lost")), y_limits=(1e-16, 10.0),
+    lines=((1e-6, "holds"), (WRONG, "lost")), y_limits=(1e-16, 10.0),
 )

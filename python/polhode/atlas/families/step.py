@@ -14,7 +14,7 @@ from ..._harness.truth import Truth, attitude_errors
 from ..._scene.scene import Scene
 from ..case import S1_MOMENTS
 from ..entrants import Entrant
-from ..family import LOST, Family, Point, Verdict, fixed_only, judge_no_answer, to_short, tried_points
+from ..family import WRONG, Family, Point, Verdict, fixed_only, judge_no_answer, to_short, tried_points
 from ..run import Failed, run
 
 STARTS = ((1.0, 1.0, 1.0), (1.0, 0.1, 0.1), (0.1, 1.0, 0.1), (0.1, 0.1, 1.0))
@@ -56,7 +56,7 @@ def passes(entrant: Entrant, scene: Scene, truth: Truth, step: float, limit: flo
         held.add("bounded")
     if np.abs(ratios - 1).max() <= 0.1:
         held.add("kept")
-    if attitude_errors(motion.attitude, truth)[:TURNS_RIGHT].max() <= LOST:
+    if attitude_errors(motion.attitude, truth)[:TURNS_RIGHT].max() <= WRONG:
         held.add("right")
     return held
 

@@ -50,12 +50,12 @@ class Known:
     identified: bool = False
 
 
-def candidates(given: ev.Bodies, alone: ev.Evidence, known: Known, link: LinkRecord,
+def candidates(given: ev.Bodies, evidence: ev.Evidence, known: Known, link: LinkRecord,
                broken: set[str]) -> list[Candidate]:
     """Return the causes that leave a sound body, agree with what is known, and gain enough."""
     geometry = known.geometry if known.quality in LEFT else ev.Geometry()
     if geometry is not known.geometry:
-        alone = ev.weigh(given, geometry)
+        evidence = ev.weigh(given, geometry)
     causes = [*link.rotation_causes(), *undo(given, geometry), *_floors(given, geometry), *_rotated_centre(given),
               *_formulas(given)]
     found = []
@@ -72,9 +72,9 @@ def candidates(given: ev.Bodies, alone: ev.Evidence, known: Known, link: LinkRec
             scaled = geometry.scaled(factor)
             other = ev.weigh(given, scaled)
             total = float(other.score[0]) + 2.0
-            if geometry.references and other.sound()[0] and float(alone.score[0]) - total > CONVINCED \
+            if geometry.references and other.sound()[0] and float(evidence.score[0]) - total > CONVINCED \
                     and ev.apart(given, scaled) < LEFT[known.quality]:
-                found.append(Candidate("units", text, total, float(alone.score[0]) - total, given, factor))
+                found.append(Candidate("units", text, total, float(evidence.score[0]) - total, given, factor))
     return found
 
 
@@ -112,14 +112,14 @@ def _rotated_centre(given: ev.Bodies) -> list[Cause]:
 
 def _bonus(cause: Cause, given: ev.Bodies) -> float:
     """A decimal point that makes a moment equal to another one is no accident."""
-    i = _moved(given.matrix[0], cause.body.matrix[0]) if cause.kind == "decimal" else None
+    i = _find_changed_entry(given.matrix[0], cause.body.matrix[0]) if cause.kind == "decimal" else None
     if i is None:
         return 0.0
     after = cause.body.matrix[0].diagonal()
     return BONUS if any(abs(after[i] - after[j]) <= EQUAL * abs(after[j]) for j in range(3) if j != i) else 0.0
 
 
-def _moved(before: Array, after: Array) -> int | None:
+def _find_changed_entry(before: Array, after: Array) -> int | None:
     """The one moment in which two tensors differ."""
     changed = np.argwhere(np.triu(before != after))
     return int(changed[0][0]) if len(changed) == 1 and changed[0][0] == changed[0][1] else None
@@ -141,8 +141,8 @@ def _explains(cause: Cause, given: ev.Bodies, known: Known, geometry: ev.Geometr
     body = cause.body
     before, after = given.matrix[0], body.matrix[0]
     if not geometry.references:
-        return bool(broken & {"triangle", "positive"}) and _alone(cause, before, after)
-    if broken & {"triangle", "positive"} and cause.kind == "decimal" and _alone(cause, before, after):
+        return bool(broken & {"triangle", "positive"}) and _is_likely_alone(cause, before, after)
+    if broken & {"triangle", "positive"} and cause.kind == "decimal" and _is_likely_alone(cause, before, after):
         return True
     left, was = _left(body, geometry), _left(given, geometry)
     limit = LEFT[known.quality] if broken else LEFT_SLIP
@@ -150,23 +150,23 @@ def _explains(cause: Cause, given: ev.Bodies, known: Known, geometry: ev.Geometr
         return False
     if geometry.volume is not None and not 20 < float(body.mass[0]) / geometry.volume < 25_000:
         return False
-    com, moved = given.com[0], body.com[0]
+    com, other_com = given.com[0], body.com[0]
     same_tensor = np.allclose(after * body.mass[0] ** -1, before * given.mass[0] ** -1, rtol=1e-9, atol=0)
-    if same_tensor and not np.array_equal(com, moved):
-        return _places(moved, geometry)
+    if same_tensor and not np.array_equal(com, other_com):
+        return _places(other_com, geometry)
     if _is_factor(before / given.mass[0], after / body.mass[0]):   # one factor explains itself: the form must tell
         sizes = [abs(np.log(np.trace(after) / body.mass[0] / np.trace(r.matrix))) for r in geometry.references]
         return min(sizes) < SIZE and _form(after, geometry) and not _isotropic(after)
     return True
 
 
-def _alone(cause: Cause, before: Array, after: Array) -> bool:
+def _is_likely_alone(cause: Cause, before: Array, after: Array) -> bool:
     """Without geometry: signs and orders have tensors of their own; a decimal point needs a number like it."""
     if cause.kind in ("sign", "order"):
         return True
     if cause.kind != "decimal":
         return False
-    i = _moved(before, after)
+    i = _find_changed_entry(before, after)
     if i is None:
         return False
     others = [after[j, j] for j in range(3) if j != i]

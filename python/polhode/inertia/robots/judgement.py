@@ -86,14 +86,14 @@ def _simple(link: LinkRecord, mass: float, matrix: Array) -> Case | None:
 def _study(link: LinkRecord, mass: float, com: Array, matrix: Array) -> Case:
     known = _known(link, mass, matrix)
     given = ev.single(mass, com, matrix)
-    alone = ev.weigh(given, known.geometry)
+    evidence = ev.weigh(given, known.geometry)
     margin, flaws = check(matrix)
-    broken = breaches(given, alone, Flaw(int(flaws)), float(margin), known.geometry)
+    broken = breaches(given, evidence, Flaw(int(flaws)), float(margin), known.geometry)
     references = known.geometry.references
     misfit = ev.apart(given, known.geometry) if references else None
     case = Case(link, broken, known, float(margin), misfit, [])
     if broken or (misfit is not None and misfit > 0.02):
-        case.possible = candidates(given, alone, known, link, {breach.what for breach in broken})
+        case.possible = candidates(given, evidence, known, link, {breach.what for breach in broken})
     return case
 
 

@@ -18,7 +18,7 @@ from ..evidence import from_spread, spread
 
 Array = npt.NDArray[np.float64]
 
-KEPT = 300_000_000   # bytes of vertices that stay in memory
+MOST_CACHED = 300_000_000   # bytes of vertices that stay in memory
 
 
 @dataclasses.dataclass(frozen=True)
@@ -54,7 +54,7 @@ class Surface:
         return np.asarray(self.corners.max(0))
 
 
-_kept: collections.OrderedDict[tuple[str, int, int], Surface | InvalidInput] = collections.OrderedDict()
+_cache: collections.OrderedDict[tuple[str, int, int], Surface | InvalidInput] = collections.OrderedDict()
 
 
 def surface(file: pathlib.Path) -> Surface:
@@ -70,20 +70,20 @@ def surface(file: pathlib.Path) -> Surface:
     except OSError as error:
         raise InvalidInput(f"{file}: cannot be read: {error.strerror}") from None
     key = (str(file.resolve()), state.st_mtime_ns, state.st_size)
-    if key in _kept:
-        _kept.move_to_end(key)
+    if key in _cache:
+        _cache.move_to_end(key)
     else:
         try:
-            _kept[key] = _surface(*mesh_files.read(file))
+            _cache[key] = _surface(*mesh_files.read(file))
         except InvalidInput as error:
-            _kept[key] = error
+            _cache[key] = error
         total = 0
-        for held in reversed(list(_kept)):
-            value = _kept[held]
+        for held in reversed(list(_cache)):
+            value = _cache[held]
             total += value.corners.nbytes if isinstance(value, Surface) else 1000
-            if total > KEPT and held != key:
-                del _kept[held]
-    found = _kept[key]
+            if total > MOST_CACHED and held != key:
+                del _cache[held]
+    found = _cache[key]
     if isinstance(found, InvalidInput):
         raise found
     return found
