@@ -31,8 +31,8 @@ namespace polhode {
 #if POLHODE_THREADS
 
 /// The number of threads for so many pieces of work: as asked, else what the machine has, and fewer for little work.
-inline std::size_t thread_count(int asked, std::size_t pieces, std::size_t pieces_worth_a_thread) {
-  const std::size_t useful = std::max<std::size_t>(1, pieces / std::max<std::size_t>(1, pieces_worth_a_thread));
+inline std::size_t thread_count(int asked, std::size_t pieces, std::size_t least_pieces) {
+  const std::size_t useful = std::max<std::size_t>(1, pieces / std::max<std::size_t>(1, least_pieces));
   if (asked > 0) return std::min(useful, static_cast<std::size_t>(asked));
   // To count the processors takes 5 us: the system's library reads a file each time.
   return useful == 1 ? 1 : std::min<std::size_t>(useful, std::max(1u, std::thread::hardware_concurrency()));
