@@ -32,7 +32,7 @@ class Certifier {
     if (carries_error()) {
       ratio_ = find_carried_ratio(accuracy_);
     } else if (record().implicit || decision_.pieces.size() > 0) {
-      ratio_ = 3 * pair_ratio;
+      ratio_ = wide_pair_ratio;
     }
     // Below these accuracies rounding matters, and the difference of two runs is a less reliable measure.
     if (accuracy_ <= 2e-12) {

@@ -21,7 +21,6 @@ constexpr double rounding_floor = 8.0;     // units of rounding that two runs ma
 constexpr double claimed_part = 8.0;       // times the error that the numbers of steps give
 constexpr double chance = 1.0 / 128;       // of the finer tolerance: two runs may agree better by chance
 constexpr double most_factor = 30.0;       // of runs with the same steps
-constexpr double most_stiff_factor = 10.0; // of chains with an implicit piece, which no third run is compared with
 constexpr long most_steps_of_another = 20'000;
 constexpr double rounding_rtol = 1e-13;    // below it, rounding is a part of each run's error: no factor shows it
 constexpr double failed_look_rtol = 1e-4;

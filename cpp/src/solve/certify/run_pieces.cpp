@@ -76,7 +76,9 @@ Motion run_planned(const Decision& decision, const Scene& scene, const SolveOpti
       runs.back() = name;
     }
     const BodyMethod& method = find_body_method(name);
-    const double scaled = std::max(rtol * piece.plan.rtol_scale, method.record.least_rtol);
+    // Two runs at the least tolerance of a piece would take the same steps there, and share their error.
+    const double least_scaled = (perturb_joins ? wide_pair_ratio : 1.0) * method.record.least_rtol;
+    const double scaled = std::max(rtol * piece.plan.rtol_scale, least_scaled);
     const std::optional<Scene> at_rest = zero_negligible_rates(part, scene, scaled);
     const Scene& start = at_rest ? *at_rest : part;
     Motion motion(method.integrate(

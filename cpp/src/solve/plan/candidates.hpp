@@ -25,6 +25,8 @@ inline constexpr double pair_calls = 1.6, implicit_pair_calls = 1.2;
 /// tolerance; an explicit one has none, and follows all.
 inline constexpr double followed_foldings = 30.0;
 inline constexpr double pair_ratio = 5.0;             ///< ratio of the tolerances of the two runs of a certificate
+inline constexpr double wide_pair_ratio = 3 * pair_ratio;   ///< the same of implicit methods and of pieces
+inline constexpr double most_stiff_factor = 10.0;     ///< of differences of chains with an implicit piece
 
 double get_accuracy(const SolveOptions& options);
 bool carries_attitude(const Scene& scene, const Facts& facts, const SolveOptions& options);

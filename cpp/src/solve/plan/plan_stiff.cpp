@@ -133,6 +133,12 @@ bool plan_stiff(Decision& decision, const SolveOptions& options) {
   }
   plan.predicted_seconds += pilot_seconds;
   if (!(best < required_gain * std::min(taylor_alone, radau_alone))) return true;
+  double turns_before = 0.0;
+  for (std::size_t i = 0; i < run->t.size() && run->t[i] <= when; ++i) turns_before = run->work[i] / all * turns;
+  // The comparison run has so much more than the least tolerance. Tighter bounds are left to Taylor's own.
+  const double least_bound =
+      most_stiff_factor * implicitly.compute_error(wide_pair_ratio * second.least_rtol, turns - turns_before);
+  if (options.certify && accuracy < least_bound) return true;
 
   const bool mostly_first = before >= 0.5 * best;
   plan.method = mostly_first ? first.name : second.name;
@@ -145,8 +151,6 @@ bool plan_stiff(Decision& decision, const SolveOptions& options) {
   std::vector<std::string> names;
   for (const AnyTorque& torque : scene.torques()) names.emplace_back(torque_name(torque));
   if (!scene.rotor_momentum().isZero(0.0)) names.emplace_back("rotors");
-  double turns_before = 0.0;
-  for (std::size_t i = 0; i < run->t.size() && run->t[i] <= when; ++i) turns_before = run->work[i] / all * turns;
   plan.pieces = {{.begin = scene.t0(),
                   .end = when,
                   .torques = names,
