@@ -196,7 +196,7 @@ def written(t, omega, attitude, p):
     (lambda t, w, q, p: w[:2], r"shape \(2,\)"), (lambda t, w, q, p: (w, {"h": w}), "states|shape"),
     (lambda t, w, q, p: p.kz * w, "p.kz; known: none"), (lambda t, w, q, p: "abc", "str"),
     (lambda t, w, q, p: None, "shape"), (lambda t, w, q, p: w * 1j, "complex|real"),
-], ids=str)
+], ids=lambda x: x if isinstance(x, str) else x.__name__)
 def test_what_cannot_be_traced_names_the_line(function, words):
     with pytest.raises(ph.InvalidInput, match=words) as error:
         Formula(function)

@@ -25,7 +25,7 @@ def nothing(t, omega, attitude):
 
 
 @pytest.mark.parametrize("torque", [FIRING, Gravity(2, (0.3, 0.2, 0.5)), GravityGradient(1e-3), Damping((1, 2, 3)),
-                                    Custom(nothing)], ids=repr)
+                                    Custom(nothing)], ids=lambda torque: type(torque).__name__)
 def test_it_is_a_value(torque):
     one = During(torque, [(30, 40), (0, 10)])
     again = pickle.loads(pickle.dumps(one))

@@ -65,6 +65,7 @@ class Values {
     switch (n.op) {
       case Op::constant: return Interval(n.constant);
       case Op::time: return between(region_.begin, region_.end);
+      case Op::ephemeris: return Interval::all();
       case Op::state:
         if (n.index < formula::first_attitude) return {DD(0.0), region_.most_rates_B[n.index] + region_.margin};
         return n.index < formula::first_extra ? Interval(DD(0.0), 1.0) : Interval::all();
