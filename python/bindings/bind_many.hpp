@@ -25,8 +25,8 @@ class ManyScenes {
       const double *a = rates + 3 * body, *b = attitudes + 4 * body, *moment = moments + 3 * body;
       InertiaTensor inertia = common.given_inertia_B();
       if (moments_.size() != 0) inertia = InertiaTensor::from_moments({moment[0], moment[1], moment[2]});
-      return Scene(SceneParts{inertia, {a[0], a[1], a[2]}, {b[0], b[1], b[2], b[3]}, common.torques(), common.times(),
-                              common.want(), common.t0(), "", common.rotors()});
+      return Scene(SceneParts{inertia, {a[0], a[1], a[2]}, {b[0], b[1], b[2], b[3]}, common.given_torques(),
+                              common.times(), common.want(), common.t0(), "", common.given_rotors(), common.given_damper()});
     };
   }
 

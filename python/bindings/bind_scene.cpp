@@ -52,11 +52,12 @@ InertiaTensor to_inertia(py::handle value, const char* name) {
 
 void bind_scene(py::module_& m) {
   bind_scene_rotor(m);
+  bind_scene_damper(m);
   // The Python class keeps the torques' objects, so that their functions live as long.
   py::class_<Scene>(m, "Scene")
       .def(py::init([](py::handle inertia, py::handle omega, py::handle attitude, const py::iterable& torques,
                        py::handle times, py::handle want, py::handle t0, const py::object& name,
-                       const py::iterable& rotors) {
+                       const py::iterable& rotors, py::handle damper) {
              if (!py::isinstance<py::str>(name)) throw InvalidInput("scene.name", "text", std::string(py::repr(name)));
              if (PyUnicode_AsUTF8(name.ptr()) == nullptr) {
                PyErr_Clear();
@@ -72,20 +73,22 @@ void bind_scene(py::module_& m) {
              return Scene(SceneParts{to_inertia(inertia, "scene.inertia"), to_vector3(omega, "scene.omega"),
                                      to_attitude(attitude, "scene.attitude", 3), std::move(list), to_times(times),
                                      to_wanted(want), to_real(t0, "scene.t0"), name.cast<std::string>(),
-                                     std::move(wheels)});
+                                     std::move(wheels), to_damper(damper)});
            }),
            py::arg("inertia"), py::arg("omega"), py::arg("attitude"), py::arg("torques"), py::arg("times"),
-           py::arg("want"), py::arg("t0"), py::arg("name"), py::arg("rotors"))
+           py::arg("want"), py::arg("t0"), py::arg("name"), py::arg("rotors"),
+           py::arg("damper"))
       .def_property_readonly("inertia", &Scene::given_inertia_B)
       .def_property_readonly("carrier_inertia", &Scene::inertia_B,
-                             "InertiaTensor J that moves with omega: `inertia` less the axial moments of free rotors.")
+                             "InertiaTensor J that moves with omega: `inertia` less the axial moments of free rotors and the damper's.")
+      .def_property_readonly("damper", &Scene::given_damper, "The viscous slug in the body, or None.")
       .def_property_readonly(
           "rotor_momentum", [](const Scene& scene) { return from_vector3(scene.rotor_momentum()); },
           "h, the sum of the rotors' momenta in body axes at the start, shape (3,) [kg m^2/s].")
       .def_property_readonly("rotors",
                              [](const Scene& scene) {
                                py::list list;
-                               for (const Rotor& rotor : scene.rotors()) list.append(rotor);
+                               for (const Rotor& rotor : scene.rotors()) list.append(rotor.with_state(""));
                                return py::tuple(list);
                              })
       .def_property_readonly("omega", [](const Scene& scene) { return from_vector3(scene.omega()); })
@@ -115,8 +118,8 @@ void bind_scene(py::module_& m) {
         const double q[4] = {unit.x, unit.y, unit.z, unit.w};
         Vector3d tau = Vector3d::Zero();
         const Matrix3d& I_B = scene.inertia_B().matrix();
-        std::vector<AnyTorque> torques = scene.torques();
-        if (!states.is_none()) set_starts(torques, to_state_numbers(scene.states(), states));
+        std::vector<AnyTorque> torques = scene.given_torques();
+        if (!states.is_none()) set_starts(torques, scene.states(), to_state_numbers(scene.states(), states));
         SeveralTorques{torques}.add(TorqueInput{to_real(t, "t"), w.data(), q, I_B}, tau.data());
         return from_vector3(tau);
       }, py::arg("t"), py::arg("omega"), py::arg("attitude"), py::arg("states") = py::none(),
@@ -126,7 +129,7 @@ void bind_scene(py::module_& m) {
 Returns
 -------
 ndarray, shape (3,)
-    In body axes [N m], without the gyroscopic torque of rotors.
+    In body axes [N m], without the torques of rotors.
 )doc")
       .def_property_readonly("t0", &Scene::t0)
       .def_property_readonly("name", &Scene::name);

@@ -109,6 +109,13 @@ py::list describe_events(const Answer& answer) {
 
 std::size_t rows(const Array& array) { return static_cast<std::size_t>(array.size() == 0 ? 0 : array.shape(0)); }
 
+/// The momenta of driven rotors and a damper are states, which their energy and momentum need.
+void require_states(const Scene& scene, const Array& states, std::size_t count) {
+  if (!scene.has_inner_states()) return;
+  if (static_cast<std::size_t>(states.size()) != count * static_cast<std::size_t>(scene.count_states()))
+    throw InvalidInput("states", "given for a scene with driven rotors or a damper", std::to_string(states.size()) + " numbers");
+}
+
 }  // namespace
 
 void bind_solve(py::module_& m) {
@@ -191,44 +198,60 @@ void bind_solve(py::module_& m) {
   m.def("method_refusal", [](const std::string& method, const Scene& scene) { return compute_refusal(method, scene); },
         "The reason why a method cannot integrate a scene, or an empty string.");
 
-  m.def("energy", [](const Scene& scene, const Array& t, const Array& omega, const py::object& attitude) {
+  m.def("energy", [](const Scene& scene, const Array& t, const Array& omega, const py::object& attitude,
+                     const Array& states) {
     Array energy(t.size());
     const Array q = attitude.is_none() ? Array(py::array::ShapeContainer{0}) : attitude.cast<Array>();
     const double *in = t.data(), *w = omega.data(), *attitudes = attitude.is_none() ? nullptr : q.data();
     double* out = energy.mutable_data();
     const std::size_t count = rows(t);
+    require_states(scene, states, count);
+    const double* own = states.data();
     {
       const WithoutGil nogil;
-      compute_energy(scene, count, in, w, attitudes, out);
+      compute_energy(scene, count, in, w, attitudes, out, own);
     }
     return energy;
-  });
-  m.def("angular_momentum", [](const Scene& scene, const Array& t, const Array& omega, const Array& attitude) {
+  }, py::arg("scene"), py::arg("t"), py::arg("omega"), py::arg("attitude"), py::arg("states") = Array(0));
+  m.def("angular_momentum", [](const Scene& scene, const Array& t, const Array& omega, const Array& attitude,
+                               const Array& states) {
     Array L({omega.shape(0), py::ssize_t{3}});
-    const double *in = t.data(), *w = omega.data(), *q = attitude.data();
+    const double *in = t.data(), *w = omega.data(), *q = attitude.data(), *own = states.data();
     double* out = L.mutable_data();
     const std::size_t count = rows(omega);
+    require_states(scene, states, count);
     {
       const WithoutGil nogil;
-      compute_angular_momentum(scene, count, in, w, q, out);
+      compute_angular_momentum(scene, count, in, w, q, out, own);
     }
     return L;
-  });
-  m.def("rotor_speed", [](const Scene& scene, const Array& t, const Array& omega) {
+  }, py::arg("scene"), py::arg("t"), py::arg("omega"), py::arg("attitude"), py::arg("states") = Array(0));
+  m.def("rotor_speed", [](const Scene& scene, const Array& t, const Array& omega, const Array& states) {
     Array speed({omega.shape(0), static_cast<py::ssize_t>(scene.rotors().size())});
-    compute_rotor_speed(scene, rows(omega), t.data(), omega.data(), speed.mutable_data());
+    require_states(scene, states, rows(omega));
+    compute_rotor_speed(scene, rows(omega), t.data(), omega.data(), states.data(),
+                        speed.mutable_data());
     return speed;
   });
-  m.def("drift", [](const Scene& scene, const Array& t, const py::object& omega, const py::object& attitude) {
+  m.def("damper_rates", [](const Scene& scene, const Array& omega, const Array& states) {
+    Array rates({omega.shape(0), py::ssize_t{scene.damper() ? 3 : 0}});
+    if (!scene.damper()) return rates;
+    require_states(scene, states, rows(omega));
+    compute_damper_rates(scene, rows(omega), omega.data(), states.data(), rates.mutable_data());
+    return rates;
+  });
+  m.def("drift", [](const Scene& scene, const Array& t, const py::object& omega, const py::object& attitude,
+                    const Array& states) {
     Motion motion;
     motion.start = scene.start();
     const auto fill = [](const Array& array) { return std::vector<double>(array.data(), array.data() + array.size()); };
     motion.t = fill(t);
     if (!omega.is_none()) motion.omega = fill(omega.cast<Array>());
     if (!attitude.is_none()) motion.attitude = fill(attitude.cast<Array>());
+    motion.states = fill(states);
     const WithoutGil nogil;
     return compute_drift(scene, motion);
-  });
+  }, py::arg("scene"), py::arg("t"), py::arg("omega"), py::arg("attitude"), py::arg("states") = Array(0));
   const py::object named = py::module_::import("collections").attr("namedtuple")("Reference", "omega attitude steps");
   m.def("reference", [named](const Scene& scene, int order, double tolerance, long max_steps) {
     ReferenceOptions options{order, tolerance, max_steps, [] {

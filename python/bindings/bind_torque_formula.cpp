@@ -19,31 +19,6 @@ using formula::Input;
 using formula::Text;
 using torques::Formula;
 
-std::string to_field(py::handle value, const std::string& where) {
-  if (!py::isinstance<py::str>(value)) throw InvalidInput(where, "text", std::string(py::str(py::type::of(value))));
-  if (PyUnicode_AsUTF8(value.ptr()) == nullptr) {
-    PyErr_Clear();
-    throw InvalidInput(where, "text that UTF-8 can write", std::string(py::str(py::repr(value))));
-  }
-  return value.cast<std::string>();
-}
-
-std::vector<std::pair<std::string, std::string>> to_let(py::handle let) {
-  std::vector<std::pair<std::string, std::string>> found;
-  if (let.is_none()) return found;
-  if (!py::isinstance<py::dict>(let))
-    throw InvalidInput("Formula.let", "a dict of names and texts", std::string(py::str(py::type::of(let))));
-  for (const auto& [name, text] : py::reinterpret_borrow<py::dict>(let))
-    found.emplace_back(to_field(name, "Formula.let"), to_field(text, "Formula.let"));
-  return found;
-}
-
-py::dict from_let(const Text& text) {
-  py::dict dict;
-  for (const auto& [name, shared] : text.let) dict[py::str(name)] = shared;
-  return dict;
-}
-
 bool to_choice(py::handle value) {
   if (!py::isinstance<py::bool_>(value))
     throw InvalidInput("Formula.recognise", "True or False", std::string(py::repr(value)));
@@ -111,7 +86,7 @@ Formula make_formula(const py::object& function, const py::object& text, const p
   if (!potential.is_none() && own.size() > 0)
     throw InvalidInput("Formula.states", "left out for a potential", std::string(py::repr(own)));
   if (is_text) {
-    Text written{text.is_none() ? "" : to_field(text, "Formula.text"), inputs, {}, {}, to_let(let)};
+    Text written{text.is_none() ? "" : to_field(text, "Formula.text"), inputs, {}, {}, to_let(let, "Formula.let")};
     if (text.is_none()) written.potential = to_field(potential, "Formula.potential");
     if (written.torque.empty() && written.potential.empty())
       throw InvalidInput("Formula", "a text with an expression", "an empty one");
@@ -137,28 +112,9 @@ Formula make_formula(const py::object& function, const py::object& text, const p
   return made;
 }
 
-py::tuple to_pairs(const std::vector<Input>& inputs) {
-  py::list pairs;
-  for (const Input& input : inputs) pairs.append(py::make_tuple(input.name, py::tuple(py::cast(input.values))));
-  return py::tuple(pairs);
-}
-
-std::vector<Input> from_pairs(const py::sequence& pairs) {
-  std::vector<Input> inputs;
-  for (const py::handle one : pairs) {
-    const py::sequence pair = one.cast<py::sequence>();
-    Input input{pair[0].cast<std::string>(), {}};
-    for (const py::handle value : pair[1].cast<py::sequence>()) input.values.push_back(value.cast<double>());
-    inputs.push_back(std::move(input));
-  }
-  return inputs;
-}
-
 py::tuple get_state(const Formula& formula) {
   const Text& text = formula.text();
-  py::list let;
-  for (const auto& [name, shared] : text.let) let.append(py::make_tuple(name, shared));
-  py::tuple state = py::make_tuple(text.torque, py::tuple(let), to_pairs(text.parameters), formula.recognise(),
+  py::tuple state = py::make_tuple(text.torque, to_text_pairs(text.let), to_pairs(text.parameters), formula.recognise(),
                                    to_pairs(text.states), py::tuple(py::cast(text.rates)), text.potential);
   if (text.orbits.empty()) return state;
   return state + py::make_tuple(py::tuple(from_orbits(text).attr("items")()));
@@ -167,10 +123,7 @@ py::tuple get_state(const Formula& formula) {
 Formula from_state_of(const py::tuple& s) {
   Text text;
   text.torque = s[0].cast<std::string>();
-  for (const py::handle one : s[1].cast<py::sequence>()) {
-    const py::sequence pair = one.cast<py::sequence>();
-    text.let.emplace_back(pair[0].cast<std::string>(), pair[1].cast<std::string>());
-  }
+  text.let = from_text_pairs(s[1]);
   text.parameters = from_pairs(s[2]);
   text.states = from_pairs(s[4]);
   for (const py::handle rate : s[5].cast<py::sequence>()) text.rates.push_back(rate.cast<std::string>());
@@ -198,7 +151,7 @@ std::string show(const Formula& formula) {
   const bool is_potential = !text.potential.empty();
   std::string shown = std::string("polhode.torques.Formula(") + (is_potential ? "potential=" : "text=") +
                       std::string(py::repr(py::str(is_potential ? text.potential : text.torque)));
-  if (!text.let.empty()) shown += ", let=" + std::string(py::repr(from_let(text)));
+  if (!text.let.empty()) shown += ", let=" + std::string(py::repr(from_let(text.let)));
   if (!text.states.empty()) shown += ", states=" + std::string(py::repr(from_states(formula)));
   if (!text.orbits.empty()) shown += ", orbits=" + std::string(py::repr(from_orbits(text)));
   if (!formula.recognise()) shown += ", recognise=False";
@@ -319,7 +272,7 @@ void bind_torque_formula(py::module_& m) {
   type.def_property_readonly("states", &from_states, "dict: of each state its start, and its rate as text.");
   type.def_property_readonly("orbits", [](const Formula& formula) { return from_orbits(formula.text()); },
                              "dict: the orbits of the text by name.");
-  type.def_property_readonly("let", [](const Formula& formula) { return from_let(formula.text()); },
+  type.def_property_readonly("let", [](const Formula& formula) { return from_let(formula.text().let); },
                              "dict: names for shared parts of the text.");
   type.def_property_readonly("parameters", [](const Formula& formula) { return from_inputs(formula.parameters()); },
                              "dict: the named numbers, sorted by name.");

@@ -79,6 +79,11 @@ def _motion(path: pathlib.Path, about: dict[str, Any], claims: dict[str, Claim])
     for torque in scene["torques"]:
         for name, start in torque["state"][4] if torque["kind"] == "Formula" else []:
             expected[f"states.{name}"] = ((reached,) if len(start) == 1 else (reached, len(start)), REAL)
+    for i, rotor in enumerate(scene["rotors"]):
+        if any(rotor[6:9]):   # torque, viscous, coulomb
+            expected[f"states.rotor_momentum_{i}"] = ((reached,), REAL)
+    if scene.get("damper") is not None:
+        expected["states.damper_momentum"] = ((reached, 3), REAL)
     return expected
 
 

@@ -139,6 +139,7 @@ Vector3d ColumnRun::find_momentum_change(const SceneParameter& parameter, const 
   for (std::size_t k = 0; k < rotating.size(); ++k) {
     if (!rotating[k]) continue;
     const Rotor& rotor = scene_.rotors()[k];
+    if (rotor.is_driven()) continue;   // its momentum is a state
     const Vector3d& axis = rotor.axis();
     const bool own = parameter.of == Of::rotor && parameter.index == k;
     if (own && parameter.field == SceneParameter::momentum) change += axis;
@@ -166,6 +167,12 @@ std::vector<ColumnCause> ColumnRun::find_causes(const Piece& piece, const std::v
     const SceneParameter& parameter = parameters_[c];
     causes[c].inertia = inertia_change_[c];
     causes[c].rotor_momentum = find_momentum_change(parameter, rotating);
+    if (parameter.of == Of::rotor && parameter.field == SceneParameter::inertia &&
+        scene_.rotors()[parameter.index].is_driven()) {
+      const std::size_t own = find_torque_of_state(scene_, scene_.rotors()[parameter.index].state());
+      causes[c].torque = drop_windows(scene_.torques()[own]);
+      causes[c].field = find_field(*find_formula(scene_.torques()[own]), "inertia"), causes[c].component = 0;
+    }
     if (parameter.of != Of::torque) continue;
     const AnyTorque& torque = scene_.torques()[parameter.index];
     const auto* during = std::get_if<torques::During>(&torque);
@@ -176,6 +183,24 @@ std::vector<ColumnCause> ColumnRun::find_causes(const Piece& piece, const std::v
   return causes;
 }
 
+/// Adds the derivatives of the momenta that driven rotors and the damper start with.
+void ColumnRun::start_momenta(const SceneParameter& by, const std::function<void(int, double)>& add) const {
+  const auto find = [&](const std::string& name) { return formula::find_place(scene_.states(), name).first; };
+  for (std::size_t k = 0; k < scene_.rotors().size(); ++k) {
+    const Rotor& rotor = scene_.rotors()[k];
+    if (!rotor.is_driven()) continue;
+    const int state = find(rotor.state());
+    const bool own = by.of == Of::rotor && by.index == k;
+    if (own && by.field == SceneParameter::momentum) add(state, 1.0);
+    if (rotor.momentum()) continue;
+    if (own && by.field == SceneParameter::speed) add(state, *rotor.inertia());
+    if (own && by.field == SceneParameter::inertia)
+      add(state, rotor.compute_start_momentum(scene_.omega()) / *rotor.inertia());
+    if (by.of == Of::omega) add(state, *rotor.inertia() * rotor.axis()[by.component]);
+  }
+  if (scene_.damper() && by.of == Of::omega) add(find(scene_.damper()->state()) + by.component, scene_.damper()->inertia());
+}
+
 std::vector<double> ColumnRun::start_columns() const {
   const std::size_t count = parameters_.size();
   Moment start{scene_.start(), std::vector<double>((6 + states_) * count, 0.0), count};
@@ -183,6 +208,7 @@ std::vector<double> ColumnRun::start_columns() const {
     const Vector3d unit = unit_vector(parameters_[c]);
     if (parameters_[c].of == Of::omega) start.add(0, c, unit);
     if (parameters_[c].of == Of::state) start.at(6 + parameters_[c].index, c) = 1.0;
+    start_momenta(parameters_[c], [&](int state, double slope) { start.at(6 + static_cast<std::size_t>(state), c) += slope; });
     if (parameters_[c].of == Of::attitude)
       start.add(3, c, side_ == RotationSide::body ? unit : rotate(conjugate(scene_.attitude()), unit));
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <vector>
 
@@ -35,6 +36,7 @@ class ColumnRun {
 
   void follow(const std::vector<Piece>& pieces, const std::vector<std::size_t>& order, double rtol, long max_steps,
               ColumnSamples& out) const;
+  void start_momenta(const SceneParameter& by, const std::function<void(int state, double slope)>& add) const;
   std::vector<double> start_columns() const;
   std::vector<bool> find_rotating(const Piece& piece) const;
   std::vector<ColumnCause> find_causes(const Piece& piece, const std::vector<bool>& rotating) const;

@@ -1,5 +1,6 @@
 #include "polhode/scene/parameter.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -41,8 +42,8 @@ const TorqueRecord& find_record(const AnyTorque& torque) {
 std::size_t find_torque(const Scene& scene, std::string_view group, const GroupName& name) {
   const auto& torques = scene.torques();
   if (name.what == "torques") {
-    if (!name.index || *name.index >= torques.size())
-      refuse(group, "of a torque from 'torques.0' on, of which the scene has " + std::to_string(torques.size()));
+    if (const std::size_t count = scene.given_torques().size(); !name.index || *name.index >= count)
+      refuse(group, "of a torque from 'torques.0' on, of which the scene has " + std::to_string(count));
     return *name.index;
   }
   std::optional<std::size_t> found;
@@ -116,6 +117,25 @@ std::vector<SceneParameter> find_torque_parameters(const Scene& scene, std::stri
   return found;
 }
 
+/// A number of what acts on a driven rotor or a damper.
+void add_drive(const Scene& scene, std::string_view state, std::string_view field, const std::string& prefix,
+               std::vector<SceneParameter>& found) {
+  const std::size_t index = find_torque_of_state(scene, state);
+  const torques::Formula& formula = *find_formula(scene.torques()[index]);
+  const int number = find_field(formula, field);
+  if (number < 0 || field == "axis" || field == "inertia") return;
+  const auto count = static_cast<int>(formula.parameters()[static_cast<std::size_t>(number)].values.size());
+  for (int c = 0; c < count; ++c)
+    found.push_back({Of::torque, index, number, c, prefix + name_part(c, count)});
+}
+
+std::vector<SceneParameter> find_damper_parameters(const Scene& scene, std::string_view group, std::string_view field) {
+  std::vector<SceneParameter> found;
+  if (scene.damper()) add_drive(scene, scene.damper()->state(), field, std::string(group), found);
+  if (found.empty()) refuse(group, "'damper.viscous' of a scene with a damper");
+  return found;
+}
+
 std::vector<SceneParameter> find_rotor_parameters(const Scene& scene, std::string_view group, const GroupName& name) {
   const std::vector<Rotor>& rotors = scene.rotors();
   const std::optional<std::size_t> index = name.what == "rotor" && rotors.size() == 1 ? 0 : name.index;
@@ -131,7 +151,10 @@ std::vector<SceneParameter> find_rotor_parameters(const Scene& scene, std::strin
   add("inertia", rotor.inertia().has_value(), SceneParameter::inertia);
   add("speed", rotor.speed().has_value(), SceneParameter::speed);
   if (name.field == "during") add_windows(rotor.windows(), Of::rotor_windows, *index, prefix, found);
-  if (found.empty()) refuse(group, "'momentum', 'inertia', 'speed' or 'during' of a rotor that was given it");
+  if (found.empty() && rotor.is_driven()) add_drive(scene, rotor.state(), name.field, prefix, found);
+  if (found.empty())
+    refuse(group, "'momentum', 'inertia', 'speed', 'during', or a number of its motor or friction, of a rotor that was "
+                  "given it");
   return found;
 }
 
@@ -151,6 +174,21 @@ std::vector<SceneParameter> find_state(const Scene& scene, std::string_view grou
 
 }  // namespace
 
+std::size_t find_torque_of_state(const Scene& scene, std::string_view state) {
+  std::size_t i = 0;
+  for (; i < scene.torques().size(); ++i) {
+    const torques::Formula* formula = find_formula(scene.torques()[i]);
+    if (formula != nullptr && formula::find_place(formula->states(), state).count > 0) break;
+  }
+  return i;
+}
+
+int find_field(const torques::Formula& formula, std::string_view name) {
+  const std::vector<formula::Input>& own = formula.parameters();
+  const auto found = std::find_if(own.begin(), own.end(), [&](const formula::Input& input) { return input.name == name; });
+  return found == own.end() ? -1 : static_cast<int>(found - own.begin());
+}
+
 std::vector<SceneParameter> find_parameters(const Scene& scene, std::string_view group) {
   constexpr std::pair<std::string_view, Of> triples[] = {
       {"omega", Of::omega}, {"attitude", Of::attitude}, {"inertia", Of::inertia}, {"axes", Of::axes}};
@@ -163,6 +201,7 @@ std::vector<SceneParameter> find_parameters(const Scene& scene, std::string_view
   }
   const GroupName name = split(group);
   if (name.what == "rotors" || name.what == "rotor") return find_rotor_parameters(scene, group, name);
+  if (name.what == "damper") return find_damper_parameters(scene, group, name.field);
   if (name.what == "states") return find_state(scene, group, name);
   return find_torque_parameters(scene, group, name);
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "polhode/core/error.hpp"
+#include "scene/rotor_torque.hpp"
 
 namespace polhode {
 namespace {
@@ -50,6 +51,46 @@ void require_enough(const RotorParts& parts) {
   }
 }
 
+bool has_drive(const RotorParts& parts) {
+  return parts.law || parts.torque != 0.0 || parts.viscous != 0.0 || parts.coulomb != 0.0;
+}
+
+void require_not_negative(const char* where, double value) {
+  if (!(value >= 0.0 && std::isfinite(value))) throw InvalidInput(where, "zero or positive, and finite", to_text(value));
+}
+
+void require_positive(const char* where, const std::optional<double>& value) {
+  if (value && !(*value > 0.0 && std::isfinite(*value)))
+    throw InvalidInput(where, "positive and finite", to_text(*value));
+}
+
+/// Checks the motor and the friction of a rotor.
+void require_drive(const RotorParts& parts) {
+  require_finite("Rotor.torque", parts.torque);
+  require_not_negative("Rotor.viscous", parts.viscous), require_not_negative("Rotor.coulomb", parts.coulomb);
+  require_positive("Rotor.max_torque", parts.max_torque), require_positive("Rotor.max_speed", parts.max_speed);
+  const bool motor = parts.law || parts.torque != 0.0;
+  if (parts.law && parts.torque != 0.0)
+    throw InvalidInput("Rotor.torque", "a number or a formula, one of them", "both");
+  if (parts.max_torque && !motor)
+    throw InvalidInput("Rotor.max_torque", "left out without a motor's torque", to_text(*parts.max_torque));
+  if (parts.max_speed && !motor)
+    throw InvalidInput("Rotor.max_speed", "left out without a motor's torque", to_text(*parts.max_speed));
+  if (parts.max_speed && parts.law && !parts.max_torque)
+    throw InvalidInput("Rotor.max_torque", "given with a max_speed of a motor's formula", "none",
+                       "it is what the motor can brake with at its top speed");
+  if (parts.max_speed && parts.speed && !(std::abs(*parts.speed) <= *parts.max_speed))
+    throw InvalidInput("Rotor.speed", "at most max_speed, " + to_text(*parts.max_speed), to_text(*parts.speed));
+  if (parts.law) require_motor(*parts.law);
+  if (!has_drive(parts)) return;
+  const char* what = motor ? "Rotor.torque" : parts.viscous != 0.0 ? "Rotor.viscous" : "Rotor.coulomb";
+  const std::string value = parts.law ? parts.law->torque : to_text(motor ? parts.torque : parts.viscous + parts.coulomb);
+  if (!parts.free)
+    throw InvalidInput(what, "left out for a rotor that is held", value, "its speed is constant; give free=True");
+  if (!parts.inertia)
+    throw InvalidInput(what, "given with an inertia", value, "the speed is the momentum over the inertia");
+}
+
 }  // namespace
 
 Rotor::Rotor(RotorParts parts) : parts_(std::move(parts)) {
@@ -65,15 +106,30 @@ Rotor::Rotor(RotorParts parts) : parts_(std::move(parts)) {
   if (parts_.inertia && parts_.speed && !std::isfinite(*parts_.inertia * *parts_.speed)) {
     throw InvalidInput("Rotor.speed", "such that inertia times speed is finite", to_text(*parts_.speed));
   }
+  require_drive(parts_);
   if (!parts_.windows) return;
   if (parts_.free) {
     throw InvalidInput("Rotor.during", "left out with free=True", std::to_string(parts_.windows->size()) + " windows",
-                       "no motor changes the speed of a rotor that is free on its bearing");
+                       "a rotor that is free on its bearing always rotates; its motor may be a formula of the time");
   }
   parts_.windows = torques::arrange(std::move(*parts_.windows), "Rotor.during");
 }
 
-double Rotor::compute_momentum(const Vector3d& w_B) const {
+bool Rotor::is_driven() const { return has_drive(parts_); }
+
+Rotor Rotor::with_state(std::string name) const {
+  Rotor other = *this;
+  other.state_ = std::move(name);
+  return other;
+}
+
+Rotor Rotor::without_windows() const {
+  Rotor other = *this;
+  other.parts_.windows.reset();
+  return other;
+}
+
+double Rotor::compute_start_momentum(const Vector3d& w_B) const {
   if (parts_.momentum) return *parts_.momentum;
   return *parts_.inertia * (parts_.free ? *parts_.speed + parts_.axis.dot(w_B) : *parts_.speed);
 }

@@ -1,6 +1,8 @@
 #include "polhode/scene/scene.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "polhode/core/error.hpp"
 #include "polhode/core/float_state.hpp"
@@ -9,8 +11,9 @@
 namespace polhode {
 namespace {
 
-/// The inertia without the axial moments of free rotors; null if there are none.
-std::shared_ptr<const InertiaTensor> make_carrier(const InertiaTensor& all, const std::vector<Rotor>& rotors) {
+/// The inertia without the axial moments of free rotors and the damper's; null if there are none.
+std::shared_ptr<const InertiaTensor> make_carrier(const InertiaTensor& all, const std::vector<Rotor>& rotors,
+                                                  const std::optional<Damper>& damper) {
   Matrix3d J = all.matrix();
   bool any = false;
   for (std::size_t i = 0; i < rotors.size(); ++i) {
@@ -26,10 +29,18 @@ std::shared_ptr<const InertiaTensor> make_carrier(const InertiaTensor& all, cons
       for (int c = 0; c <= r; ++c) J(r, c) = J(c, r) = J(r, c) - own * a[r] * a[c];
     any = true;
   }
+  if (damper) {
+    if (!(damper->inertia() < all.moments()[0]))
+      throw InvalidInput("scene.damper.inertia", "below the body's least moment, " + to_text(all.moments()[0]),
+                         to_text(damper->inertia()), "the body's inertia includes its damper");
+    for (int i = 0; i < 3; ++i) J(i, i) -= damper->inertia();
+    any = true;
+  }
   if (!any) return nullptr;
   const double least = compute_principal_axes(J).moments[0];
   if (!(least > InertiaTensor::tolerance * all.moments()[2])) {
-    throw InvalidInput("scene.rotors", "free rotors that leave the body three positive moments",
+    throw InvalidInput("scene.rotors", damper ? "free rotors and a damper that leave the body three positive moments"
+                                              : "free rotors that leave the body three positive moments",
                        "a least moment of " + to_text(least),
                        "the body's inertia includes its rotors, and their axial moments are taken from it");
   }
@@ -41,9 +52,54 @@ std::shared_ptr<const InertiaTensor> make_carrier(const InertiaTensor& all, cons
 void require_no_gradient(const std::vector<AnyTorque>& torques) {
   for (const AnyTorque& torque : torques) {
     if (!std::holds_alternative<torques::GravityGradient>(drop_windows(torque))) continue;
-    throw InvalidInput("scene.torques", "without GravityGradient beside free rotors with an inertia", "GravityGradient",
-                       "it acts on the inertia of all, and omega moves the inertia without these rotors");
+    throw InvalidInput("scene.torques", "without GravityGradient beside free rotors with an inertia or a damper", "GravityGradient",
+                       "it acts on the inertia of all, and omega moves the inertia without these");
   }
+}
+
+void require_free_name(const SceneParts& parts, const std::string& name) {
+  if (formula::find_place(list_states(parts.torques), name).count > 0)
+    throw InvalidInput("scene.torques", "without a state of the name " + name, name, "it is a momentum in the body");
+}
+
+constexpr const char* damper_state = "damper_momentum";
+
+/// Gives driven rotors and the damper a state, and adds their torques, unless they have them.
+void add_driven(SceneParts& parts) {
+  for (std::size_t i = 0; i < parts.rotors.size(); ++i) {
+    Rotor& rotor = parts.rotors[i];
+    if (!rotor.is_driven() || !rotor.state().empty()) continue;
+    const std::string name = "rotor_momentum_" + std::to_string(i);
+    require_free_name(parts, name);
+    rotor = rotor.with_state(name);
+    parts.torques.emplace_back(make_torque(rotor, rotor.compute_start_momentum(parts.omega)));
+  }
+  if (!parts.damper || !parts.damper->state().empty()) return;
+  require_free_name(parts, damper_state);
+  parts.damper = parts.damper->with_state(damper_state);
+  const Vector3d momentum = parts.damper->inertia() * (parts.omega + parts.damper->rates());
+  parts.torques.emplace_back(make_torque(*parts.damper, momentum));
+}
+
+bool is_driven_state(const Scene& scene, std::string_view name) {
+  if (scene.damper() && scene.damper()->state() == name) return true;
+  return std::any_of(scene.rotors().begin(), scene.rotors().end(),
+                     [&](const Rotor& rotor) { return rotor.is_driven() && rotor.state() == name; });
+}
+
+/// The torque of a driven rotor.
+bool is_drive(const Scene& scene, const AnyTorque& torque) {
+  const torques::Formula* formula = find_formula(torque);
+  return formula != nullptr && !formula->states().empty() && is_driven_state(scene, formula->states()[0].name);
+}
+
+Vector3d find_damper_momentum(const Scene& scene, const double* states) {
+  const double* p = states + formula::find_place(scene.states(), scene.damper()->state()).first;
+  return {p[0], p[1], p[2]};
+}
+
+double find_momentum(const Scene& scene, const Rotor& rotor, const double* states) {
+  return states[formula::find_place(scene.states(), rotor.state()).first];
 }
 
 }  // namespace
@@ -72,10 +128,11 @@ Scene::Scene(SceneParts parts) {
   if (!parts.want.omega && !parts.want.attitude) {
     throw InvalidInput("scene.want", "omega, attitude or both", "neither");
   }
+  add_driven(parts);
   torque_sum_ = summarize(parts.torques);
   states_ = list_states(parts.torques);
-  if (!parts.rotors.empty()) {
-    carrier_ = make_carrier(parts.inertia_B, parts.rotors);
+  if (!parts.rotors.empty() || parts.damper) {
+    carrier_ = make_carrier(parts.inertia_B, parts.rotors, parts.damper);
     if (carrier_) require_no_gradient(parts.torques);
     bool steady = true, any = false;
     for (const Rotor& rotor : parts.rotors) {
@@ -104,8 +161,8 @@ SceneParts Scene::parts() const {
   for (Rotor& rotor : copy.rotors) {
     if (!rotor.free() || rotor.momentum()) continue;
     RotorParts known = rotor.parts();
-    known.momentum = rotor.compute_momentum(parts_->omega), known.speed.reset();
-    rotor = Rotor(std::move(known));
+    known.momentum = rotor.compute_start_momentum(parts_->omega), known.speed.reset();
+    rotor = Rotor(std::move(known)).with_state(rotor.state());
   }
   return copy;
 }
@@ -116,14 +173,77 @@ Scene Scene::with_torques(std::vector<AnyTorque> torques) const {
   return Scene(std::move(copy));
 }
 
-void compute_rotor_speed(const Scene& scene, std::size_t n, const double* t, const double* omega, double* speed) {
+std::vector<AnyTorque> Scene::given_torques() const {
+  std::vector<AnyTorque> given;
+  for (const AnyTorque& torque : torques())
+    if (!is_drive(*this, torque)) given.push_back(torque);
+  return given;
+}
+
+std::vector<Rotor> Scene::given_rotors() const {
+  std::vector<Rotor> given;
+  for (const Rotor& rotor : rotors()) given.push_back(rotor.with_state(""));
+  return given;
+}
+
+std::optional<Damper> Scene::given_damper() const {
+  return damper() ? std::optional(damper()->with_state("")) : std::nullopt;
+}
+
+bool Scene::has_inner_states() const {
+  return damper() || std::any_of(rotors().begin(), rotors().end(), [](const Rotor& rotor) { return rotor.is_driven(); });
+}
+
+bool Scene::is_closed() const {
+  return std::all_of(torques().begin(), torques().end(),
+                     [this](const AnyTorque& torque) { return is_drive(*this, torque); });
+}
+
+void compute_rotor_speed(const Scene& scene, std::size_t n, const double* t, const double* omega, const double* states,
+                         double* speed) {
+  const auto width = static_cast<std::size_t>(scene.count_states());
   for (std::size_t i = 0; i < n; ++i) {
     const Vector3d w_B{omega[3 * i], omega[3 * i + 1], omega[3 * i + 2]};
     for (const Rotor& rotor : scene.rotors()) {
-      const double rotating = rotor.compute_speed(rotor.compute_momentum(scene.omega()), w_B);
+      double momentum = rotor.compute_start_momentum(scene.omega());
+      if (rotor.is_driven())
+        momentum = states == nullptr ? std::nan("") : find_momentum(scene, rotor, states + width * i);
+      const double rotating = rotor.compute_speed(momentum, w_B);
       *speed++ = rotor.rotates_at(t[i]) || std::isnan(rotating) ? rotating : 0.0;
     }
   }
+}
+
+void compute_damper_rates(const Scene& scene, std::size_t n, const double* omega, const double* states, double* rates) {
+  if (!scene.damper()) throw InvalidInput("scene.damper", "given", "none");
+  const auto width = static_cast<std::size_t>(scene.count_states());
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vector3d w_B{omega[3 * i], omega[3 * i + 1], omega[3 * i + 2]};
+    const Vector3d sigma = find_damper_momentum(scene, states + width * i) / scene.damper()->inertia() - w_B;
+    for (int c = 0; c < 3; ++c) *rates++ = sigma[c];
+  }
+}
+
+Vector3d sum_momenta(const Scene& scene, double t, const double* states) {
+  Vector3d sum = scene.rotor_momentum(t);
+  for (const Rotor& rotor : scene.rotors())
+    if (rotor.is_driven()) sum += find_momentum(scene, rotor, states) * rotor.axis();
+  if (scene.damper()) sum += find_damper_momentum(scene, states);
+  return sum;
+}
+
+double sum_energies(const Scene& scene, const double* states) {
+  double sum = 0.0;
+  for (const Rotor& rotor : scene.rotors()) {
+    if (!rotor.is_driven()) continue;
+    const double h = find_momentum(scene, rotor, states);
+    sum += 0.5 * h * (h / *rotor.inertia());
+  }
+  if (scene.damper()) {
+    const Vector3d p = find_damper_momentum(scene, states);
+    sum += 0.5 * p.dot(p / scene.damper()->inertia());
+  }
+  return sum;
 }
 
 int Scene::count_states() const {
@@ -133,7 +253,11 @@ int Scene::count_states() const {
 }
 
 void set_starts(std::vector<AnyTorque>& torques, const std::vector<double>& starts) {
-  const std::vector<formula::Input> states = list_states(torques);
+  set_starts(torques, list_states(torques), starts);
+}
+
+void set_starts(std::vector<AnyTorque>& torques, const std::vector<formula::Input>& states,
+                const std::vector<double>& starts) {
   for (AnyTorque& torque : torques) {
     const torques::Formula* formula = find_formula(torque);
     if (formula == nullptr || formula->states().empty()) continue;

@@ -1097,7 +1097,8 @@ class HeavyTop(exact._ClosedForm):
         """
 class Rotor:
     """
-    Rotor(axis, *, momentum=None, inertia=None, speed=None, free=False, during=None)
+    Rotor(axis, *, momentum=None, inertia=None, speed=None, free=False, during=None,
+          torque=0.0, viscous=0.0, coulomb=0.0, max_torque=None, max_speed=None, let=..., parameters=...)
 
     A symmetric rotor on an axis fixed in the body: a wheel, a propeller, a spinning platform.
 
@@ -1105,6 +1106,10 @@ class Rotor:
     h. The inertia of a scene always includes its rotors, locked. A rotor that a motor holds at a constant relative speed
     leaves J as it is, and ``h = inertia * speed * axis``. A rotor that is free on its bearing has a constant absolute
     momentum about its axis, ``inertia * (speed + axis . omega)``. J is then less its axial moment.
+
+    A motor and friction change the momentum of a free rotor by their torque e about the axis, and -e acts on the body:
+    ``inertia * (speed' + axis . omega') = e``, with ``e = torque - viscous * speed - coulomb * sign(speed)``. The momentum
+    is then a state of the motion, ``motion.states["rotor_momentum_0"]`` of the first rotor of a scene.
 
     Parameters
     ----------
@@ -1123,12 +1128,29 @@ class Rotor:
         Windows of time [s] in which a held rotor rotates; outside them it is at rest in the body. An
         empty list means never, no list means always. J omega + h is continuous
         where it starts or stops, so omega jumps by ``-J^-1 dh``.
+    torque : float, str or callable, optional
+        Torque of a motor on a free rotor about its axis [N m]. It is a number; a text such as
+        ``"0.2 * omega.x - 0.01 * speed"`` of t, omega, attitude and speed [rad/s]; or ``torque(t, omega, attitude, p, s)``,
+        which is traced once, with ``s.speed``. Texts have the words of `polhode.torques.Formula`.
+    viscous : float, optional
+        Viscous friction of a free rotor's bearing [N m s].
+    coulomb : float, optional
+        Dry friction of a free rotor's bearing [N m].
+    max_torque : float, optional
+        The motor's torque is cut to this size [N m].
+    max_speed : float, optional
+        The motor does not drive the rotor beyond this speed, in both senses [rad/s].
+    let : dict of str, optional
+        Names for shared parts of a text, in order.
+    parameters : dict, optional
+        Named numbers of a text or a function, ``p.kd`` in a function.
 
     Raises
     ------
     InvalidInput
         For an axis that is zero or not finite, numbers that are not finite, an inertia that is not positive, too many or
-        too few numbers, and windows of a free rotor.
+        too few numbers, and windows of a free rotor. For a motor or friction of a held rotor or of one without an inertia,
+        and friction that is negative.
 
     Notes
     -----
@@ -1140,7 +1162,7 @@ class Rotor:
         ...
     def __hash__(self) -> int:
         ...
-    def __init__(self, axis: typing.Any, *, momentum: typing.Any = None, inertia: typing.Any = None, speed: typing.Any = None, free: typing.Any = False, during: typing.Any = None) -> None:
+    def __init__(self, axis: typing.Any, *, momentum: typing.Any = None, inertia: typing.Any = None, speed: typing.Any = None, free: typing.Any = False, during: typing.Any = None, torque: typing.Any = 0.0, viscous: typing.Any = 0.0, coulomb: typing.Any = 0.0, max_torque: typing.Any = None, max_speed: typing.Any = None, let: typing.Any = None, parameters: typing.Any = None) -> None:
         ...
     def __reduce__(self) -> tuple[typing.Any, ...]:
         """
@@ -1154,6 +1176,11 @@ class Rotor:
     def axis(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Unit vector in body axes, shape (3,).
+        """
+    @property
+    def coulomb(self) -> float:
+        """
+        Dry friction of the bearing [N m].
         """
     @property
     def during(self) -> typing.Any:
@@ -1171,17 +1198,106 @@ class Rotor:
         Moment about the axis [kg m^2], or None.
         """
     @property
+    def let(self) -> dict[str, typing.Any]:
+        """
+        Shared parts of the motor's formula by name.
+        """
+    @property
+    def max_speed(self) -> float | None:
+        """
+        The speed beyond which the motor does not drive [rad/s], or None.
+        """
+    @property
+    def max_torque(self) -> float | None:
+        """
+        The most that the motor gives [N m], or None.
+        """
+    @property
     def momentum(self) -> float | None:
         """
         As given [kg m^2/s], or None.
+        """
+    @property
+    def parameters(self) -> dict[str, typing.Any]:
+        """
+        Numbers of the motor's formula by name.
         """
     @property
     def speed(self) -> float | None:
         """
         Relative to the body at the start [rad/s], or None.
         """
+    @property
+    def torque(self) -> typing.Any:
+        """
+        Of the motor about the axis [N m]: a number, or the text of its formula.
+        """
+    @property
+    def viscous(self) -> float:
+        """
+        Viscous friction of the bearing [N m s].
+        """
+class Damper:
+    """
+    Damper(*, inertia, viscous, rates=(0, 0, 0))
+
+    A viscous slug: a sphere in a cavity of the body, full of a viscous fluid.
+
+    With the rates sigma of the sphere relative to the body, the torque ``viscous * sigma`` acts on the body, and its opposite
+    on the sphere: ``inertia * (sigma' + omega' + omega x sigma) = -viscous * sigma``. The inertia of a scene includes the
+    sphere, locked. Its momentum ``inertia * (omega + sigma)`` is a state of the motion, ``motion.states["damper_momentum"]``.
+
+    Parameters
+    ----------
+    inertia : float
+        Moment of the sphere about its centre [kg m^2].
+    viscous : float
+        Damping between sphere and body [N m s].
+    rates : array_like, shape (3,), optional
+        Rates relative to the body at the start, body axes [rad/s].
+
+    Raises
+    ------
+    InvalidInput
+        For an inertia that is not positive, a negative damping, and numbers that are not finite.
+
+    Notes
+    -----
+    Kane and Levinson 1985, Dynamics: Theory and Applications; Hughes 1986, Spacecraft Attitude Dynamics, sec. 3.7.
+    """
+    def __eq__(self, arg0: typing.Any) -> bool:
+        ...
+    def __getstate__(self) -> tuple[typing.Any, ...]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, *, inertia: typing.Any, viscous: typing.Any, rates: typing.Any = (0.0, 0.0, 0.0)) -> None:
+        ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
+        ...
+    @property
+    def inertia(self) -> float:
+        """
+        Moment of the sphere about its centre [kg m^2].
+        """
+    @property
+    def rates(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Relative to the body at the start, shape (3,) [rad/s].
+        """
+    @property
+    def viscous(self) -> float:
+        """
+        Damping between sphere and body [N m s].
+        """
 class Scene:
-    def __init__(self, inertia: typing.Any, omega: typing.Any, attitude: typing.Any, torques: collections.abc.Iterable[typing.Any], times: typing.Any, want: typing.Any, t0: typing.Any, name: typing.Any, rotors: collections.abc.Iterable[typing.Any]) -> None:
+    def __init__(self, inertia: typing.Any, omega: typing.Any, attitude: typing.Any, torques: collections.abc.Iterable[typing.Any], times: typing.Any, want: typing.Any, t0: typing.Any, name: typing.Any, rotors: collections.abc.Iterable[typing.Any], damper: typing.Any) -> None:
         ...
     def __reduce__(self) -> tuple[typing.Any, ...]:
         """
@@ -1205,7 +1321,7 @@ class Scene:
         Returns
         -------
         ndarray, shape (3,)
-            In body axes [N m], without the gyroscopic torque of rotors.
+            In body axes [N m], without the torques of rotors.
         """
     @property
     def attitude(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -1213,7 +1329,12 @@ class Scene:
     @property
     def carrier_inertia(self) -> InertiaTensor:
         """
-        InertiaTensor J that moves with omega: `inertia` less the axial moments of free rotors.
+        InertiaTensor J that moves with omega: `inertia` less the axial moments of free rotors and the damper's.
+        """
+    @property
+    def damper(self) -> Damper | None:
+        """
+        The viscous slug in the body, or None.
         """
     @property
     def inertia(self) -> InertiaTensor:
@@ -1487,7 +1608,7 @@ def _upper_normal_quantile(arg0: typing.SupportsFloat | typing.SupportsIndex) ->
     ...
 def _upper_normal_tail(arg0: typing.SupportsFloat | typing.SupportsIndex) -> float:
     ...
-def angular_momentum(arg0: Scene, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg3: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+def angular_momentum(scene: Scene, t: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], omega: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], attitude: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], states: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] = ...) -> numpy.typing.NDArray[numpy.float64]:
     ...
 def build_info() -> dict[str, str]:
     """
@@ -1505,13 +1626,15 @@ def closed_forms() -> list[typing.Any]:
     """
     The closed forms, simplest first: name, type (the class), doc, source.
     """
-def drift(arg0: Scene, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Any, arg3: typing.Any) -> dict[str, float]:
+def damper_rates(arg0: Scene, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+    ...
+def drift(scene: Scene, t: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], omega: typing.Any, attitude: typing.Any, states: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] = ...) -> dict[str, float]:
     ...
 def effect(scene: Scene, torque: typing.SupportsInt | typing.SupportsIndex) -> dict[str, typing.Any]:
     """
     A bound on what one torque changes, by the names of its record.
     """
-def energy(arg0: Scene, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg3: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
+def energy(scene: Scene, t: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], omega: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], attitude: typing.Any, states: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] = ...) -> numpy.typing.NDArray[numpy.float64]:
     ...
 def find_closed_form(scene: Scene) -> typing.Any:
     """
@@ -1555,7 +1678,7 @@ def require_kept(array: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     """
     Raises InvalidInput for a number that this thread takes for 0.
     """
-def rotor_speed(arg0: Scene, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+def rotor_speed(arg0: Scene, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg3: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
     ...
 def sensitivity(scene: Scene, groups: collections.abc.Sequence[str], accuracy: typing.SupportsFloat | typing.SupportsIndex, certify: bool, side: str, max_steps: typing.SupportsInt | typing.SupportsIndex) -> _FoundSensitivity:
     """

@@ -100,6 +100,30 @@ def trace(function: Callable[..., Any], parameters: dict[str, Any], states: dict
     return first
 
 
+def trace_motor(function: Callable[..., Any], parameters: dict[str, Any]) -> Any:
+    """Return the formula of a motor's function as the torque (u, 0, 0) with the state speed.
+
+    Raises
+    ------
+    InvalidInput
+        For a function that cannot be traced, and for one that does not return a number.
+    """
+    try:
+        inspect.signature(function).bind("t", "omega", "attitude", "p", "s")
+    except (TypeError, ValueError):
+        raise InvalidInput("Rotor.torque: must be callable as torque(t, omega, attitude, p, s), got "
+                           f"{getattr(function, '__name__', type(function).__name__)}") from None
+
+    def torque(t: Any, omega: Any, attitude: Any, p: Values, s: Values) -> tuple[Any, dict[str, Any]]:
+        own = function(t, omega, attitude, p, s)
+        shape = own.shape if isinstance(own, Symbol) else np.shape(own)
+        if shape != ():
+            raise InvalidInput(f"Rotor.torque: must return a number, got shape {shape}")
+        return np.array([own, 0.0, 0.0], object), {"speed": 0.0}
+
+    return trace(torque, parameters, {"speed": 0.0}, False)
+
+
 def compare(function: Callable[..., Any], parameters: dict[str, Any], states: dict[str, Any], is_potential: bool,
             formula: Any) -> None:
     """Compare a function with its formula at eight random states.

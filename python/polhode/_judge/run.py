@@ -75,6 +75,9 @@ def judge(
         raise InvalidInput("inertia: must be left out with scene, which has one; got both")
     if scene is not None and not isinstance(scene, Scene):
         raise InvalidInput(f"scene: must be a polhode.Scene, got {type(scene).__name__}")
+    if scene is not None and (scene.damper is not None
+                              or any(name.startswith("rotor_momentum_") for name in scene.states)):
+        raise InvalidInput("scene: must have no damper and no motors or friction of rotors, got one with them")
     if not (isinstance(tolerance, (int, float)) and 0 <= tolerance < 1e300):
         raise InvalidInput(f"tolerance: must be a number from 0 up, got {tolerance!r}")
     deviations = None if sigma is None else numbers([sigma] if isinstance(sigma, (int, float)) else sigma, "sigma", ())

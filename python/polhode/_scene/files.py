@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal, Union
 import numpy as np
 
 from .. import _files, torques
-from .._core import InvalidInput, Rotor
+from .._core import Damper, InvalidInput, Rotor
 from .._orbit.orbit import Orbit
 from .bodies import attitude_of, body_inertia, body_model, place_meshes
 from .orbits import make_orbits, orbit_model
@@ -48,14 +48,19 @@ def scene_model() -> Any:
     any_torque: Any = Union[tuple(_torque_models())]  # noqa: UP007  as many as the list has
     torque: Any = Annotated[any_torque, Field(discriminator="kind")]
     orbits: Any = dict[str, orbit_model()]   # type: ignore[misc]
+    values: Any = Union[kind.number, kind.numbers]   # noqa: UP007
     rotor: Any = model("Rotor", axis=(kind.vector, ...), momentum=(kind.number | None, None),
                        inertia=(kind.number | None, None), speed=(kind.number | None, None), free=(bool, False),
-                       during=(kind.windows | None, None))
+                       during=(kind.windows | None, None), torque=(kind.number | str, 0.0), viscous=(kind.number, 0.0),
+                       coulomb=(kind.number, 0.0), max_torque=(kind.number | None, None),
+                       max_speed=(kind.number | None, None), let=(dict[str, str] | None, None),
+                       parameters=(dict[str, values] | None, None))
+    damper: Any = model("Damper", inertia=(kind.number, ...), viscous=(kind.number, ...),
+                        rates=(kind.vector, (0.0, 0.0, 0.0)))
     return model("SceneFile", name=(str, ""), title=(str, ""), about=(str, ""),
                   want=(list[Literal["omega", "attitude"]], ["omega", "attitude"]),
                   body=(body_model(), ...), start=(start, ...), torques=(list[torque], []), rotors=(list[rotor], []),
-                  orbits=(orbits, {}),
-                  times=(times, ...))
+                 orbits=(orbits, {}), damper=(damper | None, None), times=(times, ...))
 
 
 def _torque_models() -> list[Any]:
@@ -207,6 +212,7 @@ def make_scene(data: dict[str, Any], where: str = "scene") -> Scene:
             t0=start.t0,
             name=entry.name,
             rotors=_rotors(entry.rotors),
+            damper=None if entry.damper is None else Damper(**entry.damper.model_dump()),
         )
     except InvalidInput as error:
         raise InvalidInput(f"{where}: {error}") from None

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from .. import torques
-from .._core import InertiaTensor, InvalidInput, Rotor
+from .._core import Damper, InertiaTensor, InvalidInput, Rotor
 from .scene import Scene, _restore
 
 
@@ -24,7 +24,8 @@ def _state(thing: Any) -> Any:
 def _made(kind: Any, state: list[Any]) -> Any:
     """Return the object that had this state, without rounding it again."""
     made = kind.__new__(kind)
-    made.__setstate__(tuple(tuple(part) if kind is Rotor and isinstance(part, list) else part for part in state))
+    holds_tuples = kind in (Rotor, Damper)
+    made.__setstate__(tuple(tuple(part) if holds_tuples and isinstance(part, list) else part for part in state))
     return made
 
 
@@ -82,6 +83,7 @@ def to_plain(scene: Scene) -> dict[str, Any]:
     return {"inertia": matrix, "physical": physical, "omega": scene.omega.tolist(), "attitude": scene.attitude.tolist(),
             "torques": [_torque(torque) for torque in scene.torques],
             "rotors": [_state(rotor) for rotor in scene.rotors],
+            **({} if scene.damper is None else {"damper": _state(scene.damper)}),
             "times": scene.times.tolist(), "want": list(scene.want), "t0": scene.t0, "name": scene.name}
 
 
@@ -98,5 +100,6 @@ def from_plain(data: dict[str, Any]) -> Scene:
         "attitude": np.asarray(data["attitude"], dtype=float),
         "torques": [_from_torque(torque) for torque in data["torques"]],
         "rotors": [_made(Rotor, rotor) for rotor in data["rotors"]],
+        "damper": _made(Damper, data["damper"]) if "damper" in data else None,
         "times": np.asarray(data["times"], dtype=float), "want": tuple(data["want"]), "t0": float(data["t0"]),
         "name": str(data["name"])})

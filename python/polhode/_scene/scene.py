@@ -41,6 +41,8 @@ class Scene(_core.Scene):
         Name in tables and charts.
     rotors : iterable of Rotor, optional
         Wheels in the body, in any number. See `Rotor`.
+    damper : Damper, optional
+        A viscous slug in the body. See `Damper`.
 
     Raises
     ------
@@ -64,12 +66,13 @@ class Scene(_core.Scene):
         t0: float = 0.0,
         name: str = "",
         rotors: Iterable[_core.Rotor] = (),
+        damper: _core.Damper | None = None,
     ) -> None:
         kept = to_items(torques, "scene.torques", "torques") if isinstance(torques, Iterable) else (torques,)
         if not isinstance(rotors, Iterable):
             rotors = (rotors,)
         rotors = to_items(rotors, "scene.rotors", "rotors")
-        super().__init__(inertia, omega, attitude, kept, times, want, t0, name, rotors)
+        super().__init__(inertia, omega, attitude, kept, times, want, t0, name, rotors, damper)
         self._torques = kept   # the compiled scene holds plain pointers to their functions
 
     @property
@@ -113,6 +116,7 @@ class Scene(_core.Scene):
             "t0": self.t0,
             "name": self.name,
             "rotors": self.rotors,
+            "damper": self.damper,
         }
 
     def replace(self, **changes: Any) -> Scene:

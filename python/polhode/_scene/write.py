@@ -59,8 +59,11 @@ def _torque(torque: Any, i: int, orbits: Names) -> dict[str, Any]:
 
 
 def _rotor(rotor: Any) -> dict[str, Any]:
-    names = ("axis", "momentum", "inertia", "speed", "free", "during")
-    return {name: value for name in names if (value := getattr(rotor, name, None)) is not None and value is not False}
+    names = ("axis", "momentum", "inertia", "speed", "free", "during", "torque", "let", "parameters", "viscous",
+             "coulomb", "max_torque", "max_speed")
+    drive = {"torque": 0.0, "viscous": 0.0, "coulomb": 0.0, "let": {}, "parameters": {}}
+    return {name: value for name in names if (value := getattr(rotor, name, None)) is not None and value is not False
+            and not (name in drive and value == drive[name])}
 
 
 def to_toml(scene: Scene) -> str:
@@ -84,6 +87,8 @@ def to_toml(scene: Scene) -> str:
         _table(lines, "[[torques]]", entry)
     for rotor in scene.rotors:
         _table(lines, "[[rotors]]", _rotor(rotor))
+    if scene.damper is not None:
+        _table(lines, "[damper]", {name: getattr(scene.damper, name) for name in ("inertia", "viscous", "rates")})
     return "\n".join(lines) + "\n"
 
 

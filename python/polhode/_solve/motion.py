@@ -148,19 +148,27 @@ class Motion:
         largest = float(np.abs(self.omega).max()) or 1.0   # their squares may leave the range of float64
         return max(start, largest * float(np.linalg.norm(self.omega / largest, axis=1).max()))
 
+    def _state_rows(self) -> Floats:
+        """The states of formulas and rotors at the samples, shape (n, numbers of all of them)."""
+        parts = [np.reshape(self.states[name], (len(self.t), -1)) for name in self.scene.states]
+        return np.concatenate(parts, axis=1) if parts else np.empty((len(self.t), 0))
+
     @property
     def energy(self) -> Floats:
-        """Kinetic plus potential energy at the samples, shape (n,) [J], without that inside rotors."""
+        """Kinetic plus potential energy at the samples, shape (n,) [J].
+
+        It includes the energy of rotors with a motor or friction, and leaves out that inside other rotors.
+        """
         self._need("omega", *(["attitude"] if any(t.traits["has_potential"] for t in self.scene.torques) else []))
         assert self.omega is not None
-        return _core.energy(self.scene, self.t, self.omega, self.attitude)
+        return _core.energy(self.scene, self.t, self.omega, self.attitude, self._state_rows())
 
     @property
     def angular_momentum(self) -> Floats:
         """Angular momentum of body and rotors in space axes at the samples, shape (n, 3) [kg m^2/s]."""
         self._need("omega", "attitude")
         assert self.omega is not None and self.attitude is not None
-        return _core.angular_momentum(self.scene, self.t, self.omega, self.attitude)
+        return _core.angular_momentum(self.scene, self.t, self.omega, self.attitude, self._state_rows())
 
     @property
     def rotor_speed(self) -> Floats:
@@ -171,19 +179,31 @@ class Motion:
         """
         self._need("omega")
         assert self.omega is not None
-        return _core.rotor_speed(self.scene, self.t, self.omega)
+        return _core.rotor_speed(self.scene, self.t, self.omega, self._state_rows())
+
+    @property
+    def damper_rates(self) -> Floats:
+        """The rates of the scene's damper relative to the body at the samples, shape (n, 3), body axes [rad/s].
+
+        The shape is (n, 0) for a scene without one.
+        """
+        self._need("omega")
+        assert self.omega is not None
+        return _core.damper_rates(self.scene, self.omega, self._state_rows())
 
     @property
     def drift(self) -> dict[str, float]:
         """The largest relative change of each invariant over the samples.
 
-        The keys are "energy", "angular_momentum" (free bodies, with their rotors), "vertical_momentum" (under gravity)
-        and "jacobi" (gravity gradient: energy less mean motion times L_z). Quantities that the scene does not conserve
-        are left out, and those that need a state that was not requested.
+        The keys are "energy", "angular_momentum" (free bodies, with their rotors), "vertical_momentum" (under
+        gravity), "jacobi" (gravity gradient: energy less mean motion times L_z), and "energy_rise" (the largest
+        rise of the energy of a free body with a damper, or whose rotors have friction and no motor). Quantities that
+        the scene does not conserve are left out, and those that need a state that was not requested.
         """
         kept = self.__dict__.get("_drift")
         if kept is None:
-            kept = self.__dict__["_drift"] = dict(_core.drift(self.scene, self.t, self.omega, self.attitude))
+            kept = self.__dict__["_drift"] = dict(_core.drift(self.scene, self.t, self.omega, self.attitude,
+                                                                 self._state_rows()))
         return kept
 
     def _describe_drift(self) -> str:

@@ -125,6 +125,6 @@ TEST_CASE("a free rotor's inertia is taken from the body, and its momentum stays
   CHECK(Scene(copy).inertia_B().matrix()(0, 0) == 0.75);
   double speed = 0.0;
   const double t = 1.0, w[3] = {2.0, 0, 0};
-  compute_rotor_speed(scene, 1, &t, w, &speed);
+  compute_rotor_speed(scene, 1, &t, w, nullptr, &speed);
   CHECK(std::abs(speed - (4 + start[0] - 2.0)) < 1e-15);
 }

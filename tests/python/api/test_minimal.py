@@ -146,6 +146,11 @@ def smoke_rotor():
     assert wheel.axis.tolist() == [0, 0, 1] and scene(rotors=[wheel]).rotor_momentum.tolist() == [0, 0, 0.5]
 
 
+def smoke_damper():
+    slug = ph.Damper(inertia=0.1, viscous=0.2)
+    assert slug.rates.tolist() == [0, 0, 0] and scene(damper=slug).damper == slug
+
+
 def smoke_scene():
     assert pickle.loads(pickle.dumps(scene())) == scene() and scene(t0=1.0) != scene()
 
@@ -268,6 +273,7 @@ SMOKE = {
     "Plan": smoke_plan,
     "PrincipalAxes": smoke_principal_axes,
     "Rotation": smoke_rotation,
+    "Damper": smoke_damper,
     "Rotor": smoke_rotor,
     "Scene": smoke_scene,
     "Sensitivity": smoke_sensitivity,

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "polhode/core/state.hpp"
 #include "polhode/inertia/inertia_tensor.hpp"
+#include "polhode/scene/damper.hpp"
 #include "polhode/scene/rotor.hpp"
 #include "polhode/torque/torques.hpp"
 
@@ -30,6 +32,7 @@ struct SceneParts {
   double t0 = 0.0;                               ///< time of the start [s]
   std::string name = {};
   std::vector<Rotor> rotors = {};                ///< in the body, in any number
+  std::optional<Damper> damper = {};             ///< in the body
 };
 
 /// What there is: a body with its rotors, its start, its torques, and what is wanted. Checked here, once, and never
@@ -40,12 +43,21 @@ class Scene {
   ///         are not finite, no times at all, nothing wanted, or free rotors that leave no inertia to the body
   explicit Scene(SceneParts parts);
 
-  /// The inertia J that moves with omega: the given one, less the axial moments of free rotors.
+  /// The inertia J that moves with omega: the given one, less the axial moments of free rotors and the damper's.
   const InertiaTensor& inertia_B() const { return carrier_ ? *carrier_ : parts_->inertia_B; }
   const InertiaTensor& given_inertia_B() const { return parts_->inertia_B; }   ///< of all, rotors included and locked
   const Vector3d& omega() const { return parts_->omega; }
   const Quat& attitude() const { return parts_->attitude; }
+  /// The torques as given, and behind them those of driven rotors on the carrier.
   const std::vector<AnyTorque>& torques() const { return parts_->torques; }
+  std::vector<AnyTorque> given_torques() const;
+  std::vector<Rotor> given_rotors() const;
+  std::optional<Damper> given_damper() const;
+  /// No torque acts but those between the body and its rotors: the angular momentum in space is constant.
+  bool is_closed() const;
+  /// Rotors or a damper have momenta that are states.
+  bool has_inner_states() const;
+  const std::optional<Damper>& damper() const { return parts_->damper; }
   const std::vector<double>& times() const { return parts_->times; }
   const Wanted& want() const { return parts_->want; }
   const std::vector<Rotor>& rotors() const { return parts_->rotors; }
@@ -71,7 +83,7 @@ class Scene {
 
  private:
   std::shared_ptr<const SceneParts> parts_;
-  std::shared_ptr<const InertiaTensor> carrier_;   ///< null without free rotors
+  std::shared_ptr<const InertiaTensor> carrier_;   ///< null without free rotors and damper
   Vector3d rotor_momentum_ = Vector3d::Zero();
   TorqueSum torque_sum_;
   std::vector<formula::Input> states_;
@@ -79,10 +91,28 @@ class Scene {
 
 /// Gives the states of the torques other starts, in the order of list_states().
 void set_starts(std::vector<AnyTorque>& torques, const std::vector<double>& starts);
+/// The same in the order of `states`, which may have others besides.
+void set_starts(std::vector<AnyTorque>& torques, const std::vector<formula::Input>& states,
+                const std::vector<double>& starts);
 
 /// The speeds of all rotors relative to the body [rad/s] in n states, as (n, rotors): of a free rotor as the body's
 /// rates change it, of a held one constant, and 0 outside its windows. NaN for a rotor without an inertia.
-/// @param omega  (n, 3), body axes
-void compute_rotor_speed(const Scene& scene, std::size_t n, const double* t, const double* omega, double* speed);
+/// @param omega   (n, 3), body axes
+/// @param states  (n, count_states()), needed for driven rotors, which have NaN without it
+void compute_rotor_speed(const Scene& scene, std::size_t n, const double* t, const double* omega, const double* states,
+                         double* speed);
+
+/// The rates of the damper relative to the body [rad/s] in n states, as (n, 3).
+/// @param omega   (n, 3), body axes
+/// @param states  (n, count_states())
+/// @throws InvalidInput for a scene without a damper
+void compute_damper_rates(const Scene& scene, std::size_t n, const double* omega, const double* states, double* rates);
+
+/// The momentum in body axes of a scene's rotors and damper at a time.
+/// @param states  count_states() numbers
+Vector3d sum_momenta(const Scene& scene, double t, const double* states);
+/// The energy of driven rotors, h^2 / 2 Js for each, and of the damper, p^2 / 2 Jd [J]. That of other rotors
+/// is constant, and left out.
+double sum_energies(const Scene& scene, const double* states);
 
 }  // namespace polhode

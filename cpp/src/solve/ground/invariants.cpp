@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include "polhode/core/interrupt.hpp"
 #include "polhode/math/detail/functions.hpp"
@@ -31,27 +33,55 @@ double relative(double difference, double scale) {
   return difference == 0.0 ? 0.0 : std::abs(difference) / scale;
 }
 
+/// Only the friction of rotors acts: the energy never rises.
+bool only_loses_energy(const Scene& scene) {
+  return scene.is_closed() && scene.has_inner_states() &&
+         std::all_of(scene.rotors().begin(), scene.rotors().end(), [](const Rotor& rotor) {
+           return !rotor.parts().law && rotor.parts().torque == 0.0 && !rotor.has_windows();
+         });
+}
+
+/// The largest rise above the least of earlier values, in the order of time.
+double find_rise(const std::vector<double>& t, const std::vector<double>& energy, double start, double start_energy) {
+  std::vector<std::size_t> order(t.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return t[a] < t[b]; });
+  double least = std::numeric_limits<double>::infinity(), rise = 0.0;
+  bool passed = false;
+  const auto visit = [&](double value) { rise = std::max(rise, value - least), least = std::min(least, value); };
+  for (const std::size_t i : order) {
+    if (!passed && t[i] >= start) visit(start_energy), passed = true;
+    visit(energy[i]);
+  }
+  if (!passed) visit(start_energy);
+  return rise;
+}
+
 }  // namespace
 
 void compute_energy(const Scene& scene, std::size_t n, const double* t, const double* omega, const double* attitude,
-                    double* energy) {
+                    double* energy, const double* states) {
+  const bool driven = scene.has_inner_states();
+  const auto width = static_cast<std::size_t>(scene.count_states());
   static constexpr double identity[4] = {0, 0, 0, 1};
   for (std::size_t i = 0; i < n; ++i) {
     if (i % rows_between_checks == 0) check_interrupt();
     const double* q = attitude != nullptr ? attitude + 4 * i : identity;
     energy[i] = compute_kinetic(scene.inertia_B().matrix(), omega + 3 * i);
     if (!scene.torques().empty()) energy[i] += compute_potential(scene, t[i], omega + 3 * i, q);
+    if (driven) energy[i] += sum_energies(scene, states + width * i);
   }
 }
 
 void compute_angular_momentum(const Scene& scene, std::size_t n, const double* t, const double* omega,
-                              const double* attitude, double* L_W) {
-  const bool rotors = scene.torque_sum().rotors;
+                              const double* attitude, double* L_W, const double* states) {
+  const bool rotors = scene.torque_sum().rotors || scene.has_inner_states();
+  const auto width = static_cast<std::size_t>(scene.count_states());
   for (std::size_t i = 0; i < n; ++i) {
     if (i % rows_between_checks == 0) check_interrupt();
     const double *w = omega + 3 * i, *q = attitude + 4 * i;
     Vector3d L_B = scene.inertia_B().matrix() * Vector3d{w[0], w[1], w[2]};
-    if (rotors) L_B += scene.rotor_momentum(t[i]);
+    if (rotors) L_B += sum_momenta(scene, t[i], states + width * i);
     const Vector3d L = rotate({q[0], q[1], q[2], q[3]}, L_B);
     std::copy_n(L.data(), 3, L_W + 3 * i);
   }
@@ -62,7 +92,11 @@ std::map<std::string, double> compute_drift(const Scene& scene, const Motion& mo
   const std::size_t n = motion.t.size();
   if (motion.omega.empty() || n == 0) return drift;
   const TorqueSum& sum = scene.torque_sum();
-  const bool free = scene.torques().empty();
+  const bool free = scene.torques().empty(), closed = scene.is_closed();
+  const bool driven = scene.has_inner_states();
+  if (driven && motion.states.size() != n * static_cast<std::size_t>(scene.count_states())) return drift;
+  const double* states = motion.states.data();
+  const std::vector<double> start_states = formula::list_values(scene.states());
   const bool has_attitude = !motion.attitude.empty();
   const bool sees_energy = free || (sum.has_potential && has_attitude);
 
@@ -74,35 +108,45 @@ std::map<std::string, double> compute_drift(const Scene& scene, const Motion& mo
   double L0[3] = {};
   double largest_L = 0.0;
   if (has_attitude) {
-    compute_angular_momentum(scene, n, motion.t.data(), motion.omega.data(), motion.attitude.data(), L.data());
-    compute_angular_momentum(scene, 1, &motion.start.t, start_omega, start_attitude, L0);
+    compute_angular_momentum(scene, n, motion.t.data(), motion.omega.data(), motion.attitude.data(), L.data(),
+                             states);
+    compute_angular_momentum(scene, 1, &motion.start.t, start_omega, start_attitude, L0, start_states.data());
     for (std::size_t i = 0; i < n; ++i)
       largest_L = std::max(largest_L, math::hypot(L[3 * i], L[3 * i + 1], L[3 * i + 2]));
     largest_L = std::max(largest_L, math::hypot(L0[0], L0[1], L0[2]));
   }
-  if (free && has_attitude) {
+  if (closed && has_attitude) {
     double moved = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
       moved = std::max(moved, math::hypot(L[3 * i] - L0[0], L[3 * i + 1] - L0[1], L[3 * i + 2] - L0[2]));
     }
     // The momenta of a body and its rotors may nearly cancel.
     const double own = (scene.inertia_B().matrix() * scene.omega()).norm();
-    const double scale = sum.rotors ? own + scene.rotor_momentum().norm() : math::hypot(L0[0], L0[1], L0[2]);
+    const Vector3d h = sum_momenta(scene, scene.t0(), start_states.data());
+    const double scale = sum.rotors || driven ? own + h.norm() : math::hypot(L0[0], L0[1], L0[2]);
     drift["angular_momentum"] = relative(moved, scale);
   }
-  if (!free && sum.keeps_vertical && has_attitude) {
+  if (!closed && sum.keeps_vertical && has_attitude) {
     double moved = 0.0;
     for (std::size_t i = 0; i < n; ++i) moved = std::max(moved, std::abs(L[3 * i + 2] - L0[2]));
     drift["vertical_momentum"] = relative(moved, largest_L);
   }
+  if (only_loses_energy(scene)) {
+    std::vector<double> energy(n);
+    double start_energy = 0.0;
+    compute_energy(scene, 1, &motion.start.t, start_omega, nullptr, &start_energy, start_states.data());
+    compute_energy(scene, n, motion.t.data(), motion.omega.data(), nullptr, energy.data(), states);
+    const double largest = std::max(start_energy, *std::max_element(energy.begin(), energy.end()));
+    drift["energy_rise"] = relative(find_rise(motion.t, energy, motion.start.t, start_energy), largest);
+  }
   if (sees_energy && (sum.keeps_energy || (sum.keeps_jacobi && has_attitude))) {
     const double rate = sum.keeps_energy ? 0.0 : sum.pattern_rate;
     double start_energy = 0.0, largest_T = compute_kinetic(scene.inertia_B().matrix(), start_omega);
-    compute_energy(scene, 1, &motion.start.t, start_omega, start_attitude, &start_energy);
+    compute_energy(scene, 1, &motion.start.t, start_omega, start_attitude, &start_energy, start_states.data());
     double largest_V = std::abs(start_energy - largest_T), moved = 0.0;
     std::vector<double> energy(n);
     compute_energy(scene, n, motion.t.data(), motion.omega.data(), has_attitude ? motion.attitude.data() : nullptr,
-                   energy.data());
+                   energy.data(), states);
     for (std::size_t i = 0; i < n; ++i) {
       const double T = compute_kinetic(scene.inertia_B().matrix(), motion.omega.data() + 3 * i);
       largest_V = std::max(largest_V, std::abs(energy[i] - T));

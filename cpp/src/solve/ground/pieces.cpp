@@ -55,9 +55,7 @@ std::vector<Rotor> find_rotating(const std::vector<Rotor>& rotors, double begin,
   std::vector<Rotor> rotating;
   for (const Rotor& rotor : rotors) {
     if (!(begin < end ? rotor.rotates_throughout(begin, end) : rotor.rotates_at(begin))) continue;
-    RotorParts parts = rotor.parts();
-    parts.windows.reset();
-    rotating.emplace_back(std::move(parts));
+    rotating.push_back(rotor.without_windows());
   }
   return rotating;
 }
@@ -169,7 +167,8 @@ Scene make_piece_scene(const Scene& scene, const Piece& piece, const State& star
                           .want = want,
                           .t0 = start.t,
                           .name = scene.name(),
-                          .rotors = piece.rotors});
+                          .rotors = piece.rotors,
+                          .damper = scene.damper()});
 }
 
 Scene drop_windows(const Scene& scene) {

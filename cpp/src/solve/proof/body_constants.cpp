@@ -30,6 +30,7 @@ Vector enclose_axis(const Rotor& rotor) {
 }  // namespace
 
 Vector enclose_momentum(const Rotor& rotor, const Vector3d& w_B) {
+  if (rotor.is_driven()) return {};   // its momentum is a state
   const Vector a = enclose_axis(rotor);
   Interval size;
   if (rotor.momentum()) {
@@ -51,6 +52,8 @@ Matrix enclose_inertia(const Scene& scene, double part) {
       for (std::size_t j = 0; j < 3; ++j)
         J[i][j] = J[i][j] - Interval(*rotor.inertia()) * Interval(part) * a[i] * a[j];
   }
+  for (std::size_t i = 0; i < 3 && scene.damper(); ++i)
+    J[i][i] = J[i][i] - Interval(scene.damper()->inertia()) * Interval(part);
   return J;
 }
 
