@@ -98,7 +98,7 @@ def _momentum(axes: Any, drawing: Drawing) -> None:
     view = make_view()
     paper = np.stack([view.right, view.up], axis=1)
     inertia = scene.carrier_inertia
-    momentum = compute_momentum(scene, curve.t, curve.omega) @ np.asarray(inertia.axes)
+    momentum = compute_momentum(scene, curve.t, curve.omega, curve.states) @ np.asarray(inertia.axes)
     size = float(np.linalg.norm(momentum[0]))
     if not size > 0:
         axes.set_axis_off()
@@ -125,7 +125,8 @@ def _herpolhode(axes: Any, drawing: Drawing) -> None:
     curve, palette = drawing.track.curve, drawing.palette
     assert curve.attitude is not None
     rotation = Rotation.from_quat(curve.attitude)
-    momentum = rotation[0].apply(compute_momentum(drawing.track.scene, curve.t[:1], curve.omega[:1])[0])
+    first = compute_momentum(drawing.track.scene, curve.t[:1], curve.omega[:1], curve.states[:1])
+    momentum = rotation[0].apply(first[0])
     axes.set_aspect("equal")
     axes.set_title("herpolhode: the tip of ω in space, across L")
     axes.set_xlabel("rad/s")
@@ -221,8 +222,9 @@ def _energy(axes: Any, drawing: Drawing) -> None:
     order = np.argsort(track.t, kind="stable")
     needs = any(t.traits["has_potential"] for t in track.scene.torques)
     kept = "energy" in track.drift
-    total = np.asarray(energy(track.scene, track.t, track.omega, track.attitude)) if kept or not needs or (
-        track.attitude is not None) else compute_kinetic(track)
+    sees = kept or not needs or track.attitude is not None
+    total = (np.asarray(energy(track.scene, track.t, track.omega, track.attitude, track.states)) if sees
+             else compute_kinetic(track))
     total = total[order]
     change = total - total[0]
     size = max(float(compute_kinetic(track).max()), float(np.abs(total).max()))
@@ -255,7 +257,7 @@ def _invariants(axes: Any, drawing: Drawing) -> None:
         axes.set_ylabel("relative, from the start")
         axes.legend(frameon=False, fontsize=8.5, loc="upper left", markerscale=3)
     else:
-        size = np.linalg.norm(compute_momentum(track.scene, track.t, track.omega), axis=1)
+        size = np.linalg.norm(compute_momentum(track.scene, track.t, track.omega, track.states), axis=1)
         for name, values, colour in zip(("kinetic energy", "|L|"), (compute_kinetic(track), size), colours):
             start = values[order][0]
             axes.plot(track.t[order], (values / start if start > 0 else values)[order], color=colour, linewidth=1.5,

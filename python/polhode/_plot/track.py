@@ -17,6 +17,7 @@ from .._solve.solve import solve
 TURNS = 40        # a curve longer than this many turns is drawn up to there, or it covers itself
 FINE = 0.05       # radians of rotation between two points of a curve
 MOST = 20_000     # points of a curve
+NONE = np.empty((0, 0))
 
 
 class Curve(NamedTuple):
@@ -26,6 +27,7 @@ class Curve(NamedTuple):
     omega: Floats
     attitude: Floats | None
     whole: bool   # whether it is the whole motion
+    states: Floats = NONE   # of formulas and rotors, shape (n, numbers of all of them)
 
 
 class Track(NamedTuple):
@@ -38,12 +40,13 @@ class Track(NamedTuple):
     drift: dict[str, float]
     curve: Curve
     source: str
+    states: Floats = NONE   # of formulas and rotors
 
     @property
     def angular_momentum(self) -> Floats:
         """That of body and rotors in space axes at the samples, shape (n, 3) [kg m^2/s]."""
         assert self.attitude is not None
-        return np.asarray(angular_momentum(self.scene, self.t, self.omega, self.attitude))
+        return np.asarray(angular_momentum(self.scene, self.t, self.omega, self.attitude, self.states))
 
 
 def to_times(value: Any, name: str) -> Floats:
@@ -64,26 +67,29 @@ def find_curve(motion: Motion) -> Curve:
     motion._need("omega")
     assert motion.omega is not None
     order = np.argsort(motion.t, kind="stable")
-    t, omega = motion.t[order], motion.omega[order]
+    t, omega, states = motion.t[order], motion.omega[order], motion._state_rows()[order]
     attitude = None if motion.attitude is None else motion.attitude[order]
     rate = float(np.linalg.norm(omega, axis=1).max())
     span = float(t[-1] - t[0])
     if t.size < 2 or rate * span == 0:
-        return Curve(t, omega, attitude, True)
+        return Curve(t, omega, attitude, True, states)
     drawn = min(span, TURNS * 2 * math.pi / rate)
     gaps = np.diff(t)
     if rate * gaps.max() <= 2 * FINE:
         kept = t <= t[0] + drawn
-        return Curve(t[kept], omega[kept], None if attitude is None else attitude[kept], bool(kept.all()))
+        return Curve(t[kept], omega[kept], None if attitude is None else attitude[kept], bool(kept.all()),
+                     states[kept])
     times = np.linspace(t[0], t[0] + drawn, count_points(rate, drawn))
     if motion._answer is not None and motion._answer.has_dense:
-        return Curve(times, *motion(times), drawn == span)
+        found = motion.states_at(times)
+        rows = [np.reshape(found[name], (times.size, -1)) for name in motion.scene.states]
+        return Curve(times, *motion(times), drawn == span, np.concatenate(rows, axis=1) if rows else NONE)
     if motion.status not in ("finished", "event"):
-        return Curve(t, omega, attitude, True)   # nothing is known beyond what there is
+        return Curve(t, omega, attitude, True, states)   # nothing is known beyond what there is
     again = solve(motion.scene.replace(times=times), accuracy=1e-6)
     if again.status != "finished" or again.omega is None:
-        return Curve(t, omega, attitude, True)
-    return Curve(times, again.omega, again.attitude, drawn == span)
+        return Curve(t, omega, attitude, True, states)
+    return Curve(times, again.omega, again.attitude, drawn == span, again._state_rows())
 
 
 def of_motion(motion: Motion) -> Track:
@@ -93,7 +99,7 @@ def of_motion(motion: Motion) -> Track:
         raise InvalidInput("plot: the motion holds no samples")
     assert motion.omega is not None
     return Track(motion.scene, motion.t, motion.omega, motion.attitude, motion.drift, find_curve(motion),
-                 f"{len(motion)} samples by {motion.plan.method}")
+                 f"{len(motion)} samples by {motion.plan.method}", motion._state_rows())
 
 
 def of_closed_form(form: Any, scene: Scene, t: Floats) -> Track:
@@ -109,10 +115,11 @@ def of_closed_form(form: Any, scene: Scene, t: Floats) -> Track:
                  if hasattr(form, "kind") else "closed form")
 
 
-def compute_momentum(scene: Scene, t: Floats, omega: Floats) -> Floats:
+def compute_momentum(scene: Scene, t: Floats, omega: Floats, states: Floats = NONE) -> Floats:
     """Return the momentum of body and rotors in body axes."""
     identity = np.tile([0.0, 0.0, 0.0, 1.0], (len(t), 1))
-    return np.asarray(angular_momentum(scene, np.ascontiguousarray(t), np.ascontiguousarray(omega), identity))
+    return np.asarray(angular_momentum(scene, np.ascontiguousarray(t), np.ascontiguousarray(omega), identity,
+                                       np.ascontiguousarray(states)))
 
 
 def compute_kinetic(track: Track | Motion) -> Floats:

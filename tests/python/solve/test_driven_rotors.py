@@ -110,6 +110,20 @@ def test_scenes_survive_files_pickles_and_changes(name, tmp_path):
     assert (loaded.rotor_speed == motion.rotor_speed).all() and (loaded.energy == motion.energy).all()
 
 
+def test_many_bodies_start_with_momenta_of_their_own():
+    scene, starts = make("slug and wheel"), [(0.2, 1.4, 0.3), (0.1, 0.2, 0.3)]
+    many = ph.solve_many(scene, omega=starts)
+    for omega, found in zip(starts, many.omega):
+        assert np.abs(found - ph.solve(scene.replace(omega=omega), accuracy=1e-10).omega).max() <= 1e-6
+
+
+def test_pictures_have_the_momentum_of_all_parts():
+    pytest.importorskip("matplotlib")
+    motion = ph.solve(make("slug and wheel", np.linspace(0, 5, 20)))
+    motion.plot("momentum", "energy", "invariants")
+    motion.plot()
+
+
 def one_axis(**drive):
     """A body and a rotor on one axis: the speed has 1/Js + 1/(J - Js) per torque between them."""
     return ph.Scene(inertia=(1.0, 1.2, 1.5), omega=(0, 0, 0.4), times=np.linspace(0, 4, 81),
