@@ -1,6 +1,7 @@
 """Settings of the site: `make docs` builds it from this folder."""
 
 import os
+import re
 import sys
 from pathlib import Path
 
@@ -76,3 +77,12 @@ html_theme_options = {
     "light_css_variables": {"color-brand-primary": "#0b5fa5", "color-brand-content": "#0b5fa5"},
     "dark_css_variables": {"color-brand-primary": "#6cb6ff", "color-brand-content": "#6cb6ff"},
 }
+
+
+def escape_bars(app, what, name, obj, options, lines):
+    """Sizes as |r| are no substitutions."""
+    lines[:] = [re.sub(r"\|(\w+)\|", r"\\|\1\\|", line) for line in lines]
+
+
+def setup(app):
+    app.connect("autodoc-process-docstring", escape_bars)

@@ -161,8 +161,8 @@ std::string show(const Formula& formula) {
 }
 
 constexpr const char* formula_doc =
-    R"doc(Formula(function=None, *, text=None, let=None, potential=None, states=None, orbits=None, recognise=True,
-        **parameters)
+    "Formula(function=None, *, text=None, let=None, potential=None, states=None, orbits=None, recognise=True, "
+    R"doc(**parameters)
 
 A torque of your own as a formula: traced once from a Python function, or written as text.
 

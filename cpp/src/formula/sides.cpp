@@ -76,7 +76,7 @@ Program replace_switches(const Program& whole, const Guards& guards, const std::
 }
 
 /// The shares that keep the last outputs, the held rates, constant: of d/dt rate = b + A s, A s = -b. A rate may depend
-/// on time by itself, as on a belt that speeds up.
+/// on time, as on a belt that speeds up.
 Program hold(const Program& system, std::size_t states, std::size_t first, std::size_t count) {
   std::vector<Variable> variables;
   for (std::size_t i = 0; i < states; ++i) variables.push_back({Variable::Kind::state, static_cast<int>(i)});

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from .._scene.scene import Scene
 from ..torques import Custom, During
 
@@ -21,6 +23,7 @@ def to_formulas(scene: Scene) -> Scene:
     def write(torque: Torque) -> Torque:
         if isinstance(torque, During):
             return During(write(torque.torque), torque.windows)
-        return torque.as_formula(scene.inertia)
+        lasting: Any = torque
+        return lasting.as_formula(scene.inertia)
 
     return scene.replace(torques=[write(torque) for torque in scene.torques])

@@ -17,7 +17,7 @@ from .start import costs_of
 FITTED = 6         # candidates of a nutation that are fitted at most
 NEAR = 4.0         # cost over the best one's beyond which a candidate is not fitted
 FIRST = 40 * np.pi   # over the span: the rates of the first scan; each next one has four times as many
-NEAR = 0.2        # of the median cost: where the best is above it, none is near
+USUAL = 0.2       # of the median cost: where the best is above it, none is near
 SHORT = 8          # evaluations of a first fit
 WORK = 6e6         # samples times trials of the last scan
 MOST = 96.0        # turns in the mean spacing of samples at random times: the last scan
@@ -58,7 +58,7 @@ def _fit(problem: Problem, state: State, moments: Array, omega: Array, pool: Poo
         moments = np.broadcast_to(state.moments, moments.shape)
     costs, attitude = costs_of(problem.data, omega, moments, np.inf, rng)
     usual = float(np.median(costs)) if len(costs) >= 4 else np.inf
-    if costs.min() > NEAR * usual:
+    if costs.min() > USUAL * usual:
         return
     tried = []
     for k in np.argsort(costs, kind="stable")[:FITTED]:

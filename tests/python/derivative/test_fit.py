@@ -151,7 +151,7 @@ def test_the_minimum_is_scipys():
         other = scipy.least_squares(found.problem.fun, 1e-4 * rng.normal(size=8), found.problem.jac, loss=loss,
                                     x_scale="jac", xtol=1e-12, ftol=1e-12)
         assert found.cost == pytest.approx(other.cost, rel=1e-6), loss
-        assert found.state.moved(other.x, found.problem.slices).omega == pytest.approx(found.omega, abs=1e-4)
+        assert found.state.displaced(other.x, found.problem.slices).omega == pytest.approx(found.omega, abs=1e-4)
 
 
 def test_an_outlier_does_little_under_a_robust_loss():

@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 
+#include "polhode/solve/closed_form.hpp"
 #include "solve/effect/bound.hpp"
 #include "solve/effect/torque_size.hpp"
 #include "solve/ground/formulas.hpp"
@@ -83,6 +84,7 @@ std::optional<Negligible> find_negligible(const Scene& scene, const SolveOptions
   if (std::all_of(times.begin(), times.end(), [&](double t) { return t == scene.t0(); })) return std::nullopt;
   const Wants want{scene.want().omega || !options.events.empty(), scene.want().attitude || !options.events.empty()};
   if (clearly_matters(scene, want, accuracy)) return std::nullopt;
+  if (find_closed_form_record(scene, compute_facts(scene)) != nullptr) return std::nullopt;   // nothing is gained
 
   std::vector<std::size_t> acting;
   for (std::size_t i = 0; i < torques.size(); ++i)
