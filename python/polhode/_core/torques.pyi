@@ -318,6 +318,25 @@ class OrbitGradient:
         ...
     def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
         ...
+    def as_formula(self, inertia: typing.Any = None) -> Formula:
+        """
+        Return the same torque as a formula, which is never replaced.
+
+        Parameters
+        ----------
+        inertia : InertiaTensor or array_like, optional
+            Of the body, for a torque that depends on it [kg m^2].
+
+        Returns
+        -------
+        Formula
+            With `recognise` False, and with the parameters of the torque by their names.
+
+        Raises
+        ------
+        InvalidInput
+            For a torque that depends on the inertia, without it.
+        """
     def value(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, inertia: typing.Any = None, states: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
         """
         Return the torque at one state.
@@ -520,8 +539,7 @@ class AngularDamping:
         """
 class Formula:
     """
-    Formula(function=None, *, text=None, let=None, potential=None, states=None, orbits=None, recognise=True,
-            **parameters)
+    Formula(function=None, *, text=None, let=None, potential=None, states=None, orbits=None, recognise=True, **parameters)
 
     A torque of your own as a formula: traced once from a Python function, or written as text.
 
