@@ -120,8 +120,8 @@ std::string show(const Rotor& rotor) {
 }
 
 constexpr const char* rotor_doc =
-    R"doc(Rotor(axis, *, momentum=None, inertia=None, speed=None, free=False, during=None,
-      torque=0.0, viscous=0.0, coulomb=0.0, max_torque=None, max_speed=None, let=..., parameters=...)
+    "Rotor(axis, *, momentum=None, inertia=None, speed=None, free=False, during=None, torque=0.0, viscous=0.0, "
+    R"doc(coulomb=0.0, max_torque=None, max_speed=None, let=..., parameters=...)
 
 A symmetric rotor on an axis fixed in the body: a wheel, a propeller, a spinning platform.
 

@@ -1097,8 +1097,7 @@ class HeavyTop(exact._ClosedForm):
         """
 class Rotor:
     """
-    Rotor(axis, *, momentum=None, inertia=None, speed=None, free=False, during=None,
-          torque=0.0, viscous=0.0, coulomb=0.0, max_torque=None, max_speed=None, let=..., parameters=...)
+    Rotor(axis, *, momentum=None, inertia=None, speed=None, free=False, during=None, torque=0.0, viscous=0.0, coulomb=0.0, max_torque=None, max_speed=None, let=..., parameters=...)
 
     A symmetric rotor on an axis fixed in the body: a wheel, a propeller, a spinning platform.
 

@@ -97,8 +97,8 @@ def put(scene: Scene, group: str, value: Array) -> Scene:
         if isinstance(holder, torques.Formula):
             made = holder.with_parameters(**{field: new})
         else:
-            names = [name for name in dir(holder) if not name.startswith("_") and name != "traits"]
-            fields = [name for name in names if not callable(getattr(holder, name))]
+            public = [name for name in dir(holder) if not name.startswith("_") and name != "traits"]
+            fields = [name for name in public if not callable(getattr(holder, name))]
             made = type(holder)(**{**{name: getattr(holder, name) for name in fields}, field: new})
         if isinstance(items[index], torques.During):
             made = torques.During(made, items[index].windows)

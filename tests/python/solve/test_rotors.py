@@ -220,7 +220,7 @@ BAD_ROTORS = [
     (((0, 0, 1),), {}, "Rotor.momentum: must be given, or inertia and speed in its place, got none"),
     (((0, 0, 1),), {"momentum": 1, "speed": 1}, r"Rotor.momentum: must be left out beside a speed, got 1 \(give iner"),
     (((0, 0, 1),), {"inertia": 1e300, "speed": 1e300}, "Rotor.speed: must be such that inertia times speed is finite"),
-    (((0, 0, 1),), {"momentum": 1, "free": True, "during": (0, 1)}, r"Rotor.during: must be left out.*no motor"),
+    (((0, 0, 1),), {"momentum": 1, "free": True, "during": (0, 1)}, r"Rotor.during: must be left out.*always rotates"),
     (((0, 0, 1),), {"momentum": 1, "during": (1, 0)}, r"Rotor.during: must be pairs.*begin and end are swapped"),
     (((0, 0, 1),), {"momentum": 1, "free": 1}, "Rotor.free: must be True or False, got 1"),
 ]
