@@ -76,10 +76,10 @@ def _torque_models() -> list[Any]:
             continue
         fields: dict[str, Any] = {"kind": (Literal[key], ...), "during": (kind.windows | None, None)}
         several = len(records) > 1   # of which the keys decide
+        types = {"real": kind.number, "vector": kind.vector, "orbit": str}
         for parameter in (p for one in records for p in one["parameters"]):
             default = ... if parameter["default"] is None else parameter["default"]
             if several:
-                types = {"real": kind.number, "vector": kind.vector, "orbit": str}
                 fields[parameter["name"]] = (types[parameter["kind"]] | None, None)
                 continue
             if parameter["kind"] == "matrix":
@@ -87,7 +87,6 @@ def _torque_models() -> list[Any]:
             elif parameter["kind"] == "choice":
                 fields[parameter["name"]] = (Literal[tuple(parameter["choices"])], default)
             else:
-                types = {"real": kind.number, "vector": kind.vector, "orbit": str}
                 fields[parameter["name"]] = (types[parameter["kind"]], default)
         models.append(model(record["name"], **fields))
     return models

@@ -58,7 +58,8 @@ def _torque(torque: Any, i: int, orbits: Names) -> dict[str, Any]:
     return entry | {name: orbits.find(value) if isinstance(value, Orbit) else value for name, value in values.items()}
 
 
-def _rotor(rotor: Any) -> dict[str, Any]:
+def list_keywords(rotor: Any) -> dict[str, Any]:
+    """Return the keywords that make an equal rotor."""
     names = ("axis", "momentum", "inertia", "speed", "free", "during", "torque", "let", "parameters", "viscous",
              "coulomb", "max_torque", "max_speed")
     drive = {"torque": 0.0, "viscous": 0.0, "coulomb": 0.0, "let": {}, "parameters": {}}
@@ -86,7 +87,7 @@ def to_toml(scene: Scene) -> str:
     for entry in entries:
         _table(lines, "[[torques]]", entry)
     for rotor in scene.rotors:
-        _table(lines, "[[rotors]]", _rotor(rotor))
+        _table(lines, "[[rotors]]", list_keywords(rotor))
     if scene.damper is not None:
         _table(lines, "[damper]", {name: getattr(scene.damper, name) for name in ("inertia", "viscous", "rates")})
     return "\n".join(lines) + "\n"

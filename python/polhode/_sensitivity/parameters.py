@@ -9,6 +9,7 @@ import numpy as np
 from .. import _core, torques
 from .._core import InvalidInput, Rotor
 from .._scene.scene import Scene
+from .._scene.write import list_keywords
 from .rotations import Array
 
 
@@ -90,9 +91,7 @@ def put(scene: Scene, group: str, value: Array) -> Scene:
     shape = np.shape(_read(holder, field))
     new: Any = value.reshape(shape) if shape else float(value[0])
     if what == "rotors":
-        names = ("axis", "momentum", "inertia", "speed", "free")
-        given = {name: getattr(holder, name) for name in names if getattr(holder, name) is not None}
-        made: Any = Rotor(**{**given, **({"during": holder.during} if holder.during else {}), field: new})
+        made: Any = Rotor(**{**list_keywords(holder), field: new})
     else:
         if isinstance(holder, torques.Formula):
             made = holder.with_parameters(**{field: new})

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import polhode as ph
+from polhode._sensitivity.parameters import put
 
 REFERENCE = json.loads((pathlib.Path(__file__).parents[2] / "reference/driven_rotors.json").read_text(encoding="utf-8"))
 FULL = [[2.0, 0.1, -0.2], [0.1, 2.5, 0.05], [-0.2, 0.05, 1.7]]
@@ -239,3 +240,15 @@ def test_bad_dampers_are_refused_in_one_sentence(make_it, words):
     with pytest.raises(ph.InvalidInput) as refusal:
         make_it()
     assert words in str(refusal.value) and "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize("rotor", [
+    ph.Rotor((0, 0, 1), inertia=0.02, speed=10.0, free=True, torque="gain * omega.x - 0.01 * speed", viscous=1e-4,
+             coulomb=1e-5, max_torque=0.1, parameters={"gain": 0.3}),
+    ph.Rotor((0, 0, 1), inertia=0.02, speed=10.0, during=[]),
+    ph.Rotor((0, 0, 1), inertia=0.02, speed=10.0, during=[(0, 1)]),
+])
+def test_a_trial_of_a_fit_keeps_all_else_of_a_rotor(rotor):
+    scene = ph.Scene(inertia=(1, 2, 3), omega=(0.1, 0.2, 0.3), rotors=[rotor], times=[0, 1])
+    assert put(scene, "rotors.0.speed", np.array([10.0])).rotors[0] == rotor
+    assert put(scene, "rotors.0.speed", np.array([11.0])).rotors[0].speed == 11.0
