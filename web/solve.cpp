@@ -5,14 +5,15 @@
 
 #include "polhode/solve/plan.hpp"
 #include "polhode/solve/solve.hpp"
+#include "polhode/torque/formula.hpp"
 #include "polhode/torque/gravity.hpp"
 
-// Any heavy body with a rotor, by the plan or by a method of choice, for a page.
+// Any heavy body with a rotor and a torque as text, by the plan or by a method of choice, for a page.
 #define POLHODE_EXPORT(name) extern "C" __attribute__((export_name(#name)))
 
 namespace {
 std::vector<double> room;
-std::string text;
+std::string text, torque;
 std::optional<polhode::Motion> motion;
 }  // namespace
 
@@ -28,6 +29,12 @@ POLHODE_EXPORT(reserve_text) char* reserve_text(int n) {
   return text.data();
 }
 
+/// A place for n characters of a torque in body axes, as in a scene file. Without characters there is none.
+POLHODE_EXPORT(reserve_formula) char* reserve_formula(int n) {
+  torque.assign(static_cast<std::size_t>(n), ' ');
+  return torque.data();
+}
+
 /// Solves a scene at n times. `start`: moments (3), omega (3), attitude (4), weight, arm (3), rotor's axis (3) and
 /// momentum. The text names a method, or is empty for the plan. A step of 0 leaves it to the accuracy.
 POLHODE_EXPORT(solve_scene)
@@ -40,6 +47,7 @@ int solve_scene(const double* start, const double* t, int n, double accuracy, do
                    .attitude = {s[6], s[7], s[8], s[9]},
                    .times = std::vector<double>(t, t + n)};
   if (s[10] != 0.0) parts.torques.emplace_back(torques::Gravity(s[10], {s[11], s[12], s[13]}));
+  if (!torque.empty()) parts.torques.emplace_back(torques::Formula(polhode::formula::Text{.torque = torque}));
   if (s[17] != 0.0) parts.rotors.emplace_back(RotorParts{.axis = {s[14], s[15], s[16]}, .momentum = s[17]});
   SolveOptions options;
   if (!text.empty()) options.method = text;

@@ -21,8 +21,8 @@ PIXELS = """(() => { const c = document.getElementById('body');
   return c.getContext('2d').getImageData(0, 0, c.width, c.height).data.reduce((h, x) => (31 * h + x) | 0, 7); })()"""
 AT = """(t => { const slider = document.getElementById('time'); slider.value = t;
   slider.dispatchEvent(new Event('input')); })"""
-SET = """((id, value) => { const field = document.getElementById(id); field.value = value;
-  field.dispatchEvent(new Event('input')); })"""
+SET = """((id, value, event = 'input') => { const field = document.getElementById(id); field.value = value;
+  field.dispatchEvent(new Event(event)); })"""
 NEXT = "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))"
 
 
@@ -55,9 +55,14 @@ def try_page(page: Path, width: int, theme: str, folder: Path) -> list[str]:
         check(browser.run("document.getElementById('refusal').hidden"), "the page does not live on after a refusal")
         check("w2=7" in browser.run("location.hash"), "the link does not hold the scene")
         check("[times]" in browser.run("playground.sceneText()"), "no scene.toml")
-        for preset in ("top", "wheel", "disk"):
+        for preset in ("top", "wheel", "disk", "brake"):
             browser.run(f"{SET}('preset', '{preset}')"), browser.run(NEXT)
             check(browser.run("document.getElementById('refusal').hidden"), f"{preset} is refused")
+        check('kind = "formula"' in browser.run("playground.sceneText()"), "the scene file has no torque")
+        browser.run(f"{SET}('torque', '-omgea', 'change')")
+        check("omgea" in browser.run("document.getElementById('refusal').textContent"), "a misspelt torque is not refused")
+        browser.run(f"{SET}('torque', '', 'change')"), browser.run(NEXT)
+        check(browser.run("document.getElementById('refusal').hidden"), "the page does not live on after a wrong torque")
         check(not browser.run(OUTSIDE), f"fields stick out of their box: {browser.run(OUTSIDE)}")
         check(browser.run(LETTERS) >= 12, f"the chart's letters are {browser.run(LETTERS):.1f} pixels high")
         check(browser.run("document.documentElement.scrollWidth") <= width, f"wider than {width} pixels")

@@ -10,8 +10,9 @@ const PRESETS = {
   disk: { a: 0.5, b: 0.5, c: 0.04, w1: 1, w2: 0, w3: 8 },
   top: { a: 0.4, b: 0.3, c: 0.2, w1: 0, w2: 0, w3: 14, weight: 10, arm: 0.12, tilt: 30 },
   wheel: { a: 0.7, b: 0.25, c: 0.05, w1: 0.3, w2: 3, w3: 0.1, wheel: 0.2 },
+  brake: { a: 0.3, b: 0.22, c: 0.05, w1: 2, w2: 3, w3: 4, torque: "-0.002 * omega * norm(omega)" },
 };
-const REST = { weight: 0, arm: 0.1, tilt: 0, wheel: 0, rate: 60 };
+const REST = { weight: 0, arm: 0.1, tilt: 0, wheel: 0, rate: 60, torque: "" };
 const METHODS = ["euler", "semi_euler", "catto", "jolt", "buss", "split", "dmv2", "rk4", "free"];
 const SPAN = 20, FRAMES = 120;   // [s], and states a second
 const DENSITY = 900;             // [kg/m^3]
@@ -31,7 +32,8 @@ function massAndMoments() {
   return own;
 }
 
-const isFree = () => !(state.weight > 0) && !state.wheel;
+const isFree = () => !(state.weight > 0) && !state.wheel && !state.torque;
+const solve = (t, options = {}) => solveScene(cores.solve, fullStart(), t, { torque: state.torque, ...options });
 
 function start() {
   const half = state.tilt * Math.PI / 360;
@@ -62,7 +64,7 @@ function recompute() {
   const began = performance.now();
   guarded(() => {
     exact = other = null;
-    exact = isFree() ? throwFree(cores.free, start(), times, SPAN) : solveScene(cores.solve, fullStart(), times);
+    exact = isFree() ? throwFree(cores.free, start(), times, SPAN) : solve(times);
   });
   state.cost = performance.now() - began;
   polhode = exact && traceContact(exact.omega);
@@ -76,9 +78,9 @@ function compare() {
   const step = 1 / state.rate, curves = [];
   const grid = Float64Array.from({ length: SPAN * state.rate + 1 }, (_, i) => i * step);
   guarded(() => {
-    const truth = isFree() ? throwFree(cores.free, start(), grid, SPAN) : solveScene(cores.solve, fullStart(), grid);
+    const truth = isFree() ? throwFree(cores.free, start(), grid, SPAN) : solve(grid);
     for (const name of METHODS) {
-      const run = solveScene(cores.solve, fullStart(), grid, { method: name, step });
+      const run = solve(grid, { method: name, step });
       curves.push({ name, t: grid, error: angles(run.attitude, truth.attitude), chosen: name === state.method });
       if (name === state.method) other = { ...run, rate: state.rate };
     }
@@ -159,7 +161,7 @@ function frame(last) {
 }
 
 function show() {
-  for (const id of FIELDS) get(id).value = state[id];
+  for (const id of [...FIELDS, "torque"]) get(id).value = state[id];
   for (const out of document.querySelectorAll("form output")) out.textContent = Number(state[out.htmlFor.value]).toFixed(2);
   get("method").value = state.method;
 }
@@ -167,13 +169,14 @@ function show() {
 /// The link holds the scene.
 function save() {
   const words = new URLSearchParams();
-  for (const id of [...FIELDS, "method"]) words.set(id, state[id]);
+  for (const id of [...FIELDS, "method", "torque"]) words.set(id, state[id]);
   history.replaceState(null, "", `#${words}`);
 }
 
 function restore() {
   for (const [id, value] of new URLSearchParams(location.hash.slice(1))) {
     if (FIELDS.includes(id) && Number.isFinite(Number(value))) state[id] = Number(value);
+    if (id === "torque") state.torque = value;
     if (id === "method" && METHODS.includes(value)) state.method = value;
   }
 }
@@ -184,6 +187,7 @@ function sceneText() {
                  `attitude = [${start().slice(6).join(", ")}]`];
   if (state.weight > 0)
     lines.push("", "[[torques]]", 'kind = "gravity"', `weight = ${state.weight}`, `arm = [0.0, 0.0, ${state.arm}]`);
+  if (state.torque) lines.push("", "[[torques]]", 'kind = "formula"', `torque = ${JSON.stringify(state.torque)}`);
   if (state.wheel) lines.push("", "[[rotors]]", "axis = [0.0, 0.0, 1.0]", `momentum = ${state.wheel}`);
   lines.push("", "[times]", `span = ${SPAN.toFixed(1)}`, `samples = ${SPAN * 50 + 1}`, "");
   return lines.join("\n").replace(/(?<=[=\[, ])(-?\d+)(?=[,\]\n])/g, "$1.0").replace(/samples = (\d+)\.0/, "samples = $1");
@@ -193,6 +197,7 @@ function listen() {
   for (const id of FIELDS) get(id).addEventListener("input", event => {
     state[id] = Number(event.target.value), show(), recompute();
   });
+  get("torque").addEventListener("change", event => { state.torque = event.target.value.trim(), recompute(); });
   get("method").addEventListener("input", event => { state.method = event.target.value, recompute(); });
   get("preset").addEventListener("input", event => {
     Object.assign(state, REST, PRESETS[event.target.value]), clock = 0, show(), recompute();

@@ -42,10 +42,14 @@ export function throwFree({ wasm, numbers }, start, t, end) {
   return { omega: numbers(W, 3 * n).slice(), attitude: numbers(Q, 4 * n).slice(), period: wasm.period(), flips };
 }
 
-/// Any scene of the page, by the plan (method "") or a method with a step.
-export function solveScene({ wasm, numbers, textAt }, start, t, { method = "", step = 0, accuracy = 1e-9 } = {}) {
-  const n = t.length, letters = new TextEncoder().encode(method);
-  new Uint8Array(wasm.memory.buffer, wasm.reserve_text(letters.length), letters.length).set(letters);
+/// Any scene of the page, by the plan (method "") or a method with a step. `torque` is a formula, or empty.
+export function solveScene({ wasm, numbers, textAt }, start, t,
+                           { torque = "", method = "", step = 0, accuracy = 1e-9 } = {}) {
+  const n = t.length, write = (text, reserve) => {
+    const letters = new TextEncoder().encode(text);
+    new Uint8Array(wasm.memory.buffer, reserve(letters.length), letters.length).set(letters);
+  };
+  write(method, wasm.reserve_text), write(torque, wasm.reserve_formula);
   const at = wasm.reserve(18 + 8 * n), T = at + 144, W = T + 8 * n, Q = W + 24 * n;
   numbers(at, 18).set(start), numbers(T, n).set(t);
   wasm.solve_scene(at, T, n, accuracy, step, W, Q);

@@ -69,9 +69,10 @@ class Core:
         self.call("states", at + 80, n, at + 80 + 8 * n, at + 80 + 32 * n)
         return self.get(at + 80 + 8 * n, (n, 3)), self.get(at + 80 + 32 * n, (n, 4))
 
-    def solve(self, start, t, method="", step=0.0, accuracy=1e-9):
-        n, letters = len(t), method.encode()
-        self.memory.write(self.store, letters, self.call("reserve_text", len(letters)))
+    def solve(self, start, t, method="", step=0.0, accuracy=1e-9, torque=""):
+        n = len(t)
+        for text, reserve in ((method, "reserve_text"), (torque, "reserve_formula")):
+            self.memory.write(self.store, text.encode(), self.call(reserve, len(text.encode())))
         at = self.call("reserve", 18 + 8 * n)
         self.put(at, start), self.put(at + 144, t)
         self.call("solve_scene", at, at + 144, n, accuracy, step, at + 144 + 8 * n, at + 144 + 32 * n)
@@ -161,6 +162,35 @@ def test_solve_where_sums_of_three_are_grouped_otherwise(solve, name, method, st
     got, motion = run_both(solve, name, method, step)
     assert np.abs(got[0] - motion.omega).max() <= 1e-11 * np.abs(motion.omega).max()
     assert np.abs(got[1] - motion.attitude).max() <= 1e-11
+
+
+TORQUES = ["-0.1 * omega", "[0.1 * sin(t), 0, 0]", "-0.002 * omega * norm(omega)", "-attitude.xyz * attitude.w - 0.2 * omega",
+           "0.1 * where(sin(t) > 0, omega, -omega)", "to_body([0, 0, 0.1 * t])"]
+
+
+@pytest.mark.parametrize("torque", TORQUES)
+def test_a_torque_that_is_typed_acts_as_in_python(solve, torque):
+    """Sums of products may stand in another order: the compiler chooses which factor of C++ is evaluated first."""
+    moments, omega, attitude, more = SCENES["heavy"]
+    t = np.linspace(0, 10, 101)
+    scene = ph.Scene(inertia=moments, omega=omega, attitude=attitude, times=t,
+                     torques=[ph.torques.Gravity(more[0], more[1:4]), ph.torques.Formula(text=torque)])
+    motion = ph.solve(scene, accuracy=1e-9)
+    got = solve.solve([*moments, *omega, *scene.attitude, *more], t, torque=torque)
+    assert np.abs(got[0] - motion.omega).max() <= 1e-12 * np.abs(motion.omega).max()
+    assert np.abs(got[1] - motion.attitude).max() <= 1e-12
+    without = solve.solve([*moments, *omega, *scene.attitude, *more], t)[0]
+    assert np.abs(without - got[0]).max() > 1e-3   # the torque acts, and the next scene has none
+
+
+@pytest.mark.parametrize("torque", ["-0.1 * omgea", "omega *", "1.0", "import os", "(" * 500, "\u00b5 * omega"])
+def test_a_torque_that_is_no_formula_is_refused_as_in_python(solve, torque):
+    with pytest.raises(Refused) as told:
+        solve.solve([0.2, 0.4, 0.52, 1, 2, 3, *START, *rest()], [1.0], torque=torque)
+    with pytest.raises(ph.InvalidInput) as same:
+        ph.torques.Formula(text=torque)
+    assert str(told.value).splitlines()[0] == str(same.value).splitlines()[0]
+    assert np.isfinite(solve.solve([0.2, 0.4, 0.52, 1, 2, 3, *START, *rest()], [1.0])[0]).all()
 
 
 def test_close_to_every_instruction_set(free):
