@@ -268,17 +268,21 @@ void ColumnRun::cross(const Piece& before, const std::vector<bool>& from, const 
     if (parameter.of == Of::torque_windows) {
       const auto& during = std::get<torques::During>(scene_.torques()[parameter.index]);
       const Window& window = during.windows()[static_cast<std::size_t>(parameter.field)];
-      if ((parameter.component == 0 ? window.begin : window.end) != t) continue;
+      if ((parameter.component == 0 ? window.begin : window.end) != t || t == scene_.t0()) continue;
       const Vector3d none = accelerate(at, {}, h_from);
       const Vector3d own = accelerate(at, {to_any(during.torque())}, h_from) - none;
       at.add(0, c, parameter.component == 0 ? -sign * own : sign * own);
     } else if (parameter.of == Of::rotor_windows) {
       const Window& window = scene_.rotors()[parameter.index].windows()[static_cast<std::size_t>(parameter.field)];
-      if ((parameter.component == 0 ? window.begin : window.end) != t) continue;
-      at.add(0, c, accelerate(at, before.torques, h_from) - accelerate(after, before.torques, h_to));
-      at.add(3, c, at.state.omega - after.state.omega);
+      if ((parameter.component == 0 ? window.begin : window.end) != t || t == scene_.t0()) continue;
+      // This end alone moves, whatever else starts or stops here.
+      const Vector3d own = ((parameter.component == 0) == forward ? 1.0 : -1.0) * momenta_[parameter.index];
+      Moment moved{at.state, {}, 0};
+      moved.state.omega += compute_rate_jump(scene_.inertia_B(), own);
+      at.add(0, c, accelerate(at, before.torques, h_from) - accelerate(moved, before.torques, h_from + own));
+      at.add(3, c, at.state.omega - moved.state.omega);
       const std::vector<double> from_rates = find_state_rates(at, before.torques),
-                                to_rates = find_state_rates(after, before.torques);
+                                to_rates = find_state_rates(moved, before.torques);
       for (std::size_t i = 0; i < states_; ++i) at.at(6 + i, c) += from_rates[i] - to_rates[i];
     }
   }
@@ -356,7 +360,7 @@ void ColumnRun::follow(const std::vector<Piece>& pieces, const std::vector<std::
     if (!last) continue;
     std::vector<bool> then;
     for (const Rotor& rotor : scene_.rotors()) then.push_back(rotor.rotates_at(at.state.t));
-    if (forward && then != rotating) cross(piece, rotating, then, forward, at);
+    if (forward) cross(piece, rotating, then, forward, at);   // as if later samples followed
     put_now();
   }
 }

@@ -72,7 +72,8 @@ void add_windows(std::span<const Window> windows, Of of, std::size_t index, cons
 /// What a number of a formula's input has after the name: nothing, "_x" of three, or "_0".
 std::string name_part(int i, int count) {
   if (count == 1) return "";
-  return count == 3 ? std::string("_") + "xyz"[i] : "_" + std::to_string(i);
+  std::string part = "_";   // GCC 12 sees an overlap in "_" + a string
+  return count == 3 ? part.append(1, "xyz"[i]) : part.append(std::to_string(i));
 }
 
 std::vector<SceneParameter> find_torque_parameters(const Scene& scene, std::string_view group, const GroupName& name) {

@@ -7,59 +7,35 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from ball_edges import SPANS, Ball
 
 import polhode as ph
 
 FOLDER = Path(__file__).parents[3] / "benchmarks/planner"
 sys.path.insert(0, str(FOLDER))
-from family.edges import CLOCKS, draw_edges, make_scene, shift  # noqa: E402
+from family.edges import CLOCKS, draw_edges, make_scene  # noqa: E402
 from family.exact import compute_exact, count_outside  # noqa: E402
 
 sys.path.remove(str(FOLDER))
-SPANS = {"forward": (0.0, 0.0, 3.0), "backward": (3.0, 0.0, 3.0), "middle": (1.5, 0.0, 3.0),
-         "negative": (-9.0, -12.0, -6.0), "far": (1e8, 1e8, 1e8 + 3.0), "long": (0.0, 0.0, 1e8),
-         "tiny": (0.0, 0.0, 1e-60)}
-
-
-def make(kind, name, last_at_edge=False):
-    """A ball that a torque or a rotor of a window changes about z, and its exact rates as fractions."""
-    t0, begin, end = SPANS[name]
-    edges = [begin + 0.3 * (end - begin), begin + 0.6 * (end - begin)]
-    times = sorted({begin, end, *(shift(edge, count) for edge in edges for count in (-2, -1, 0, 1, 2))})
-    times = [t for t in times if (t >= t0 or begin < t0) and (not last_at_edge or t <= edges[1])]
-    start = 1.5 / (end - begin)   # the proof steps through some radians
-    size = 2 * start if kind == "rotor" else 1e3 * start / (end - begin)
-    if kind == "torque":
-        options = {"torques": [ph.torques.During(ph.torques.Constant((0, 0, size)), [edges])]}
-    elif kind == "formula":
-        law = ph.torques.Formula(text=f"[0, 0, {size!r}]", recognise=False)
-        options = {"torques": [ph.torques.During(law, [edges])]}
-    else:
-        options = {"rotors": [ph.Rotor((0, 0, 1), momentum=size, during=[edges])]}
-    scene = ph.Scene(inertia=(1, 1, 1), omega=(0, 0, start), t0=t0, times=times, **options)
-    low, high = map(Fraction, edges)
-
-    def rate(t):
-        return Fraction(size) * min(max(Fraction(t), low), high) if kind != "rotor" else -size * (low <= t < high)
-
-    return scene, [Fraction(start) + rate(t) - rate(t0) for t in times]
 
 
 @pytest.mark.parametrize("kind", ["torque", "rotor"])
 @pytest.mark.parametrize("name", SPANS)
 def test_proofs_hold_next_to_edges(kind, name):
-    scene, exact = make(kind, name)
+    ball = Ball(kind, name)
+    scene, exact = ball.scene, ball.rates()
     motion = ph.solve(scene, 1e-6, certify="proof")
     bounds = zip(motion.omega_lower[:, 2].tolist(), exact, motion.omega_upper[:, 2].tolist(), strict=True)
     assert all(lower <= rate <= upper for lower, rate, upper in bounds)
-    assert motion.error_kind == "proved"
+    assert motion.error_kind == "proved" or (kind, name) == ("torque", "least")   # steps end at 2^-900
 
 
 @pytest.mark.parametrize("method", [None, "exact", "taylor", "dop853"])
 @pytest.mark.parametrize("name", SPANS)
 @pytest.mark.parametrize("last_at_edge", [False, True])
 def test_samples_and_dense_output_of_rotors_at_edges(method, name, last_at_edge):
-    scene, exact = make("rotor", name, last_at_edge)
+    ball = Ball("rotor", name, last_at_edge)
+    scene, exact = ball.scene, ball.rates()
     motion = ph.solve(scene, 1e-9, method=method, dense=True)
     rates = np.array([float(rate) for rate in exact])
     near = 2e-15 * np.abs(rates).max()
@@ -71,11 +47,12 @@ def test_samples_and_dense_output_of_rotors_at_edges(method, name, last_at_edge)
 @pytest.mark.parametrize("name", SPANS)
 @pytest.mark.parametrize("kind", ["torque", "formula"])
 def test_samples_and_dense_output_of_torques_at_edges(method, name, kind):
-    scene, exact = make(kind, name)
+    ball = Ball(kind, name)
+    scene, exact = ball.scene, ball.rates()
     motion = ph.solve(scene, 1e-9, method=method, dense=True)
     rates = np.array([float(rate) for rate in exact])
     near = 1e-14 * np.abs(rates).max()
-    assert motion.error_kind == "bounded" or name == "far"   # pairs move the ends by two units: a limit there
+    assert motion.error_kind == "bounded" or name.startswith("far")   # pairs move the ends by two units: a limit there
     assert np.abs(motion.omega[:, 2] - rates).max() < near
     assert np.abs([motion(t)[0][2] for t in scene.times] - rates).max() < near
 

@@ -26,6 +26,7 @@ class EventTracker {
 
   EventTracker(const Event& event, double t, const double* y) : event_(&event) {
     side_ = sign(event.function(t, y));
+    is_zero_ = side_ == 0;
     t_ = t;
   }
 
@@ -36,7 +37,9 @@ class EventTracker {
     const int side = sign(value);
     const double start = t_;
     t_ = t;
-    if (side_ == 0 || side == side_) {
+    const bool stays_zero = side == 0 && is_zero_;   // it was found when it became zero
+    is_zero_ = side == 0;
+    if (side_ == 0 || side == side_ || stays_zero) {
       if (side_ == 0) side_ = side;
       return false;
     }
@@ -93,6 +96,7 @@ class EventTracker {
 
   const Event* event_;
   int side_ = 0;
+  bool is_zero_ = false;
   double t_ = 0.0, last_root_ = 0.0;
   bool found_ = false;
 };

@@ -77,6 +77,12 @@ class Proof {
     return last;
   }
 
+  /// Where a run that goes backward first ends.
+  double find_final() const {
+    const auto [least, most] = std::minmax_element(scene_.times().begin(), scene_.times().end());
+    return *most >= scene_.t0() ? enclosure_.end : enclosure_.begin;
+  }
+
   std::size_t count() const { return scene_.times().size(); }
   bool is_enclosed(std::size_t i) const {
     const auto bounded = [&](const std::vector<Interval>& rows, std::size_t width) {
@@ -156,7 +162,7 @@ class Proof {
       if (is_enclosed(i) || has_plain) add_sample(i, has_plain ? row : none);
       row += has_plain ? 1 : 0;
     }
-    motion_.t_reached = enclosure_.end;
+    motion_.t_reached = was_ended() ? enclosure_.ended_at : find_final();
     motion_.error = error_;
     motion_.error_kind = error_ <= accuracy_ ? "proved" : "limit";
     motion_.message = describe();
@@ -190,7 +196,7 @@ class Proof {
 
   std::string describe() const {
     if (was_ended()) {
-      return "the proof ended at t = " + to_text(enclosure_.end) + " s: " + enclosure_.ended +
+      return "the proof ended at t = " + to_text(enclosure_.ended_at) + " s: " + enclosure_.ended +
              "; the bounds of the samples so far hold";
     }
     if (error_ <= accuracy_)

@@ -119,7 +119,8 @@ class Run {
   bool end_here(Status status, const char* why) {
     // The steps so far reach a little further than a time rounded towards the start.
     const double t = reached(), bound = t - sign_ * 0x1p-50 * (std::abs(t) + std::abs(scene_.t0()));
-    (sign_ > 0 ? result_.end : result_.begin) = sign_ > 0 ? std::max(bound, scene_.t0()) : std::min(bound, scene_.t0());
+    result_.ended_at = sign_ > 0 ? std::max(bound, scene_.t0()) : std::min(bound, scene_.t0());
+    (sign_ > 0 ? result_.end : result_.begin) = result_.ended_at;
     result_.status = status;
     result_.ended = why;
     return false;

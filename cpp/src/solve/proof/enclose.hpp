@@ -24,6 +24,7 @@ struct Enclosure {
   double begin = 0.0, end = 0.0;   ///< the times between which the motion is enclosed [s]
   Status status = Status::finished;   ///< failed: the bounds became too wide, which is no failure of the motion
   std::string ended = {};          ///< why it ended early, in words
+  double ended_at = 0.0;           ///< and when [s]
   long steps = 0, rejected = 0;
 };
 

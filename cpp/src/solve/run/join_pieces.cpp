@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <span>
 
@@ -15,6 +16,49 @@ namespace polhode {
 namespace {
 
 bool is_exact(const Motion& motion) { return motion.plan.method == "exact"; }
+
+/// The sign of an event's function along a chain of pieces. A piece begins with the sign that the piece before it ended
+/// with: rounding at a join makes no zero, and hides none.
+class FollowedEvent {
+ public:
+  explicit FollowedEvent(const SceneEvent& event) : event_(&event) {}
+
+  /// The event of the next piece. It outlives neither this object nor the piece.
+  SceneEvent begin_piece(double begin) {
+    begin_ = farthest_ = begin;
+    return {[this](const State& state) { return follow(state); }, event_->direction, event_->terminal};
+  }
+
+  /// Whether a jump of the state takes the function through zero, in the event's direction.
+  bool is_crossed(const State& after) {
+    const int before = side_;
+    note(event_->function(after));
+    return before != 0 && side_ != before && (event_->direction == 0 || event_->direction == side_);
+  }
+
+  bool terminal() const { return event_->terminal; }
+
+ private:
+  void note(double value) {
+    if (value != 0.0) side_ = value > 0.0 ? 1 : -1;
+    else if (!is_zero_) side_ = -side_;   // an exact zero counts as crossed, once, as in each piece
+    is_zero_ = value == 0.0;
+  }
+
+  double follow(const State& state) {
+    const double value = event_->function(state), distance = std::abs(state.t - begin_);
+    if (state.t == begin_ && side_ != 0 && !std::isnan(value) && !(value == 0.0 && is_zero_))
+      return std::copysign(std::max(std::abs(value), std::numeric_limits<double>::min()), side_);
+    // Zeros are narrowed down behind the farthest time alone.
+    if (state.t == begin_ || distance > std::abs(farthest_ - begin_)) farthest_ = state.t, note(value);
+    return value;
+  }
+
+  const SceneEvent* event_;
+  int side_ = 0;
+  bool is_zero_ = false;
+  double begin_ = 0.0, farthest_ = 0.0;
+};
 
 /// Runs the pieces of each direction and joins their rows.
 class PieceRunner {
@@ -34,6 +78,9 @@ class PieceRunner {
   /// Returns false if a piece did not reach its end.
   bool run_direction(const std::vector<Piece>& pieces, const std::vector<std::size_t>& order, const Wanted& want) {
     State start = scene_.start();
+    events_.clear();
+    for (const SceneEvent& event : options_.events) events_.emplace_back(event);
+    for (FollowedEvent& event : events_) event.begin_piece(start.t).function(start);
     Vector3d h = scene_.rotor_momentum();
     std::size_t next = 0;
     // The zeros of a start that a closed form needs are kept through the pieces before it too.
@@ -53,20 +100,30 @@ class PieceRunner {
       if (const Vector3d h_piece = sum_momenta(piece.rotors, scene_.omega()); h_piece != h) {
         start.omega += compute_rate_jump(scene_.inertia_B(), h_piece - h);
         h = h_piece;
+        if (ends_at_jump(start)) return true;
       }
       const Scene part = make_piece_scene(scene_, piece, start, std::move(times), want);
       if (part.torque_sum().acting > 0) require_true_claims(part);
-      Motion motion = run_(part, piece, make_options(pieces.back().end));
+      Motion motion = run_(part, piece, make_options(piece, pieces.back().end));
       add(motion);
       place(part, motion, std::span(order).subspan(first, next - first), piece.end);
       const bool finished = motion.status == Status::finished;
       motion_.t_reached = finished ? piece.end : find_reached(motion, piece);
-      if (finished && !last) start = get_end(motion, piece.end, want, keep_zeros);
+      if (finished && !last) start = get_join(motion, piece.end, want, keep_zeros);
       motion_.status = motion.status;
       motion_.message = finished ? "" : motion.message;
       if (motion.status == Status::max_steps) motion_.message = describe_max_steps();
-      if (last && finished && forward) motion.end_jump = find_jump(part, piece.end);
+      bool ended = false;
+      if (last && finished && forward) {
+        motion.end_jump = find_jump(part, piece.end);
+        if (!options_.events.empty() && !motion.end_jump.isZero(0.0)) {
+          State after = get_end(motion, piece.end, want);
+          after.omega += motion.end_jump;
+          ended = ends_at_jump(after);
+        }
+      }
       if (options_.dense) keep_dense(std::move(motion), piece);
+      if (ended) return true;
       if (!finished) return motion_.status == Status::event;
       if (!last && wants_to_stop(pieces.back().end)) return false;
     }
@@ -81,8 +138,9 @@ class PieceRunner {
  private:
   std::size_t states() const { return static_cast<std::size_t>(motion_.extra.count); }
 
-  SolveOptions make_options(double last) const {
+  SolveOptions make_options(const Piece& piece, double last) {
     SolveOptions options = options_;
+    for (std::size_t i = 0; i < events_.size(); ++i) options.events[i] = events_[i].begin_piece(piece.begin);
     options.max_steps = options_.max_steps - motion_.stats.steps;
     if (options_.progress)
       options.progress = [this, last](double reached, double) { return options_.progress(reached, last); };
@@ -126,7 +184,7 @@ class PieceRunner {
     return motion.t.empty() ? piece.begin : motion.t.back();
   }
 
-  State get_end(const Motion& motion, double t, const Wanted& want, bool keep_zeros) {
+  State get_end(const Motion& motion, double t, const Wanted& want) const {
     const double* w = motion.omega.data() + motion.omega.size() - 3;
     State end{t, {w[0], w[1], w[2]}, scene_.attitude()};
     if (want.attitude) {
@@ -134,8 +192,30 @@ class PieceRunner {
       end.attitude = {q[0], q[1], q[2], q[3]};
     }
     if (states() > 0) end.states.assign(motion.states.end() - motion_.extra.count, motion.states.end());
+    return end;
+  }
+
+  /// The start of the next piece.
+  State get_join(const Motion& motion, double t, const Wanted& want, bool keep_zeros) {
+    const State end = get_end(motion, t, want);
     ++joins_;
     return perturb_joins_ ? perturb_state(end, is_exact(motion) ? 8.0 : 2.0, joins_, keep_zeros) : end;
+  }
+
+  /// Finds the events that a jump of the rates takes through zero.
+  /// @return whether a terminal one ended the run
+  bool ends_at_jump(const State& after) {
+    bool ended = false;
+    for (std::size_t i = 0; i < events_.size() && !ended; ++i) {
+      if (!events_[i].is_crossed(after)) continue;
+      motion_.events.push_back({static_cast<int>(i), after});
+      ended = events_[i].terminal();
+    }
+    if (!ended) return false;
+    motion_.status = Status::event;
+    motion_.message = "ended by a terminal event at t = " + polhode::to_text(after.t) + " s";
+    motion_.t_reached = after.t;
+    return true;
   }
 
   std::string describe_max_steps() const {
@@ -168,6 +248,7 @@ class PieceRunner {
   bool perturb_joins_;
   std::vector<unsigned char> reached_;
   Motion motion_;
+  std::vector<FollowedEvent> events_;
   int joins_ = 0;
   unsigned calls_ = 0;
   std::chrono::steady_clock::time_point last_call_ = std::chrono::steady_clock::now();
