@@ -9,6 +9,7 @@ import math
 from fractions import Fraction
 from operator import mul
 
+import numpy as np
 from mpmath import mp, mpf
 
 ORDER = 44
@@ -229,7 +230,13 @@ def compute_exact(numbers):
 
 
 def count_outside(motion, numbers, truth=None):
-    """How many numbers of the exact motion lie outside of a motion's bounds, and how many were judged."""
+    """How many numbers of the exact motion lie outside of a motion's bounds, and how many were judged.
+
+    Without a truth of all times only those are computed that have bounds."""
+    kept = slice(None)
+    if truth is None:
+        kept = np.isfinite(motion.omega_upper).all(axis=1) & np.isfinite(motion.attitude_upper).all(axis=1)
+        numbers = {**numbers, "times": motion.t[kept].tolist()}
     rows, body = truth or compute_exact(numbers)
     slack, scale = Fraction(1, 1 << (DIGITS - 35)), Fraction(1, 1 << body.bits)
     if min(abs(Fraction(t) - Fraction(numbers["t0"])) * body.time for t in numbers["times"]) < Fraction(1, 1 << 70):
@@ -237,7 +244,7 @@ def count_outside(motion, numbers, truth=None):
     outside = judged = 0
     for lower, upper, part, unit_ in ((motion.omega_lower, motion.omega_upper, slice(0, 3), body.time),
                                       (motion.attitude_lower, motion.attitude_upper, slice(3, 7), 1)):
-        for row, low, high in zip(rows, lower, upper, strict=True):
+        for row, low, high in zip(rows, lower[kept], upper[kept], strict=True):
             for x, a, b in zip(row[part], low.tolist(), high.tolist(), strict=True):
                 if math.isfinite(a) and math.isfinite(b):
                     judged += 1

@@ -101,6 +101,9 @@ def _check_plan(plan: Plan, scene: Scene, given: dict[str, Any], certify: bool |
         raise _core.InvalidInput("plan: must be made for this scene, got that of another")
 
 
+DEFAULT_STEPS = 10_000_000, 1_000_000   # of a run, and of a proof
+
+
 def check_max_steps(max_steps: int) -> int:
     """Return the number as an int that the core can take."""
     if not is_whole(max_steps) or not -(2**63) <= max_steps < 2**63:
@@ -119,7 +122,7 @@ def solve(
     rtol: float | None = None,
     atol: float | None = None,
     step: float | None = None,
-    max_steps: int = 10_000_000,
+    max_steps: int | None = None,
     dense: bool = False,
     formulation: str = "euler",
     leave_out: bool = True,
@@ -156,8 +159,9 @@ def solve(
         Absolute tolerance of a step, added to the relative one, in rad/s and in quaternion components.
     step : float, optional
         The step of a fixed-step method [s]. These methods require it, and refuse accuracy, rtol and atol.
-    max_steps : int
-        Stop after this number of steps. `motion.status` is then "max_steps".
+    max_steps : int, optional
+        Stop after this number of steps. `motion.status` is then "max_steps". The default is 10 million, and one million
+        of a proof, whose step costs about a hundred others.
     dense : bool
         Keep dense output, for ``motion(t)``.
     formulation : {"euler", "lagrangian"}
@@ -217,9 +221,10 @@ def solve(
             method = plan.wishes.get("method") if plan.pieces or plan.certify == "proof" else plan.method
         certify = plan.certify if certify else False
         given |= {"accuracy": accuracy, "method": method}
+    most_steps = check_max_steps(DEFAULT_STEPS[certify == "proof"] if max_steps is None else max_steps)
     with shown(progress, f"solving {scene.name}".strip()) as callback:
         answer = _core.solve(scene, {
-            **given, "certify": certify, "max_steps": check_max_steps(max_steps), "dense": require_bool(dense, "dense"),
+            **given, "certify": certify, "max_steps": most_steps, "dense": require_bool(dense, "dense"),
             "formulation": str(formulation), "leave_out": leave_out,
             "events": [_with_states(event, scene) for event in found] if scene.states else found,
             "progress": callback, "cost_factors": factors()}, planned)
@@ -230,7 +235,7 @@ def solve(
         asked["leave_out"] = False
     options = {name: value for name, value in given.items() if value is not None}
     options |= {"certify": certify} if certify is not True else {}
-    options |= {"max_steps": max_steps} if max_steps != 10_000_000 else {}
+    options |= {"max_steps": max_steps} if max_steps is not None else {}
     options |= {"formulation": formulation} if formulation != "euler" else {}
     options |= {} if leave_out else {"leave_out": False}
     motion = Motion(scene, answer, asked, options)
@@ -239,7 +244,7 @@ def solve(
             if value is not None:
                 raise _core.InvalidInput(f"{name}: must be left out with sensitivity=, which has an accuracy and all "
                                          f"times, got {value!r}")
-        motion.sensitivity = differentiate(scene, sensitivity, 1e-9 if accuracy is None else accuracy, side, max_steps,
+        motion.sensitivity = differentiate(scene, sensitivity, 1e-9 if accuracy is None else accuracy, side, most_steps,
                                            bool(certify))
     return motion
 

@@ -67,7 +67,8 @@ def run(
     rtol: Annotated[float | None, typer.Option(help="Relative tolerance of a step.")] = None,
     atol: Annotated[float | None, typer.Option(help="Absolute tolerance of a step.")] = None,
     step: Annotated[float | None, typer.Option(help="Step of a fixed-step method [s].")] = None,
-    max_steps: Annotated[int, typer.Option(help="Stop after this number of steps.")] = 10_000_000,
+    max_steps: Annotated[
+        int | None, typer.Option(help="Stop after this number of steps; 10 million, of a proof one million.")] = None,
     proof: Annotated[bool, typer.Option("--proof", help="Prove bounds of the exact motion.")] = False,
     output: Annotated[
         pathlib.Path | None, typer.Option("-o", "--output", help="Write all samples: .csv, .npz or .json.")] = None,

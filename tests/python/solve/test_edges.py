@@ -75,6 +75,15 @@ def test_random_scenes_in_fixed_point(index):
     assert outside == 0 and judged > 20
 
 
+def test_a_proof_that_ends_early_holds_as_far_as_it_goes():
+    """Back in time damping makes rates of two million rad/s: a proof to the end takes millions of steps."""
+    numbers = draw_edges(90431, 135)
+    motion = ph.solve(make_scene(numbers), numbers["accuracy"], certify="proof", max_steps=400)
+    assert motion.status == "max_steps" and motion.proved_span[0] < numbers["t0"] < motion.proved_span[1]
+    outside, judged = count_outside(motion, numbers)
+    assert outside == 0 and judged > 50
+
+
 def test_a_truth_of_other_numbers_lies_outside():
     numbers = draw_edges(1, 0)
     motion = ph.solve(make_scene(numbers), numbers["accuracy"], certify="proof")

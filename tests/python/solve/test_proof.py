@@ -4,6 +4,7 @@ import importlib.util
 import json
 import math
 import pickle
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -14,6 +15,7 @@ from proofs import find_outside, make_scene
 
 import polhode as ph
 from polhode import torques
+from polhode._solve import solve
 
 REFERENCE = Path(__file__).parents[2] / "reference"
 TRUTH = np.load(REFERENCE / "proof.npz")
@@ -187,6 +189,26 @@ def test_max_steps_and_progress_end_a_proof():
     calls = []
     stopped = ph.solve(make_chaotic(4000.0), certify="proof", progress=lambda t, last: calls.append((t, last)) or False)
     assert stopped.status == "stopped" and len(calls) == 1 and calls[0][1] == 4000.0
+
+
+def test_a_proof_that_ends_backward_says_when():
+    """Back in time damping makes the rates grow without end, and the steps become short."""
+    scene = ph.Scene(inertia=(1, 1.5, 2), omega=(0.1, 0.2, 0.3), torques=[ph.torques.Damping((0.9, 1, 1.1))], t0=1.0,
+                     times=[-30.0, -2.0, 0.0, 2.0])
+    motion = ph.solve(scene, 1e-6, certify="proof", max_steps=400)
+    assert motion.status == "max_steps" and motion.stats["steps"] == 400
+    ended = float(re.search(r"ended at t = (\S+) s", motion.message)[1])
+    assert -30 < ended < 0 and motion.proved_span[1] == 2.0 and ended <= motion.proved_span[0]
+
+
+def test_a_proof_has_fewer_steps_than_a_run_unless_asked(monkeypatch):
+    """A proof of an hour is not what a call without max_steps wants."""
+    scene = ph.Scene.load("S5")
+    assert solve.DEFAULT_STEPS[1] <= 1_000_000
+    monkeypatch.setattr(solve, "DEFAULT_STEPS", (7, 5))
+    assert ph.solve(scene, certify="proof").stats["steps"] == 5
+    assert ph.solve(scene, method="taylor", certify=False).stats["steps"] == 7
+    assert ph.solve(scene, certify="proof", max_steps=6).stats["steps"] == 6
 
 
 def test_plan_of_a_proof():
