@@ -1,6 +1,7 @@
 """Coverage-guided fuzzing of the readers of files, which are Python: `files.py KIND [options of libFuzzer]`.
 
-Needs atheris. The kinds, their seeds and their readers are those of tests/python/files/test_fuzz.py.
+Needs atheris. Without a kind it prints all of them. The kinds, their seeds and their readers are those of
+tests/python/files/test_fuzz.py.
 """
 
 import contextlib
@@ -60,4 +61,7 @@ def main(name, options):
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], sys.argv[2:])
+    if len(sys.argv) > 1:
+        main(sys.argv[1], sys.argv[2:])
+    else:
+        print(*test_fuzz.SEEDS)

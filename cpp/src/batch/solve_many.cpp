@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "batch/lane_scheduler.hpp"
+#include "batch/one_body.hpp"
 #include "batch/parallel.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/core/interrupt.hpp"
@@ -89,24 +90,10 @@ std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeS
     ++done;
   };
   const auto guarded = [&](std::size_t body, const auto& work) {
-    try {
-      work();
-    } catch (const InvalidInput& error) {
-      stopped = true;
-      throw InvalidInput("body " + std::to_string(body), "a scene that solve() accepts", error.what());
-    } catch (...) {
-      stopped = true;
-      throw;
-    }
+    work_on(body, "a scene that solve() accepts", stopped, work);
   };
-  const auto make_one = [&](std::size_t body) -> std::optional<Scene> {
-    if (refuse) return make_scene(body);
-    try {
-      return make_scene(body);
-    } catch (const InvalidInput& error) {
-      leave_out(body, error.what());
-      return std::nullopt;
-    }
+  const auto make = [&](std::size_t body) {
+    return make_one(make_scene, body, refuse, [&](const char* why) { leave_out(body, why); });
   };
   const LaneMethod* lanes = find_lane_method(options);
   std::vector<unsigned char> in_lanes(n, 0);
@@ -116,7 +103,7 @@ std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeS
       if (in_lanes[body] != 0 || stored[body] != 0) continue;
       guarded(body, [&] {
         if (!go_on(0.0, 0.0)) return;   // a closed form ends before it asks
-        const std::optional<Scene> scene = make_one(body);
+        const std::optional<Scene> scene = make(body);
         if (scene) store(body, *scene, solve(*scene, single), false);
       });
     }
@@ -133,7 +120,7 @@ std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeS
       for (std::size_t body = begin; body < end; ++body) {
         guarded(body, [&] {
           check_interrupt();
-          std::optional<Scene> made = make_one(body);
+          std::optional<Scene> made = make(body);
           if (!made) return;
           Scene scene = resolve_formulas(*made, AsCustom::no, recognitions);
           check_options(scene, options);

@@ -275,7 +275,7 @@ void ColumnRun::cross(const Piece& before, const std::vector<bool>& from, const 
     } else if (parameter.of == Of::rotor_windows) {
       const Window& window = scene_.rotors()[parameter.index].windows()[static_cast<std::size_t>(parameter.field)];
       if ((parameter.component == 0 ? window.begin : window.end) != t || t == scene_.t0()) continue;
-      // This end alone moves, whatever else starts or stops here.
+      // This end alone moves, also where others start or stop.
       const Vector3d own = ((parameter.component == 0) == forward ? 1.0 : -1.0) * momenta_[parameter.index];
       Moment moved{at.state, {}, 0};
       moved.state.omega += compute_rate_jump(scene_.inertia_B(), own);

@@ -55,7 +55,7 @@ def test_a_sample_does_not_depend_on_later_ones(kind, name):
 
 @pytest.mark.parametrize("want", [("omega",), ("attitude",)])
 @pytest.mark.parametrize("kind", KINDS)
-def test_columns_have_both_parts_whatever_the_scene_wants(kind, want):
+def test_columns_have_both_parts_for_every_want(kind, want):
     balls = Ball(kind, "middle"), Ball(kind, "middle", want=want)
     whole, part = (ph.solve(ball.scene, 1e-9, sensitivity=ball.groups()).sensitivity for ball in balls)
     np.testing.assert_array_equal(whole.d_omega, part.d_omega)
