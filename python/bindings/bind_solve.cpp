@@ -74,6 +74,13 @@ py::object view_part(const py::object& self) {
               answer.motion.plan.proof && (columns == 3 ? answer.want.omega : answer.want.attitude));
 }
 
+/// Bounds of the states' numbers by their names; None without a proof.
+template <std::vector<double> Motion::*part>
+py::object name_part(const Answer& answer) {
+  if (!answer.motion.plan.proof) return py::none();
+  return name_states(answer.states, answer.motion.*part);
+}
+
 /// @param plan  a PlannedScene of this scene that is to run; None to plan
 std::unique_ptr<Answer> solve_scene(const Scene& scene, const py::dict& given, py::handle plan) {
   SolveOptions options = to_solve_options(given);
@@ -137,6 +144,8 @@ void bind_solve(py::module_& m) {
       .def_property_readonly("omega_upper", &view_part<&Motion::omega_upper, 3>)
       .def_property_readonly("attitude_lower", &view_part<&Motion::attitude_lower, 4>)
       .def_property_readonly("attitude_upper", &view_part<&Motion::attitude_upper, 4>)
+      .def_property_readonly("states_lower", &name_part<&Motion::states_lower>)
+      .def_property_readonly("states_upper", &name_part<&Motion::states_upper>)
       .def_property_readonly("proved_span",
                              [](const Answer& answer) -> py::object {
                                if (!answer.motion.plan.proof) return py::none();

@@ -19,7 +19,7 @@ DIMENSIONS = {"omega": "axis", "attitude": "component"}
 UNITS = {"t": "s", "time": "s", "omega": "rad s-1", "attitude": "1", "t_reached": "s", "error": "1", "steps": "1"}
 TEXTS = {"omega": "angular velocity in body axes", "attitude": "unit quaternion (x, y, z, w), body to space",
          "time": "time since the epoch of the scene", "error": "error of all samples, NaN if not estimated"}
-STATES = "states."   # before the names of a formula's states
+STATES = ("states.", "states_lower.", "states_upper.")   # before the names of a formula's states
 SUFFIXES = (".npz", ".zarr")
 
 
@@ -44,11 +44,18 @@ def columns_of(name: str, array: Any) -> dict[str, Any]:
     """Return the columns of an array, such as omega_x, omega_y and omega_z."""
     if name.startswith(STATES):
         flat = array.reshape(-1, *array.shape[array.ndim - 1:]) if array.ndim > 1 else array
-        name = name.removeprefix(STATES)
-        return {name: flat} if flat.ndim == 1 else {f"{name}_{k}": flat[:, k] for k in range(flat.shape[1])}
+        own, tail = _split_state(name)
+        return ({own + tail: flat} if flat.ndim == 1
+                else {f"{own}_{k}{tail}": flat[:, k] for k in range(flat.shape[1])})
     base = name.removesuffix("_lower").removesuffix("_upper")
     tail = name.removeprefix(base)
     return {f"{base}_{axis}{tail}": array[..., k].reshape(-1) for k, axis in enumerate(COMPONENTS[base])}
+
+
+def _split_state(name: str) -> tuple[str, str]:
+    """Return a state's own name, and "_lower" or "_upper" of a bound."""
+    part, _, own = name.partition(".")
+    return own, part.removeprefix("states")
 
 
 def to_pandas(index: dict[str, Any], arrays: dict[str, Any]) -> Any:
@@ -67,9 +74,9 @@ def to_xarray(dims: tuple[str, ...], coordinates: dict[str, Any], arrays: dict[s
     variables = {}
     for name, array in arrays.items():
         if name.startswith(STATES):
-            own = name.removeprefix(STATES)
-            about_it = {"long_name": f"state {own} of a torque"}
-            variables[own] = ((*dims, f"{own}_component")[:array.ndim], array, about_it)
+            own, tail = _split_state(name)
+            about_it = {"long_name": f"state {own} of a torque" + (f", {tail[1:]} bound" if tail else "")}
+            variables[own + tail] = ((*dims, f"{own}_component")[:array.ndim], array, about_it)
             continue
         base = name.removesuffix("_lower").removesuffix("_upper")
         variables[name] = ((*dims, DIMENSIONS[base]), array, describe(name))

@@ -67,7 +67,8 @@ def _motion(about: dict[str, Any], arrays: dict[str, Any]) -> Motion:
     span = about["proved_span"]
     motion.__dict__.update(
         {name: arrays.get(name) for name in names},
-        states={name[7:]: array for name, array in arrays.items() if name.startswith("states.")}, scene=scene,
+        states=_named("states", arrays), scene=scene, **{
+            part: None if span is None else _named(part, arrays) for part in ("states_lower", "states_upper")},
         _answer=None, _options=wishes, t=arrays["t"],
         options=about["options"], status=str(about["status"]), _message=str(about["message"]), stats=about["stats"],
         error=float(about["error"]), error_kind=str(about["error_kind"]), asked=float(about["asked"]),
@@ -78,6 +79,10 @@ def _motion(about: dict[str, Any], arrays: dict[str, Any]) -> Motion:
     if "drift" in about:
         motion.__dict__["_drift"] = {str(name): float(value) for name, value in about["drift"].items()}
     return motion
+
+
+def _named(part: str, arrays: dict[str, Any]) -> dict[str, Any]:
+    return {name[len(part) + 1:]: array for name, array in arrays.items() if name.startswith(f"{part}.")}
 
 
 def _states(states: dict[str, Any]) -> dict[str, Any]:

@@ -84,6 +84,10 @@ def _motion(path: pathlib.Path, about: dict[str, Any], claims: dict[str, Claim])
             expected[f"states.rotor_momentum_{i}"] = ((reached,), REAL)
     if scene.get("damper") is not None:
         expected["states.damper_momentum"] = ((reached, 3), REAL)
+    for name in [name for name in expected if name.startswith("states.")]:
+        for bound in (name.replace("states.", f"states_{side}.", 1) for side in ("lower", "upper")):
+            if bound in claims:
+                expected[bound] = expected[name]
     return expected
 
 

@@ -39,7 +39,8 @@ class EventHit(NamedTuple):
 # How each part of the core's answer is converted.
 _PARTS: dict[str, Callable[[Any], Any]] = {
     **dict.fromkeys(("t", "omega", "attitude", "status", "stats", "error", "error_kind", "asked", "omega_lower",
-                     "omega_upper", "attitude_lower", "attitude_upper", "proved_span", "states"), lambda part: part),
+                     "omega_upper", "attitude_lower", "attitude_upper", "states_lower", "states_upper", "proved_span",
+                     "states"), lambda part: part),
     "plan": lambda part: part, "events": lambda part: tuple(EventHit(**hit) for hit in part),
 }
 
@@ -84,6 +85,8 @@ class Motion:
         infinite beyond the reach of the proof.
     attitude_lower, attitude_upper : ndarray, shape (n, 4), or None
         Of a proof: the same for the unit quaternion, of the sign of `attitude`.
+    states_lower, states_upper : dict of ndarray, or None
+        Of a proof: the same for `states`, by name. `error` leaves the states out.
     proved_span : tuple of float, or None
         Of a proof: the times between which every sample has the accuracy [s].
     sensitivity : Sensitivity, or None
@@ -104,6 +107,8 @@ class Motion:
     omega_upper: Floats | None
     attitude_lower: Floats | None
     attitude_upper: Floats | None
+    states_lower: dict[str, Floats] | None
+    states_upper: dict[str, Floats] | None
     proved_span: tuple[float, float] | None
     events: tuple[EventHit, ...]
     sensitivity: Sensitivity | None = None
@@ -310,7 +315,9 @@ class Motion:
     def _arrays(self) -> dict[str, Floats]:
         names = ("omega", "attitude", "omega_lower", "omega_upper", "attitude_lower", "attitude_upper")
         arrays = {name: array for name in names if (array := getattr(self, name)) is not None}
-        return arrays | {f"states.{name}": array for name, array in self.states.items()}
+        for part in ("states", "states_lower", "states_upper"):
+            arrays |= {f"{part}.{name}": array for name, array in (getattr(self, part) or {}).items()}
+        return arrays
 
     def _about(self) -> dict[str, Any]:
         """Everything but the arrays, for JSON."""

@@ -1,6 +1,7 @@
 """Proofs of formulas: drawn laws against 113 bits, other torques beside them, and what has no proof."""
 
 import json
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
@@ -114,6 +115,34 @@ def test_what_has_no_proof_is_refused_in_a_sentence():
             prove([Formula(text=text)])
         with pytest.raises(ph.InvalidInput, match=word):
             prove([During(Formula(text=text), [(0.0, 1.0)])])
-    wheel = Formula(lambda t, omega, attitude, p, s: (-s.h, {"h": omega}), states={"h": (0.0, 0.0, 0.0)})
-    with pytest.raises(ph.InvalidInput, match="states of its own"):
-        prove([wheel])
+
+
+def test_a_wheel_whose_momentum_is_a_state_has_the_bounds_of_a_rotor():
+    wheel = Formula(text="-cross(omega, h)", states={"h": {"start": (0.1, -0.2, 0.3), "rate": "[0, 0, 0]"}})
+    rotors = [ph.Rotor(axis=axis, momentum=h) for axis, h in zip(np.eye(3), (0.1, -0.2, 0.3), strict=True)]
+    one, other = prove([wheel], 1e-13), prove([], 1e-13, rotors=rotors)
+    assert one.error_kind == other.error_kind == "proved" and overlap(one, other)
+    assert find_width(one) < 1e-14
+    assert np.abs(one.states_upper["h"] - one.states_lower["h"]).max() < 1e-15
+    assert one.plan.state == "omega, attitude, h"
+
+
+def test_a_state_that_sums_the_time_and_its_square():
+    # Of exact numbers: z = t, y = t^2. One starts at 0 with the rate 0.
+    clock = Formula(text="[0, 0, 0]", states={"z": {"start": 0.0, "rate": "1"}, "y": {"start": 0.0, "rate": "2 * z"}})
+    motion = prove([clock], times=[-1.0, 0.0, 0.1, 0.25, 3.0])
+    assert motion.error_kind == "proved"
+    for name, power in (("z", 1), ("y", 2)):
+        lower, upper = motion.states_lower[name], motion.states_upper[name]
+        exact = [Fraction(t) ** power for t in motion.t]
+        assert all(Fraction(a) <= x <= Fraction(b) for a, x, b in zip(lower, exact, upper, strict=True))
+        assert (upper - lower).max() < 1e-14
+
+
+def test_states_survive_a_file(tmp_path):
+    motion = prove([Formula(text="-z * omega", states={"z": {"start": 0.1, "rate": "omega.x"}})])
+    motion.save(tmp_path / "motion.npz")
+    loaded = ph.load(tmp_path / "motion.npz")
+    for side in ("lower", "upper"):
+        assert np.array_equal(getattr(loaded, f"states_{side}")["z"], getattr(motion, f"states_{side}")["z"])
+    assert "z_lower" in motion.to_pandas() and "z_upper" in motion.to_xarray()

@@ -84,13 +84,14 @@ class Proof {
   }
 
   std::size_t count() const { return scene_.times().size(); }
+  std::size_t own() const { return static_cast<std::size_t>(scene_.count_states()); }
   bool is_enclosed(std::size_t i) const {
     const auto bounded = [&](const std::vector<Interval>& rows, std::size_t width) {
       for (std::size_t k = width * i; k < width * (i + 1) && !rows.empty(); ++k)
         if (!rows[k].is_bounded()) return false;
       return true;
     };
-    return bounded(enclosure_.omega, 3) && bounded(enclosure_.attitude, 4);
+    return bounded(enclosure_.omega, 3) && bounded(enclosure_.attitude, 4) && bounded(enclosure_.states, own());
   }
 
   /// The error of each sample: its value is the middle of its bounds.
@@ -147,6 +148,7 @@ class Proof {
 
   Motion finish() {
     motion_.start = scene_.start();
+    motion_.extra.count = scene_.count_states();
     motion_.plan = decision_.plan;
     motion_.asked = accuracy_;
     motion_.model = decision_.plan.model, motion_.state = decision_.plan.state;
@@ -192,6 +194,7 @@ class Proof {
     };
     add(enclosure_.omega, plain_.omega, 3, motion_.omega, motion_.omega_lower, motion_.omega_upper);
     add(enclosure_.attitude, plain_.attitude, 4, motion_.attitude, motion_.attitude_lower, motion_.attitude_upper);
+    add(enclosure_.states, plain_.states, own(), motion_.states, motion_.states_lower, motion_.states_upper);
   }
 
   std::string describe() const {

@@ -83,8 +83,6 @@ void require_provable(const Scene& scene, const SolveOptions& options) {
                         "min, max, clip, where or comparison");
     if (!formula->program(scene.inertia_B().matrix()).graph.ephemerides().empty())
       refuse_with_proof("certify", "a torque on an orbit", "bounds on the position in an orbit are not made yet");
-    if (!formula->states().empty())
-      refuse_with_proof("certify", "a Formula with states of its own", "a proof encloses the body's state alone");
   }
 }
 

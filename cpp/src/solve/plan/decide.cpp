@@ -23,9 +23,11 @@ bool loses_slow_rates(const Decision& decision) {
 /// Euler's equations, enclosed.
 Plan make_proof_plan(const Scene& scene) {
   const bool has_attitude = scene.want().attitude || scene.torque_sum().uses_attitude;
+  std::string state = has_attitude ? "omega, attitude" : "omega";
+  for (const formula::Input& one : scene.states()) state += ", " + one.name;
   return {.model = "euler",
           .method = "enclosure",
-          .state = has_attitude ? "omega, attitude" : "omega",
+          .state = std::move(state),
           .certify = true,
           .proof = true};
 }

@@ -16,7 +16,8 @@ Matrix make_matrix(const Matrix3d& m, double scale) {
   return result;
 }
 
-/// The axis of a rotor. Its direction may have been rounded to length 1, which moves it by less than 2^-51.
+}  // namespace
+
 Vector enclose_axis(const Rotor& rotor) {
   Vector a;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -27,19 +28,18 @@ Vector enclose_axis(const Rotor& rotor) {
   return a;
 }
 
-}  // namespace
+Interval enclose_start_momentum(const Rotor& rotor, const Vector3d& w_B) {
+  if (rotor.momentum()) return {*rotor.momentum()};
+  const Vector a = enclose_axis(rotor);
+  Interval speed(*rotor.speed());
+  for (std::size_t i = 0; i < 3 && rotor.free(); ++i) speed = speed + a[i] * Interval(w_B[static_cast<int>(i)]);
+  return Interval(*rotor.inertia()) * speed;
+}
 
 Vector enclose_momentum(const Rotor& rotor, const Vector3d& w_B) {
   if (rotor.is_driven()) return {};   // its momentum is a state
   const Vector a = enclose_axis(rotor);
-  Interval size;
-  if (rotor.momentum()) {
-    size = Interval(*rotor.momentum());
-  } else {
-    Interval speed(*rotor.speed());
-    for (std::size_t i = 0; i < 3 && rotor.free(); ++i) speed = speed + a[i] * Interval(w_B[static_cast<int>(i)]);
-    size = Interval(*rotor.inertia()) * speed;
-  }
+  const Interval size = enclose_start_momentum(rotor, w_B);
   return {size * a[0], size * a[1], size * a[2]};
 }
 

@@ -15,6 +15,12 @@ using Matrix = std::array<Vector, 3>;   // by rows
 /// h_B of a rotor: relative to the body, or absolute if it is free.
 Vector enclose_momentum(const Rotor& rotor, const Vector3d& w_B);
 
+/// The momentum about its axis of a free rotor at the start.
+Interval enclose_start_momentum(const Rotor& rotor, const Vector3d& w_B);
+
+/// The axis of a rotor. Its direction may have been rounded to length 1, which moves it by less than 2^-51.
+Vector enclose_axis(const Rotor& rotor);
+
 /// The inertia that moves with omega: without the axial moments of free rotors. All is divided by a power of two.
 Matrix enclose_inertia(const Scene& scene, double part);
 

@@ -61,6 +61,7 @@ BodyEquations::BodyEquations(const Scene& scene) : scene_(scene), has_attitude_(
   if (by_formulas_) has_attitude_ = has_attitude_ || std::any_of(torques_.begin(), torques_.end(), names_attitude);
   else choose_vectors();
   choose_units();
+  choose_state_units();
   attitude_ = orbit_index(orbits_.size());
 }
 
@@ -114,6 +115,51 @@ void BodyEquations::choose_units() {
     for (double* one : {&rate_, &pace_}) *one = std::clamp(*one, 0x1p-100, 0x1p100);
 }
 
+/// A state's size at the start, or what its rate makes of it in a radian.
+void BodyEquations::choose_state_units() {
+  state_units_ = formula::list_values(scene_.states());
+  const Quat& q = scene_.attitude();
+  const double attitude[4] = {q.x, q.y, q.z, q.w};
+  const TorqueInput in{scene_.t0(), scene_.omega().data(), attitude, scene_.inertia_B().matrix()};
+  for (const AnyTorque& torque : torques_) {
+    const torques::Formula* formula = find_formula(torque);
+    if (formula == nullptr || formula->states().empty()) continue;
+    const std::vector<double> outputs = formula->compute(in, formula::list_values(formula->states()));
+    std::size_t next = 3;
+    for (const formula::Input& state : formula->states()) {   // a vector has one unit
+      double size = 0.0;
+      for (const double start : state.values)
+        size = std::max({size, std::abs(start), std::abs(outputs[next++]) / pace_});
+      const formula::Place place = formula::find_place(scene_.states(), state.name);
+      const double unit = size > 0.0 && std::isfinite(size) ? std::clamp(nearest_power(size), 0x1p-100, 0x1p100) : 1.0;
+      std::fill_n(state_units_.begin() + place.first, place.count, unit);
+    }
+  }
+}
+
+/// A formula's start is exact. That of a momentum was rounded, where the scene computed it from speeds.
+std::vector<Interval> BodyEquations::enclose_states() const {
+  const std::vector<double> given = formula::list_values(scene_.states());
+  std::vector<Interval> states(given.begin(), given.end());
+  const auto replace = [&](const std::string& name, std::size_t i, double rounded, const Interval& exact) {
+    const std::size_t at = to_index(formula::find_place(scene_.states(), name).first) + i;
+    if (given[at] == rounded) states[at] = exact;
+  };
+  for (const Rotor& rotor : scene_.rotors()) {
+    if (!rotor.is_driven()) continue;
+    replace(rotor.state(), 0, rotor.compute_start_momentum(scene_.omega()),
+            enclose_start_momentum(rotor, scene_.omega()));
+  }
+  if (const std::optional<Damper>& damper = scene_.damper()) {
+    const Vector3d rounded = damper->inertia() * (scene_.omega() + damper->rates());
+    for (int i = 0; i < 3; ++i)
+      replace(damper->state(), to_index(i), rounded[i],
+              Interval(damper->inertia()) * (Interval(scene_.omega()[i]) + Interval(damper->rates()[i])));
+  }
+  for (std::size_t i = 0; i < states.size(); ++i) states[i] = states[i] * Interval(1.0 / state_units_[i]);
+  return states;
+}
+
 std::vector<Interval> BodyEquations::start() const {
   std::vector<Interval> y(to_index(size()));
   const Interval to_units = Interval(1.0) / Interval(rate_);
@@ -134,6 +180,8 @@ std::vector<Interval> BodyEquations::start() const {
     add({-sine, cosine, Interval()});
   }
   if (has_attitude_) std::copy(q.begin(), q.end(), y.begin() + static_cast<std::ptrdiff_t>(at));
+  const std::vector<Interval> states = enclose_states();
+  std::copy(states.begin(), states.end(), y.begin() + first_own());
   return y;
 }
 
@@ -302,7 +350,7 @@ std::unique_ptr<TaylorStep> BodyEquations::make_step(const std::vector<AnyTorque
                                                      const std::vector<bool>& rotating, double sign,
                                                      const StepSettings& settings) const {
   if (!by_formulas_) return std::make_unique<QuadraticStep>(make_system(torques, rotating, sign), settings);
-  const FormulaSystem system = make_formula_system(scene_, torques, rotating, {rate_, pace_, sign}, has_attitude_);
+  const FormulaSystem system = make_formula_system(scene_, torques, rotating, {rate_, pace_, sign, state_units_}, has_attitude_);
   return std::make_unique<FormulaStep>(system, settings);
 }
 

@@ -13,18 +13,22 @@ namespace polhode::proof {
 
 /// The variables of a scene: w_B / rate, vectors fixed in space and the radial and tangential vectors of orbits as seen
 /// from the body, and the quaternion where it is wanted. They are the same in every piece of the span. Formulas see the
-/// attitude alone: it then stands for the vectors.
+/// attitude alone: it then stands for the vectors. Their own states follow.
 class BodyEquations {
  public:
   /// @param scene  one without calls_custom()
   explicit BodyEquations(const Scene& scene);
 
-  int size() const { return attitude_ + (has_attitude_ ? 4 : 0); }
+  int size() const { return first_own() + static_cast<int>(state_units_.size()); }
   int attitude() const { return attitude_; }           ///< index of the quaternion's first component
+  int first_own() const { return attitude_ + (has_attitude_ ? 4 : 0); }   ///< index of the first state of a formula
+  /// The units of those states, powers of two; their order is that of Scene::states().
+  const std::vector<double>& state_units() const { return state_units_; }
   double rate() const { return rate_; }                ///< a power of two [rad/s]
   double pace() const { return pace_; }                ///< a power of two [1/s]; above rate() where damping is fast
 
-  /// The exact start. The attitude is normalised as real numbers are.
+  /// The exact start. The attitude is normalised as real numbers are, and the momenta of driven rotors and of a damper
+  /// are those of their speeds.
   std::vector<Interval> start() const;
 
   /// Which rotors rotate from one time to a later one without a break, or at a time.
@@ -48,6 +52,8 @@ class BodyEquations {
                               double sign) const;
   void choose_vectors();
   void choose_units();
+  void choose_state_units();
+  std::vector<Interval> enclose_states() const;
   int fixed_index(std::size_t vector) const { return 3 + 3 * static_cast<int>(vector); }
   int orbit_index(std::size_t orbit) const { return fixed_index(fixed_.size() + 2 * orbit); }
 
@@ -56,6 +62,7 @@ class BodyEquations {
   std::vector<Vector3d> fixed_ = {};       ///< vectors in space
   std::vector<Orbit> orbits_ = {};
   double rate_ = 1.0, pace_ = 1.0;
+  std::vector<double> state_units_ = {};
   int attitude_ = 3;
   bool has_attitude_ = false;
   bool by_formulas_ = false;

@@ -62,7 +62,7 @@ class Run {
   bool follow(const Piece& piece, const std::vector<bool>& rotating) {
     const std::unique_ptr<TaylorStep> made = body_.make_step(piece.torques, rotating, sign_, options_.step);
     TaylorStep& step = *made;
-    step.expect_rate(largest_rate_);
+    if (!largest_sizes_.empty()) step.expect_sizes(largest_sizes_);
     const Interval end = distance(piece.end);
     if (end.is_zero()) {   // a sample at the start itself
       step.expand(state_, now_);
@@ -90,8 +90,7 @@ class Run {
         if (!(length > 1e-9 * std::min(proposed, left.upper())) || length < 0x1p-900)
           return end_here(Status::failed, "no bound on the next step was found: errors have grown too large");
       }
-      if (const double widest = *std::max_element(step.spread().begin(), step.spread().end());
-          !(widest <= options_.widest * std::max(1.0, step.largest_rate())))
+      if (is_too_wide(step))
         return end_here(Status::failed, "the set of possible states has become too large");
       // Else a sample between two steps might lie in neither.
       if (!is_last && !(left.radius < 0x1p-34 * length))
@@ -102,9 +101,17 @@ class Run {
       ++result_.steps;
       if (is_last) break;
     }
-    largest_rate_ = step.largest_rate();
+    largest_sizes_ = step.largest_sizes();
     (sign_ > 0 ? result_.end : result_.begin) = piece.end;
     return true;
+  }
+
+  bool is_too_wide(const TaylorStep& step) const {
+    for (int v = 0; v < body_.size(); ++v) {
+      const double size = std::max(step.largest_rate(), step.largest_size(v));
+      if (!(step.spread()[to_index(v)] <= options_.widest * std::max(1.0, size))) return true;
+    }
+    return false;
   }
 
   /// Few digits, so that sums of lengths are exact.
@@ -160,6 +167,9 @@ class Run {
         const auto first = to_index(body_.attitude());
         for (std::size_t i = 0; i < 4; ++i) result_.attitude[4 * sample + i] = value(first + i);
       }
+      const std::size_t own = body_.state_units().size(), first = to_index(body_.first_own());
+      for (std::size_t i = 0; i < own; ++i)
+        result_.states[own * sample + i] = value(first + i) * Interval(body_.state_units()[i]);
     }
   }
 
@@ -173,7 +183,7 @@ class Run {
   Interval now_ = {};                    ///< since the start, in units of 1 / pace
   std::array<Interval, 3> end_jump_ = {};   ///< of the variables of the rates, for samples at the piece's end
   double end_ = 0.0;                     ///< of the piece
-  double largest_rate_ = 0.0;
+  std::vector<double> largest_sizes_;    ///< of the variables, up to the last piece
   std::vector<std::size_t> samples_;     ///< in the order of the run
   std::size_t next_ = 0;
   std::vector<double> derivative_, lost_, rest_;
@@ -187,6 +197,7 @@ Enclosure enclose(const Scene& scene, const Pieces& pieces, const EncloseOptions
   const std::size_t n = scene.times().size();
   if (scene.want().omega) result.omega.assign(3 * n, Interval::all());
   if (scene.want().attitude) result.attitude.assign(4 * n, Interval::all());
+  result.states.assign(to_index(scene.count_states()) * n, Interval::all());
   const BodyEquations body(scene);
   Run(scene, body, options, 1.0, result).follow(pieces.forward);
   if (result.status == Status::finished || result.status == Status::failed)

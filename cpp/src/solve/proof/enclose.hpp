@@ -18,9 +18,10 @@ struct EncloseOptions {
 };
 
 /// Sets that hold the exact motion at a scene's times: omega (n, 3) in rad/s and the attitude (n, 4), which runs on
-/// from the start without a change of sign. Where the enclosure ended before, they are unbounded.
+/// from the start without a change of sign. The states of formulas follow in the order of Scene::states(). Where the
+/// enclosure ended before, all are unbounded.
 struct Enclosure {
-  std::vector<Interval> omega, attitude;
+  std::vector<Interval> omega, attitude, states;
   double begin = 0.0, end = 0.0;   ///< the times between which the motion is enclosed [s]
   Status status = Status::finished;   ///< failed: the bounds became too wide, which is no failure of the motion
   std::string ended = {};          ///< why it ended early, in words

@@ -202,7 +202,7 @@ bool FormulaStep::compute_defects(const std::vector<double>&) {
 
   // An operation may be singular where f is not. Its series then decides the step, and not that of the state alone.
   double worst = 0.0;
-  for (int i = 0; i < n_; ++i) worst = std::max(worst, defect_[to_index(i)] / (i < 3 ? largest_rate() : 1.0));
+  for (int i = 0; i < n_; ++i) worst = std::max(worst, defect_[to_index(i)] / largest_size(i));
   if (worst * powers_[1] > 256.0 * settings_.tolerance && refused_++ < 8) return false;
 
   std::vector<double> image_tails(to_index(n_ * (M + 1)));

@@ -135,7 +135,7 @@ StepSettings refine(StepSettings settings) {
 }  // namespace
 
 FormulaStep::FormulaStep(const FormulaSystem& system, const StepSettings& settings)
-    : TaylorStep(system.size, refine(settings)), t0_(system.t0), per_time_(system.per_time) {
+    : TaylorStep(system.size, refine(settings), system.first_own()), t0_(system.t0), per_time_(system.per_time) {
   const Compiler<Slot, Kind, Form> compiler(system, slots_);
   std::size_t terms = 0;
   for (int i = 0; i < n_; ++i) rates_.push_back(compiler.make_form(system.program.outputs[to_index(i)]));

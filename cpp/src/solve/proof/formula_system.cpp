@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
 
+#include "polhode/core/error.hpp"
 #include "polhode/formula/derivative.hpp"
 #include "polhode/torque/detail/law_arguments.hpp"
 #include "solve/proof/exact_graph.hpp"
@@ -27,6 +30,9 @@ class Builder {
     q_ = formula::list_states<4>(graph, formula::first_attitude);
     for (const Expr& rate : w_.components) body_.push_back(rate * units.rate);
     for (const Expr& part : q_.components) body_.push_back(part);
+    for (std::size_t i = 0; i < units.states.size(); ++i)
+      own_.push_back(Expr(graph, graph.state(formula::first_extra + static_cast<int>(i))) * units.states[i]);
+    own_rates_.resize(own_.size());
   }
 
   FormulaSystem build(const std::vector<AnyTorque>& torques, const std::vector<bool>& rotating) {
@@ -34,7 +40,7 @@ class Builder {
     add_products(w_, -rate * per_pace_);
     for (std::size_t i = 0; i < rotating.size(); ++i)
       if (rotating[i]) add_rotor(scene_.rotors()[i]);
-    for (const AnyTorque& torque : torques) add(torque);
+    for (std::size_t i = 0; i < torques.size(); ++i) add(torques[i], i);
 
     Program program;
     std::vector<formula::Variable> variables;
@@ -48,9 +54,14 @@ class Builder {
         program.outputs.push_back((q_rate[to_index(i)] * half).form());
       }
     }
+    for (std::size_t i = 0; i < own_.size(); ++i) {
+      variables.push_back({formula::Variable::Kind::state, formula::first_extra + static_cast<int>(i)});
+      const Expr change = own_rates_[i] ? *own_rates_[i] : Expr(0.0);
+      program.outputs.push_back((change * (units_.sign / (units_.pace * units_.states[i]))).form());
+    }
     program.graph = exact_.take();
     return {static_cast<int>(variables.size()), formula::differentiate(program, variables), exact_.values(),
-            scene_.t0(), units_.sign / units_.pace};
+            scene_.t0(), units_.sign / units_.pace, has_attitude_};
   }
 
  private:
@@ -88,21 +99,52 @@ class Builder {
     for (int axis = 0; axis < 3; ++axis) accelerate(axis, tau_B[to_index(axis)], torque_unit());
   }
 
-  void add(const AnyTorque& torque) {
+  void add(const AnyTorque& torque, std::size_t number) {
     const torques::Formula* formula = find_formula(torque);
     const Program law = formula != nullptr ? formula->given() : make_open_law(torque, scene_.inertia_B().matrix());
     const bool is_potential = law.outputs.size() == 1 && law.states.empty();
     if (is_potential) return add_torque(exact_.add_potential(law, body_));
     // The inertia that the body has without its free rotors is known up to the rounding of its making.
+    const Rotor* driven = find_driven(law);
     std::vector<Interval> values;
     for (const formula::Input& input : law.parameters) {
       if (input.name == torques::inertia_input && &input == &law.parameters.back()) {
         for (std::size_t i = 0; i < 9; ++i) values.push_back(I_[i / 3][i % 3] / part_);
+      } else if (driven != nullptr && input.name == "axis") {
+        for (const Interval& component : enclose_axis(*driven)) values.push_back(component);
       } else {
         for (const double value : input.values) values.emplace_back(value);
       }
     }
-    add_torque(exact_.add(law, body_, values));
+    std::vector<Expr> states = body_;
+    for (const formula::Input& state : law.states) {
+      const formula::Place place = formula::find_place(scene_.states(), state.name);
+      states.insert(states.end(), own_.begin() + place.first, own_.begin() + place.first + place.count);
+    }
+    std::vector<Expr> outputs = exact_.add(law, states, values);
+    auto rate = outputs.begin() + 3;
+    for (const formula::Input& state : law.states) {
+      const formula::Place place = formula::find_place(scene_.states(), state.name);
+      for (int i = 0; i < place.count; ++i) keep_rate(to_index(place.first + i), *rate++, number);
+    }
+    outputs.resize(3);
+    add_torque(outputs);
+  }
+
+  void keep_rate(std::size_t state, const Expr& rate, std::size_t torque) {
+    std::optional<Expr>& kept = own_rates_[state];
+    if (kept && !(kept->form() == rate.form()))
+      throw InvalidInput("torques[" + std::to_string(torque) + "].states",
+                         "with the rates that the torques before it give", "another rate",
+                         "name states of different torques differently");
+    kept = rate;
+  }
+
+  /// The driven rotor that a law is of; null for another law.
+  const Rotor* find_driven(const Program& law) const {
+    for (const Rotor& rotor : scene_.rotors())
+      if (!law.states.empty() && !rotor.state().empty() && law.states[0].name == rotor.state()) return &rotor;
+    return nullptr;
   }
 
   const Scene& scene_;
@@ -115,7 +157,8 @@ class Builder {
   ExactGraph exact_;
   Vec<Expr, 3> w_, change_;
   Vec<Expr, 4> q_;
-  std::vector<Expr> body_;
+  std::vector<Expr> body_, own_;
+  std::vector<std::optional<Expr>> own_rates_;
 };
 
 }  // namespace

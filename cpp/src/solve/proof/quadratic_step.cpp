@@ -11,7 +11,7 @@ using Kind = Term::Kind;
 }  // namespace
 
 QuadraticStep::QuadraticStep(QuadraticSystem system, const StepSettings& settings)
-    : TaylorStep(system.size, settings), system_(std::move(system)) {
+    : TaylorStep(system.size, settings, system.size), system_(std::move(system)) {
   int terms = 0;
   std::vector<int> per_row(to_index(n_), 0);
   for (const Term& term : system_.terms) terms = std::max(terms, ++per_row[to_index(term.row)]);

@@ -6,8 +6,8 @@
 #include "polhode/math/detail/functions.hpp"
 
 namespace polhode::proof {
-TaylorStep::TaylorStep(int size, const StepSettings& settings)
-    : settings_(settings), n_(size), width_((size + 3) / 4 * 4) {
+TaylorStep::TaylorStep(int size, const StepSettings& settings, int first_own)
+    : settings_(settings), n_(size), width_((size + 3) / 4 * 4), first_own_(first_own) {
   // Order as in Jorba & Zou 2005, Experimental Mathematics 14, 99.
   order_ = std::clamp(static_cast<int>(std::lround(0.5 * -math::log(settings_.tolerance))) + 1, 8, 40);
   next_derivative_order_ = std::min(12, order_);
@@ -16,6 +16,8 @@ TaylorStep::TaylorStep(int size, const StepSettings& settings)
   powers_.resize(rows), images_.resize(n * rows);
   derivative_.resize(rows * n * to_index(width_));
   defect_.resize(n), rest_.resize(n), spread_.resize(n), jacobian_.resize(n * n);
+  largest_.assign(n, 1.0);
+  std::fill_n(largest_.begin(), 3, 0.0);
 }
 
 /// Low halves as far as plain rounding would count.
@@ -28,9 +30,10 @@ void TaylorStep::set_rounding(double rounding) {
 double TaylorStep::expand(std::span<const DD> state, const Interval& now) {
   const auto rows = to_index(order_ + 1);
   for (std::size_t v = 0; v < state.size(); ++v) high_[v * rows] = state[v].hi, low_[v * rows] = state[v].lo;
-  double rate = 0.0;
+  double rate = std::max(largest_rate(), 0x1p-20);
   for (int v = 0; v < 3; ++v) rate = std::max(rate, std::abs(P(v)[0]));
-  largest_rate_ = std::max({largest_rate_, rate, 0x1p-20});
+  std::fill_n(largest_.begin(), 3, rate);
+  for (int v = first_own_; v < n_; ++v) largest_[to_index(v)] = std::max(largest_size(v), std::abs(P(v)[0]));
   expand_state(now);
   derivative_order_ = next_derivative_order_;
   expand_derivative();
@@ -42,7 +45,7 @@ double TaylorStep::expand(std::span<const DD> state, const Interval& now) {
   };
   for (int k = order_ - 1; k <= order_; ++k) {
     double largest = 0.0;
-    for (int v = 0; v < n_; ++v) largest = std::max(largest, std::abs(P(v)[k]) / (v < 3 ? largest_rate_ : 1.0));
+    for (int v = 0; v < n_; ++v) largest = std::max(largest, std::abs(P(v)[k]) / largest_size(v));
     limit(largest, settings_.tolerance, k);
   }
   const double by_state = length;

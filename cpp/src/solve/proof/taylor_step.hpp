@@ -55,11 +55,15 @@ class TaylorStep {
   int width() const { return width_; }                            ///< of a row of F
   const std::vector<double>& rest() const { return rest_; }       ///< bounds |r_i|
   const std::vector<double>& spread() const { return spread_; }   ///< bounds |e_i| anywhere within the step
-  double largest_rate() const { return largest_rate_; }           ///< so far, to which tolerances are relative
-  void expect_rate(double rate) { largest_rate_ = rate; }
+  double largest_rate() const { return largest_size(0); }
+  /// The largest size of a variable so far, to which tolerances are relative: that of all rates, at least 1 of others.
+  double largest_size(int variable) const { return largest_[to_index(variable)]; }
+  const std::vector<double>& largest_sizes() const { return largest_; }
+  void expect_sizes(const std::vector<double>& sizes) { largest_ = sizes; }
 
  protected:
-  TaylorStep(int size, const StepSettings& settings);
+  /// @param first_own  the variables from here on have units of their own, and sizes beside 1
+  TaylorStep(int size, const StepSettings& settings, int first_own);
 
   /// Rounding to nearest of one coefficient, relative to the sizes of its parts: it decides how many have low halves.
   void set_rounding(double rounding);
@@ -104,8 +108,8 @@ class TaylorStep {
   void compare_by_components(double length, double rate_unit, const std::vector<double>& source,
                              std::vector<double>& result) const;
 
-  std::vector<double> images_;
-  double largest_rate_ = 0.0;
+  std::vector<double> images_, largest_;
+  int first_own_;
 };
 
 }  // namespace polhode::proof
