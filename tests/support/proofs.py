@@ -47,3 +47,33 @@ def make_formula_scene(numbers):
     rotors = [ph.Rotor(axis=(0, 0, 1), momentum=numbers["rotor"])] if numbers["rotor"] else []
     return ph.Scene(inertia=np.array(numbers["inertia"]), omega=numbers["omega"], attitude=numbers["attitude"],
                     torques=acting, rotors=rotors, times=numbers["times"], t0=numbers["t0"])
+
+
+def make_state_scene(numbers):
+    """A scene with a formula that has states from plain numbers, perhaps with a driven rotor and a damper."""
+    parameters = {f"k{i}": x for i, x in enumerate(numbers["numbers"])}
+    starts = numbers["states"]
+    states = {name: {"start": start, "rate": rate}
+              for name, start, rate in zip("hz", (starts[:3], starts[3]), numbers["rates"], strict=True)}
+    formula = torques.Formula(text=numbers["text"], recognise=False, states=states, **parameters)
+    rotors = [ph.Rotor(free=True, **numbers["rotor"])] if numbers["rotor"] else []
+    damper = ph.Damper(**numbers["damper"]) if numbers["damper"] else None
+    return ph.Scene(inertia=np.array(numbers["inertia"]), omega=numbers["omega"], attitude=numbers["attitude"],
+                    torques=[formula], rotors=rotors, damper=damper, times=numbers["times"], t0=numbers["t0"])
+
+
+def count_states_outside(motion, numbers):
+    """How many numbers of the truth lie outside of finite bounds, and how many were judged."""
+    truth = np.array(numbers["truth"])   # rates, attitude, h, z, a rotor's momentum, a damper's
+    bounds = []
+    for side in ("lower", "upper"):
+        states = getattr(motion, f"states_{side}")
+        rows = [getattr(motion, f"omega_{side}"), getattr(motion, f"attitude_{side}"), states["h"], states["z"][:, None]]
+        rows.append(states["rotor_momentum_0"][:, None] if numbers["rotor"] else np.full((len(motion.t), 1), np.nan))
+        rows.append(states["damper_momentum"] if numbers["damper"] else np.full((len(motion.t), 3), np.nan))
+        bounds.append(np.hstack(rows))
+    lower, upper = bounds
+    high, low = truth[..., 0], truth[..., 1]
+    outside = (high < lower) | ((high == lower) & (low < 0)) | (high > upper) | ((high == upper) & (low > 0))
+    finite = np.isfinite(lower) & np.isfinite(upper)
+    return int((outside & finite).sum()), int(finite.sum())

@@ -86,7 +86,7 @@ class Motion:
     attitude_lower, attitude_upper : ndarray, shape (n, 4), or None
         Of a proof: the same for the unit quaternion, of the sign of `attitude`.
     states_lower, states_upper : dict of ndarray, or None
-        Of a proof: the same for `states`, by name. `error` leaves the states out.
+        Of a proof: the same for `states`, by name.
     proved_span : tuple of float, or None
         Of a proof: the times between which every sample has the accuracy [s].
     sensitivity : Sensitivity, or None

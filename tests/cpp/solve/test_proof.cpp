@@ -111,6 +111,38 @@ TEST_CASE("of every operation of a formula a wrong remainder is caught") {
   }
 }
 
+TEST_CASE("at switches widths that are too small are caught") {
+  const char* laws[] = {"0.4 * sign(attitude.xyz - [0.1, 0.2, 0.3])", "where(attitude.x > 0.1, [0.5, 0, 0.1], [-0.3, 0.4, 0])",
+                        "0.5 * sign(sin(3 * t + attitude.xyz))"};
+  for (const char* law : laws) {
+    CAPTURE(law);
+    SceneParts parts = make_heavy_body().parts();
+    parts.omega = {0.3, 0.2, 1.5};
+    formula::Text text;
+    text.torque = law;
+    parts.torques.emplace_back(torques::Formula(text));
+    const Scene scene(parts);
+    EncloseOptions options;
+    const auto follow = [&](double tolerance, double factor) {
+      options.step = {.tolerance = tolerance, .derivative_tolerance = 1e-12, .switch_factor = factor};
+      return enclose(scene, cut(scene), options);
+    };
+    const Enclosure truth = follow(1e-26, 1.0);
+    REQUIRE(truth.status == Status::finished);
+    CHECK(truth.omega.back().radius < 1e-14);
+    const auto count = [&](const Enclosure& found) {
+      int outside = 0;
+      for (std::size_t i = 0; i < truth.omega.size(); ++i)   // two sets of one motion meet
+        outside += !(found.omega[i] - truth.omega[i]).contains(0.0);
+      return outside;
+    };
+    for (const double tolerance : {1e-7, 1e-9, 1e-12, 1e-17}) CHECK(count(follow(tolerance, 1.0)) == 0);
+    int missed = 0;
+    for (const double tolerance : {1e-5, 1e-6, 1e-7}) missed += count(follow(tolerance, 0.0));
+    CHECK(missed > 3);
+  }
+}
+
 TEST_CASE("a wrong torque is caught") {
   const Scene scene = make_heavy_body();
   SceneParts parts = scene.parts();

@@ -54,7 +54,7 @@ struct Motion : Trajectory {
   /// Of a proof: the exact motion of exactly the scene's numbers lies between these at every sample; rows as those of
   /// omega (n, 3) and attitude (n, 4, of the sign returned). They are infinite beyond the reach of the proof.
   std::vector<double> omega_lower = {}, omega_upper = {}, attitude_lower = {}, attitude_upper = {};
-  /// The same of `states`, which `error` leaves out.
+  /// The same of `states`.
   std::vector<double> states_lower = {}, states_upper = {};
   /// Of a proof: the times between which every sample has the accuracy [s].
   double proved_begin = std::numeric_limits<double>::quiet_NaN();

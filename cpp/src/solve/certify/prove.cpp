@@ -108,7 +108,32 @@ class Proof {
     error_ = 0.0;
     for (std::size_t i = 0; i < count(); ++i) {
       if (is_enclosed(i)) errors_[i] = std::max(measure_rates(i) / scale * (1.0 + 0x1p-48), measure_angle(i));
-      error_ = std::max(error_, errors_[i]);
+    }
+    measure_states();
+    for (const double error : errors_) error_ = std::max(error_, error);
+  }
+
+  /// Those of a state are relative to its largest size, or to 1 where it stays 0.
+  void measure_states() {
+    std::size_t first = 0;
+    for (const formula::Input& state : scene_.states()) {
+      const std::size_t width = state.values.size();
+      double largest = 0.0;
+      for (const double start : state.values) largest = math::hypot(largest, start);
+      const auto visit = [&](auto use) {
+        for (std::size_t i = 0; i < count(); ++i)
+          if (is_enclosed(i)) use(i, own() * i + first);
+      };
+      visit([&](std::size_t, std::size_t at) {
+        double size = 0.0;
+        for (std::size_t k = at; k < at + width; ++k) size = math::hypot(size, enclosure_.states[k].middle.hi);
+        largest = std::max(largest, size);
+      });
+      const double scale = largest > 0.0 ? largest * (1.0 - 0x1p-48) : 1.0;
+      visit([&](std::size_t i, std::size_t at) {
+        errors_[i] = std::max(errors_[i], measure(enclosure_.states, at, width) / scale * (1.0 + 0x1p-48));
+      });
+      first += width;
     }
   }
 

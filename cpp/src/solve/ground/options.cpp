@@ -78,9 +78,6 @@ void require_provable(const Scene& scene, const SolveOptions& options) {
   for (const AnyTorque& torque : scene.torques()) {
     const torques::Formula* formula = find_formula(torque);
     if (formula == nullptr) continue;
-    if (formula->has_switches())
-      refuse_with_proof("certify", "a Formula with switches", "a proof needs a torque that is analytic: no abs, sign, "
-                        "min, max, clip, where or comparison");
     if (!formula->program(scene.inertia_B().matrix()).graph.ephemerides().empty())
       refuse_with_proof("certify", "a torque on an orbit", "bounds on the position in an orbit are not made yet");
   }

@@ -350,8 +350,23 @@ std::unique_ptr<TaylorStep> BodyEquations::make_step(const std::vector<AnyTorque
                                                      const std::vector<bool>& rotating, double sign,
                                                      const StepSettings& settings) const {
   if (!by_formulas_) return std::make_unique<QuadraticStep>(make_system(torques, rotating, sign), settings);
-  const FormulaSystem system = make_formula_system(scene_, torques, rotating, {rate_, pace_, sign, state_units_}, has_attitude_);
-  return std::make_unique<FormulaStep>(system, settings);
+  const FormulaEquations equations =
+      make_formula_equations(scene_, torques, rotating, {rate_, pace_, sign, state_units_}, has_attitude_);
+  return std::make_unique<FormulaStep>(differentiate(equations, equations.program), settings);
+}
+
+bool BodyEquations::has_switches(const std::vector<AnyTorque>& torques) const {
+  return std::any_of(torques.begin(), torques.end(), [](const AnyTorque& torque) {
+    const torques::Formula* formula = find_formula(torque);
+    return formula != nullptr && formula->has_switches();
+  });
+}
+
+std::unique_ptr<FormulaModes> BodyEquations::make_modes(const std::vector<AnyTorque>& torques,
+                                                        const std::vector<bool>& rotating, double sign,
+                                                        const StepSettings& settings) const {
+  return std::make_unique<FormulaModes>(
+      make_formula_equations(scene_, torques, rotating, {rate_, pace_, sign, state_units_}, has_attitude_), settings);
 }
 
 std::array<Interval, 3> BodyEquations::compute_jump(const std::vector<bool>& before,

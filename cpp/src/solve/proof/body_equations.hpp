@@ -6,6 +6,7 @@
 
 #include "polhode/scene/scene.hpp"
 #include "solve/proof/quadratic_system.hpp"
+#include "solve/proof/formula_modes.hpp"
 #include "solve/proof/taylor_step.hpp"
 
 // A body's motion as a quadratic system, or as formulas where a torque is one. Time runs in units of 1 / pace().
@@ -34,6 +35,11 @@ class BodyEquations {
   /// Which rotors rotate from one time to a later one without a break, or at a time.
   std::vector<bool> find_rotating(double begin, double end) const;
 
+  /// Whether formulas with switches are among torques.
+  bool has_switches(const std::vector<AnyTorque>& torques) const;
+  /// Their modes.
+  std::unique_ptr<FormulaModes> make_modes(const std::vector<AnyTorque>& torques, const std::vector<bool>& rotating,
+                                           double sign, const StepSettings& settings) const;
   /// Steps of the equations under these torques, none of them with windows, and rotors; `sign` is -1 backwards in time.
   std::unique_ptr<TaylorStep> make_step(const std::vector<AnyTorque>& torques, const std::vector<bool>& rotating,
                                         double sign, const StepSettings& settings) const;

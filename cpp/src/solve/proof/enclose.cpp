@@ -6,6 +6,8 @@
 #include <memory>
 
 #include "method/samples.hpp"
+#include "polhode/core/error.hpp"
+#include "solve/proof/window.hpp"
 
 namespace polhode::proof {
 namespace {
@@ -60,11 +62,19 @@ class Run {
   }
 
   bool follow(const Piece& piece, const std::vector<bool>& rotating) {
-    const std::unique_ptr<TaylorStep> made = body_.make_step(piece.torques, rotating, sign_, options_.step);
-    TaylorStep& step = *made;
-    if (!largest_sizes_.empty()) step.expect_sizes(largest_sizes_);
     const Interval end = distance(piece.end);
+    std::unique_ptr<TaylorStep> smooth;
+    modes_.reset();
+    if (body_.has_switches(piece.torques)) {
+      modes_ = body_.make_modes(piece.torques, rotating, sign_, options_.step);
+      sides_ = modes_->find_sides(now_, enclose_state());
+    } else {
+      smooth = body_.make_step(piece.torques, rotating, sign_, options_.step);
+    }
+    const auto find_step = [&]() -> TaylorStep& { return modes_ ? modes_->find(sides_).step : *smooth; };
+    if (!largest_sizes_.empty()) find_step().expect_sizes(largest_sizes_);
     if (end.is_zero()) {   // a sample at the start itself
+      TaylorStep& step = find_step();
       step.expand(state_, now_);
       if (!step.bound(0x1p-60, errors_)) return end_here(Status::failed, "the start cannot be enclosed");
       take_samples(step, 0x1p-60);
@@ -72,6 +82,7 @@ class Run {
     }
     if (!end.is_bounded()) return end_here(Status::failed, "the times are too far from the start");
     while (true) {
+      TaylorStep& step = find_step();
       const Interval left = end - now_;
       if (!(left.upper() > 0.0)) break;
       if (result_.steps >= options_.max_steps) return end_here(Status::max_steps, "max_steps was reached");
@@ -92,6 +103,18 @@ class Run {
       }
       if (is_too_wide(step))
         return end_here(Status::failed, "the set of possible states has become too large");
+      if (modes_) {
+        const double certain = find_certain(length);
+        if (certain < length) {
+          if (certain < std::max(0x1p-58 * proposed, 0x1p40 * now_.radius)) {
+            if (!cross(left, proposed, is_last)) return false;
+            if (!is_last) continue;
+            now_ = end;
+            break;
+          }
+          length = round_down(certain), is_last = false;
+        }
+      }
       // Else a sample between two steps might lie in neither.
       if (!is_last && !(left.radius < 0x1p-34 * length))
         return end_here(Status::failed, "steps are too short to be told apart, so far from the start");
@@ -101,7 +124,7 @@ class Run {
       ++result_.steps;
       if (is_last) break;
     }
-    largest_sizes_ = step.largest_sizes();
+    largest_sizes_ = find_step().largest_sizes();
     (sign_ > 0 ? result_.end : result_.begin) = piece.end;
     return true;
   }
@@ -123,7 +146,108 @@ class Run {
 
   double reached() const { return scene_.t0() + sign_ * now_.middle.hi / body_.pace(); }
 
-  bool end_here(Status status, const char* why) {
+  std::vector<Interval> enclose_state() const {
+    const std::vector<double> box = errors_.box();
+    std::vector<Interval> state;
+    for (std::size_t i = 0; i < state_.size(); ++i) state.emplace_back(state_[i], box[i]);
+    return state;
+  }
+
+  /// How long the guards of the mode have their signs for certain.
+  double find_certain(double length) const {
+    const FormulaModes::Mode& mode = modes_->find(sides_);
+    std::vector<double> signs;
+    for (const int number : mode.guards)
+      signs.push_back(sides_[to_index(number)] == formula::Side::above ? 1.0 : -1.0);
+    return mode.step.find_certain(signs, length);
+  }
+
+  /// A short step over the surfaces of switches: see Window. @return false where the enclosure ends
+  bool cross(const Interval& left, double proposed, bool& is_last) {
+    FormulaStep& step = modes_->find(sides_).step;
+    double length = std::clamp(1.5 * step.find_crossing(), 0x1p-57 * proposed, proposed);
+    length = std::max(length, 0x1p40 * now_.radius);
+    Window window;
+    for (bool is_longest = false; !is_longest; length *= 4.0) {
+      is_longest = length >= proposed;
+      const double shorter = round_down(std::min(length, proposed));
+      is_last = !(shorter < left.lower());
+      length = is_last ? left.upper() : shorter;
+      if (!step.bound(length, errors_)) break;
+      WindowMotion motion = follow_mode(step, length);
+      motion.is_final = is_last;
+      window = find_window(*modes_, sides_, motion);
+      if (window.result == Window::Result::passed) {
+        pass(step, window, motion, is_last ? left : Interval(length));
+        now_ = now_ + Interval(length);
+        sides_ = window.sides;
+        modes_->find(sides_).step.expect_sizes(step.largest_sizes());
+        ++result_.steps;
+        return true;
+      }
+      if (window.result == Window::Result::refused || is_last) break;
+      ++result_.rejected;
+    }
+    const std::string why = window.why.empty() ? "the side of a switch cannot be told" : window.why;
+    return end_here(Status::failed, why + ", near t = " + to_text(reached()) + " s");
+  }
+
+  /// What is known of the mode's own motion over a bounded step.
+  WindowMotion follow_mode(const TaylorStep& step, double length) {
+    const Interval whole(math::DD(0.5 * length), 0.5 * length * (1.0 + 0x1p-20));
+    WindowMotion motion{.begin = now_, .end = now_ + Interval(length), .during = now_ + whole, .length = length * TaylorStep::margin};
+    motion.change_factor = options_.step.switch_factor;
+    motion.first_error = errors_.box();
+    std::vector<DD> state(state_.size());
+    std::vector<double> lost(state_.size());
+    step.evaluate(DD(length), 0.0, state, lost);
+    for (std::size_t i = 0; i < state.size(); ++i) {
+      motion.first.emplace_back(state_[i], 0.0), motion.last.emplace_back(state[i], 0.0);
+      motion.box.emplace_back(state_[i], step.reach(static_cast<int>(i)));
+    }
+    step.evaluate_derivative(length, 0.0, derivative_, lost_);
+    for (std::size_t i = 0; i < lost.size(); ++i) lost[i] = raised(lost[i] + lost_[i] + step.rest()[i]);
+    motion.last_error = errors_.image_box(derivative_, step.width(), lost);
+    return motion;
+  }
+
+  /// The samples of a window, and the set behind it.
+  void pass(const TaylorStep& step, const Window& window, const WindowMotion& motion, const Interval& length) {
+    take_samples(step, length.middle.hi, window.change);
+    step.evaluate_derivative(length.middle.hi, length.radius, derivative_, lost_);
+    rest_ = step.rest();
+    for (std::size_t i = 0; i < rest_.size(); ++i) rest_[i] += lost_[i];
+    step.evaluate(length.middle, length.radius, state_, lost_);
+    for (std::size_t i = 0; i < rest_.size(); ++i) rest_[i] = raised(rest_[i] + lost_[i]);
+    if (window.factors.empty()) {
+      for (std::size_t i = 0; i < rest_.size(); ++i) rest_[i] = raised(rest_[i] + window.change[i]);
+    } else {
+      shift(window, motion, step.width());
+    }
+    errors_.advance(derivative_, step.width(), rest_);
+  }
+
+  /// e becomes e + factors (value + gradient.e).
+  void shift(const Window& window, const WindowMotion& motion, int width) {
+    const std::size_t n = state_.size(), w = to_index(width);
+    std::vector<double> combined(w, 0.0);
+    double by_rest = 0.0, size = 0.0;
+    for (std::size_t j = 0; j < n; ++j) {
+      by_rest += std::abs(window.gradient[j]) * rest_[j], size += std::abs(window.gradient[j]) * motion.last_error[j];
+      for (std::size_t c = 0; c < w; ++c) combined[c] += window.gradient[j] * derivative_[j * w + c];
+    }
+    const double rounding = (4.0 * static_cast<double>(n) + 16.0) * 0x1p-53;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double factor = window.factors[i];
+      const Interval moved = Interval(state_[i], 0.0) + Interval(factor) * window.value;
+      state_[i] = moved.middle;
+      for (std::size_t c = 0; c < w; ++c) derivative_[i * w + c] += factor * combined[c];
+      rest_[i] = raised(rest_[i] + std::abs(factor) * by_rest + moved.radius + window.rest[i] +
+                        rounding * (motion.last_error[i] + std::abs(factor) * size));
+    }
+  }
+
+  bool end_here(Status status, const std::string& why) {
     // The steps so far reach a little further than a time rounded towards the start.
     const double t = reached(), bound = t - sign_ * 0x1p-50 * (std::abs(t) + std::abs(scene_.t0()));
     result_.ended_at = sign_ > 0 ? std::max(bound, scene_.t0()) : std::min(bound, scene_.t0());
@@ -142,7 +266,8 @@ class Run {
     errors_.advance(derivative_, step.width(), rest_);
   }
 
-  void take_samples(const TaylorStep& step, double length) {
+  /// @param more  to which the exact motion may be off the step's in addition
+  void take_samples(const TaylorStep& step, double length, const std::vector<double>& more = {}) {
     std::vector<DD> state(state_.size());
     std::vector<double> lost(state_.size()), slack(state_.size()), box = step.spread();
     const bool is_narrow = *std::max_element(box.begin(), box.end()) < 1e-17;
@@ -159,7 +284,7 @@ class Run {
         for (std::size_t i = 0; i < slack.size(); ++i) slack[i] += step.rest()[i];
         box = errors_.image_box(derivative_, step.width(), slack);
       }
-      const auto value = [&](std::size_t i) { return Interval(state[i], raised(box[i] + lost[i])); };
+      const auto value = [&](std::size_t i) { return Interval(state[i], raised(box[i] + lost[i] + (more.empty() ? 0.0 : more[i]))); };
       const bool at_end = t == end_;
       for (std::size_t i = 0; i < 3 && scene_.want().omega; ++i)
         result_.omega[3 * sample + i] = (at_end ? value(i) + end_jump_[i] : value(i)) * Interval(body_.rate());
@@ -178,6 +303,8 @@ class Run {
   const EncloseOptions& options_;
   const double sign_;
   Enclosure& result_;
+  std::unique_ptr<FormulaModes> modes_ = {};   ///< of the piece, if it has switches
+  FormulaModes::Sides sides_ = {};
   std::vector<DD> state_;
   ErrorSet errors_;
   Interval now_ = {};                    ///< since the start, in units of 1 / pace

@@ -20,7 +20,7 @@ namespace {
 
 bool is_power_of_two(double x) {
   int exponent;
-  return x != 0.0 && std::abs(std::frexp(x, &exponent)) == 0.5 && std::abs(exponent) < 64;
+  return x != 0.0 && std::abs(std::frexp(x, &exponent)) == 0.5 && std::abs(exponent) < 16;
 }
 
 std::vector<Form> list_forms(const std::vector<Expr>& list) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "solve/proof/formula_step.hpp"
@@ -316,6 +317,66 @@ bool FormulaStep::add_second_order(std::vector<double>& source) {
     for (const auto& [factor, slot] : rates_[to_index(i)].terms)
       source[to_index(i)] += std::abs(factor) * second_[to_index(slot)];
   return true;
+}
+
+double FormulaStep::find_width(const Guard& guard) const {
+  double width = lose_form(guard.form, {.kind = Kind::linear});
+  for (const auto& [factor, slot] : guard.form.terms) width += std::abs(factor) * first_[to_index(slot)];
+  return raised(settings_.switch_factor * width);
+}
+
+double FormulaStep::find_certain(const std::vector<double>& sides, double length) const {
+  double certain = Interval::infinity;
+  for (std::size_t i = 0; i < guards_.size(); ++i)
+    certain = std::min(certain, find_certain(guards_[i], sides[i], length));
+  return certain;
+}
+
+/// From each time on, the guard keeps its sign as long as its tangent less half the largest second derivative does.
+double FormulaStep::find_certain(const Guard& guard, double side, double length) const {
+  const double end = length * margin, width = find_width(guard);
+  const std::vector<double>& c = guard.coefficients;
+  const int rows = static_cast<int>(c.size());
+  double steepest_slope = 0.0, curvature = 0.0;   // at most |G'| and |G''|
+  for (int k = 1; k < rows; ++k) {
+    const double size = std::abs(c[to_index(k)]) * powers_[to_index(k)] / end;
+    steepest_slope += k * size, curvature += k * (k - 1.0) * size / end;
+  }
+  steepest_slope = raised(steepest_slope), curvature = raised(curvature);
+  const double part = (2.0 * rows + 8.0) * unit;
+  double t = 0.0, first = 0.0;
+  for (int attempt = 0; attempt < 400; ++attempt) {
+    double value = 0.0, slope = 0.0;
+    for (int k = rows - 1; k >= 1; --k) value = value * t + c[to_index(k)];
+    for (int k = rows - 1; k >= 1; --k) slope = slope * t + k * c[to_index(k)];
+    value = side * (c[0] + (guard.low + value * t));
+    const double off = raised(width + part * (steepest_slope * t) + 2.0 * unit * std::abs(value));
+    const double left = (value - off) * (1.0 - 0x1p-50);
+    if (attempt == 0) first = left;
+    if (!(left > 0x1p-20 * first) || !(left > 0.0)) break;
+    const double least_slope = side * slope - raised(part * steepest_slope);
+    const double root = std::sqrt(least_slope * least_slope + 2.0 * curvature * left);
+    double step = least_slope > 0.0 ? (curvature > 0.0 ? (least_slope + root) / curvature : end)
+                                    : 2.0 * left / (root - least_slope);
+    step = std::min(0.9375 * step, end - t);
+    for (int halving = 0; halving < 60; ++halving) {
+      if (left + least_slope * step - 0.5 * curvature * step * step > 0x1p-10 * left) break;
+      step *= 0.5;
+    }
+    if (!(left + least_slope * step - 0.5 * curvature * step * step > 0x1p-10 * left)) break;
+    t += step;
+    if (!(t < end * (1.0 - 0x1p-50))) return Interval::infinity;
+  }
+  return t * (1.0 - 0x1p-29);   // its steps meet within this part: see margin
+}
+
+double FormulaStep::find_crossing() const {
+  double nearest = Interval::infinity;
+  for (const Guard& guard : guards_) {
+    const double slope = std::abs(guard.coefficients[1]), off = std::abs(guard.coefficients[0]) + 2.0 * find_width(guard);
+    if (slope > 0.0 && off > 0.0) nearest = std::min(nearest, off / slope);
+  }
+  return nearest < Interval::infinity ? nearest : 0.0;
 }
 
 }  // namespace polhode::proof

@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "polhode/math/detail/functions.hpp"
 #include "polhode/math/detail/interval_functions.hpp"
 
 namespace polhode::proof {
@@ -16,10 +17,12 @@ template <class Slot, class Kind, class Form>
 class Compiler {
  public:
   Compiler(const FormulaSystem& system, std::vector<Slot>& slots)
-      : system_(system), graph_(system.program.graph), slots_(slots), slot_of_(to_index(graph_.size()), -1) {
-    const std::vector<formula::Form>& outputs = system.program.outputs;
+      : system_(system), graph_(system.derivatives.graph), slots_(slots), slot_of_(to_index(graph_.size()), -1) {
+    const std::vector<formula::Form>& outputs = system.derivatives.outputs;
     live_ = formula::find_live(graph_, outputs);
-    full_ = formula::find_live(graph_, {outputs.begin(), outputs.begin() + system.size});
+    std::vector<formula::Form> followed(outputs.begin(), outputs.begin() + system.size);
+    followed.insert(followed.end(), outputs.end() - system.guards, outputs.end());
+    full_ = formula::find_live(graph_, followed);
     for (int i = 0; i < graph_.size(); ++i)
       if (live_[to_index(i)] && (graph_[i].op == Op::sine || graph_[i].op == Op::cosine)) {
         bool& full = full_pair_[graph_[i].operands[0]];
@@ -138,15 +141,18 @@ FormulaStep::FormulaStep(const FormulaSystem& system, const StepSettings& settin
     : TaylorStep(system.size, refine(settings), system.first_own()), t0_(system.t0), per_time_(system.per_time) {
   const Compiler<Slot, Kind, Form> compiler(system, slots_);
   std::size_t terms = 0;
-  for (int i = 0; i < n_; ++i) rates_.push_back(compiler.make_form(system.program.outputs[to_index(i)]));
+  for (int i = 0; i < n_; ++i) rates_.push_back(compiler.make_form(system.derivatives.outputs[to_index(i)]));
   for (int j = 0; j < n_; ++j)
     for (int i = 0; i < n_; ++i) {
-      Form form = compiler.make_form(system.program.outputs[to_index(n_ + n_ * j + i)]);
+      Form form = compiler.make_form(system.derivatives.outputs[to_index(n_ + n_ * j + i)]);
       if (form.constant.is_zero() && form.terms.empty()) continue;
       const auto rows = form.terms.empty() ? std::size_t{1} : to_index(order_ + 1);
       terms = std::max(terms, form.terms.size());
       entries_.push_back({i, j, std::move(form), std::vector<double>(rows)});
     }
+  for (auto guard = system.derivatives.outputs.end() - system.guards; guard != system.derivatives.outputs.end(); ++guard)
+    guards_.push_back({compiler.make_form(*guard), std::vector<double>(to_index(order_))});
+  for (const Guard& guard : guards_) terms = std::max(terms, guard.form.terms.size());
   for (const Form& rate : rates_) terms = std::max(terms, rate.terms.size());
   for (const Slot& slot : slots_) terms = std::max(terms, slot.form.terms.size());
   // The longest sums of a row: an angle has three of products, other operations one.
@@ -292,6 +298,27 @@ void FormulaStep::expand_state(const Interval& now) {
     else advance(0.0);
     take_state(k + 1);
   }
+  for (Guard& guard : guards_)
+    for (int k = 0; k < order_; ++k) {
+      const DD value = sum<DD>(guard.form, k);
+      guard.coefficients[to_index(k)] = value.hi;
+      if (k == 0) guard.low = value.lo;
+    }
+}
+
+/// Guards may vary faster than the motion does.
+double FormulaStep::shorten(double length) const {
+  for (const Guard& guard : guards_) {
+    const auto size = [&](int k) { return std::abs(guard.coefficients[to_index(k)]) * math::fast_pow(length, k); };
+    for (int times = 0; times < 200; ++times) {
+      double largest = 0.0;
+      for (int k = 0; k <= order_ / 2; ++k) largest = std::max(largest, size(k));
+      const double last = std::max(size(order_ - 2), size(order_ - 1));
+      if (last == 0.0 || last <= settings_.tolerance * largest) break;
+      length *= last < 1e200 ? 0.75 : 0x1p-20;
+    }
+  }
+  return length;
 }
 
 void FormulaStep::expand_derivative() {

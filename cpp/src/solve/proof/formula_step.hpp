@@ -21,6 +21,13 @@ class FormulaStep final : public TaylorStep {
  public:
   FormulaStep(const FormulaSystem& system, const StepSettings& settings);
 
+  int count_guards() const { return static_cast<int>(guards_.size()); }
+  /// How long all guards have the signs `sides` for certain, from the begin of the bounded step on: at least this. 0
+  /// where one has no sign there, infinity where all have theirs throughout.
+  double find_certain(const std::vector<double>& sides, double length) const;
+  /// A length in which a guard's series passes 0, about: of the first that may; 0 where none does.
+  double find_crossing() const;
+
  private:
   enum class Kind {
     fixed, state, time, linear, scale, multiply, divide, root, exponential, logarithm, sine, cosine, tanh,
@@ -61,8 +68,7 @@ class FormulaStep final : public TaylorStep {
   void compute_jacobian() override;
   double compute_growth() const override;
   bool add_second_order(std::vector<double>& source) override;
-
-  void build(const FormulaSystem& system);
+  double shorten(double length) const override;
 
   int rows_of(const Slot& slot) const { return slot.is_full ? order_ : derivative_order_; }
   std::size_t at(int slot, int k) const { return to_index(slot * (order_ + 1) + k); }
@@ -94,7 +100,17 @@ class FormulaStep final : public TaylorStep {
   double lose_form(const Form& form, const Slot& whole) const;
   Slopes find_slopes(int slot, const std::vector<double>& wide) const;
 
+  struct Guard {
+    Form form;
+    std::vector<double> coefficients = {};      ///< of its polynomial, and the low half of the first
+    double low = 0.0;
+  };
+  /// At least |g(y) - its polynomial| on the bounded step.
+  double find_width(const Guard& guard) const;
+  double find_certain(const Guard& guard, double side, double length) const;
+
   std::vector<Slot> slots_;
+  std::vector<Guard> guards_;
   std::vector<Form> rates_;                     ///< f
   std::vector<Entry> entries_;                  ///< of J that are not 0
   double t0_, per_time_, time_radius_ = 0.0;

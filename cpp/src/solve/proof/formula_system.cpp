@@ -35,7 +35,7 @@ class Builder {
     own_rates_.resize(own_.size());
   }
 
-  FormulaSystem build(const std::vector<AnyTorque>& torques, const std::vector<bool>& rotating) {
+  FormulaEquations build(const std::vector<AnyTorque>& torques, const std::vector<bool>& rotating) {
     const Interval rate(units_.rate);
     add_products(w_, -rate * per_pace_);
     for (std::size_t i = 0; i < rotating.size(); ++i)
@@ -43,25 +43,21 @@ class Builder {
     for (std::size_t i = 0; i < torques.size(); ++i) add(torques[i], i);
 
     Program program;
-    std::vector<formula::Variable> variables;
-    for (int i = 0; i < 3; ++i) variables.push_back({formula::Variable::Kind::state, formula::first_rate + i});
     for (const Expr& change : change_.components) program.outputs.push_back((change * units_.sign).form());
     if (has_attitude_) {
       const Vec<Expr, 4> q_rate = formula::multiply_pure(q_, w_);
       for (int i = 0; i < 4; ++i) {
-        variables.push_back({formula::Variable::Kind::state, formula::first_attitude + i});
         const double half = 0.5 * units_.sign * (units_.rate / units_.pace);
         program.outputs.push_back((q_rate[to_index(i)] * half).form());
       }
     }
     for (std::size_t i = 0; i < own_.size(); ++i) {
-      variables.push_back({formula::Variable::Kind::state, formula::first_extra + static_cast<int>(i)});
       const Expr change = own_rates_[i] ? *own_rates_[i] : Expr(0.0);
       program.outputs.push_back((change * (units_.sign / (units_.pace * units_.states[i]))).form());
     }
     program.graph = exact_.take();
-    return {static_cast<int>(variables.size()), formula::differentiate(program, variables), exact_.values(),
-            scene_.t0(), units_.sign / units_.pace, has_attitude_};
+    const int size = static_cast<int>(program.outputs.size());
+    return {size, std::move(program), exact_.values(), scene_.t0(), units_.sign / units_.pace, has_attitude_};
   }
 
  private:
@@ -168,7 +164,33 @@ bool needs_formula_system(const std::vector<AnyTorque>& torques) {
                      [](const AnyTorque& torque) { return find_formula(torque) != nullptr; });
 }
 
-FormulaSystem make_formula_system(const Scene& scene, const std::vector<AnyTorque>& torques,
+FormulaSystem differentiate(const FormulaEquations& equations, const Program& smooth) {
+  const auto n = to_index(equations.size), count = smooth.outputs.size() - n;
+  std::vector<formula::Variable> variables;
+  for (int state = 0; static_cast<int>(variables.size()) < equations.size; ++state) {
+    const bool is_attitude = formula::first_attitude <= state && state < formula::first_extra;
+    if (!is_attitude || equations.has_attitude) variables.push_back({formula::Variable::Kind::state, state});
+  }
+  if (count > 0) variables.push_back({formula::Variable::Kind::time, 0});
+  FormulaSystem system{equations, formula::differentiate(smooth, variables), static_cast<int>(count), smooth};
+  if (count == 0) return system;
+  const std::vector<formula::Form> all = std::move(system.derivatives.outputs);
+  system.surface = system.derivatives;
+  std::vector<formula::Form>&of_step = system.derivatives.outputs, &of_surface = system.surface.outputs;
+  of_step.clear(), of_surface.assign(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(n + count));
+  for (std::size_t block = 0; block <= n + 1; ++block) {
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(block * (n + count));
+    if (block <= n) of_step.insert(of_step.end(), first, first + static_cast<std::ptrdiff_t>(n));
+    if (block > 0) of_surface.insert(of_surface.end(), first + static_cast<std::ptrdiff_t>(n),
+                                     first + static_cast<std::ptrdiff_t>(n + count));
+  }
+  of_step.insert(of_step.end(), all.begin() + static_cast<std::ptrdiff_t>(n),
+                 all.begin() + static_cast<std::ptrdiff_t>(n + count));
+  system.surface = formula::rewrite(system.surface);
+  return system;
+}
+
+FormulaEquations make_formula_equations(const Scene& scene, const std::vector<AnyTorque>& torques,
                                   const std::vector<bool>& rotating, const Units& units, bool has_attitude) {
   return Builder(scene, units, has_attitude).build(torques, rotating);
 }

@@ -7,10 +7,10 @@
 
 namespace polhode::proof {
 
-/// Equations y' = f(t, y) as a program without roundings: see ExactGraph.
-struct FormulaSystem {
+/// Equations y' = f(t, y) as a program without roundings: see ExactGraph. They may have switches.
+struct FormulaEquations {
   int size;                        ///< variables: the rates, the attitude where it is needed, the formulas' own states
-  formula::Program program;        ///< the outputs are f, then df by the first variable, by the second and so on
+  formula::Program program;        ///< the outputs are f
   std::vector<Interval> values;    ///< of its parameters
   double t0, per_time;             ///< the program's time is t0 + per_time * (time since the start) [s]
   bool has_attitude;
@@ -20,6 +20,17 @@ struct FormulaSystem {
   /// The first of the formulas' own states.
   int first_own() const { return has_attitude ? formula::first_extra : formula::first_attitude; }
 };
+
+/// The same without switches, or in one mode of them.
+struct FormulaSystem : FormulaEquations {
+  formula::Program derivatives = {};   ///< f, df by the first variable, by the second and so on, then the guards
+  int guards = 0;
+  /// f; and where there are guards these, their derivatives by the first variable, by the second and so on, and by time.
+  formula::Program surface = {};
+};
+
+/// @param smooth  f and then guards, as a program of the equations without switches
+FormulaSystem differentiate(const FormulaEquations& equations, const formula::Program& smooth);
 
 /// The units of a body's equations and the direction of time.
 struct Units {
@@ -33,7 +44,7 @@ struct Units {
 bool needs_formula_system(const std::vector<AnyTorque>& torques);
 
 /// A body under torques without windows, and rotors.
-FormulaSystem make_formula_system(const Scene& scene, const std::vector<AnyTorque>& torques,
+FormulaEquations make_formula_equations(const Scene& scene, const std::vector<AnyTorque>& torques,
                                   const std::vector<bool>& rotating, const Units& units, bool has_attitude);
 
 }  // namespace polhode::proof

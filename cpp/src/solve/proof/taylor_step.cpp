@@ -60,7 +60,7 @@ double TaylorStep::expand(std::span<const DD> state, const Interval& now) {
   // A stiff body's derivative needs more terms than the motion itself.
   if (by_derivative < 0.7 * by_state) next_derivative_order_ = std::min(order_, derivative_order_ + 2);
   else if (by_derivative > 0.95 * by_state && derivative_order_ > 10) next_derivative_order_ = derivative_order_ - 1;
-  return length;
+  return shorten(length);
 }
 
 void TaylorStep::evaluate(DD time, double slack, std::vector<DD>& state, std::vector<double>& lost) const {

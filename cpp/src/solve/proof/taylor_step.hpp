@@ -17,6 +17,7 @@ using math::Interval;
 struct StepSettings {
   double tolerance = 1e-20;        ///< of what one step leaves out, relative to the rates and to 1
   double derivative_tolerance = 1e-7;   ///< of what one step leaves out of the motion's derivative
+  double switch_factor = 1.0;      ///< multiplies the widths of guards and of jumps: anything below 1 is wrong, for tests
   double remainder_factor = 1.0;   ///< multiplies the bound on what is left out: anything below 1 is wrong, for tests
 };
 
@@ -55,6 +56,8 @@ class TaylorStep {
   int width() const { return width_; }                            ///< of a row of F
   const std::vector<double>& rest() const { return rest_; }       ///< bounds |r_i|
   const std::vector<double>& spread() const { return spread_; }   ///< bounds |e_i| anywhere within the step
+  /// At least |y_i - P_i(0)| anywhere within the bounded step.
+  double reach(int variable) const { return raised(sum_from(variable, 1) + spread_[to_index(variable)]); }
   double largest_rate() const { return largest_size(0); }
   /// The largest size of a variable so far, to which tolerances are relative: that of all rates, at least 1 of others.
   double largest_size(int variable) const { return largest_[to_index(variable)]; }
@@ -71,6 +74,8 @@ class TaylorStep {
   /// The coefficients of P and of F after the first.
   virtual void expand_state(const Interval& now) = 0;
   virtual void expand_derivative() = 0;
+  /// A length up to the given one within the tolerance of what else the step follows.
+  virtual double shorten(double length) const { return length; }
   /// `defect_`: |d| + |D| box over the step, by components. @return false where f is not known to be analytic
   virtual bool compute_defects(const std::vector<double>& box) = 0;
   /// `jacobian_`: A_ij >= |J_ij| and A_ii >= max(0, J_ii) along P.
