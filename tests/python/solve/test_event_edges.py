@@ -62,7 +62,7 @@ def test_a_terminal_event_at_a_jump_ends_the_run(method):
     assert "terminal event" in motion.message
 
 
-@pytest.mark.parametrize("method", METHODS[1:])   # a plan depends on the costs of the machine
+@pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("backward", [False, True])
 def test_zeros_at_an_edge_are_found_once_at_any_rounding(method, backward):
     """A rate and a component of the attitude that pass their values at the edges: neither piece alone sees a zero
@@ -82,6 +82,17 @@ def test_zeros_at_an_edge_are_found_once_at_any_rounding(method, backward):
                 hits = find(scene, [lambda t, omega, attitude, pick=pick, level=level: pick(omega, attitude) - level],
                             method)
                 assert sum(abs(hit.t - motion.t[k]) < 1e-9 for hit in hits) == 1
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("t0", [0.0, 3.0])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_function_that_touches_zero_at_an_edge_is_found_once(method, t0, sign):
+    torque = ph.torques.During(ph.torques.Constant((0.01, 0.02, 0)), [(1, 2)])
+    scene = ph.Scene(inertia=(1, 1.5, 2.2), omega=(0.3, 1, 0.2), t0=t0, times=[0, 3], torques=[torque])
+    for edge in (1.0, 2.0):
+        hits = find(scene, [lambda t, omega, attitude, edge=edge: sign * abs(t - edge)], method)
+        assert [hit.t for hit in hits] == [edge]
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -26,7 +26,6 @@ class EventTracker {
 
   EventTracker(const Event& event, double t, const double* y) : event_(&event) {
     side_ = sign(event.function(t, y));
-    is_zero_ = side_ == 0;
     t_ = t;
   }
 
@@ -37,19 +36,14 @@ class EventTracker {
     const int side = sign(value);
     const double start = t_;
     t_ = t;
-    const bool stays_zero = side == 0 && is_zero_;   // it was found when it became zero
-    is_zero_ = side == 0;
-    if (side_ == 0 || side == side_ || stays_zero) {
-      if (side_ == 0) side_ = side;
-      return false;
-    }
     const int before = side_;
-    side_ = side == 0 ? -before : side;      // an exact zero counts as crossed, so that it is found once
+    side_ = side;   // 0 at an exact zero: it is found once, whatever follows, a touch or a rest at zero too
+    if (before == 0 || side == before) return false;
     root = side == 0 ? t : bisect(start, t, before, evaluate, count);
     const bool repeated = found_ && root == last_root_;
     found_ = true;
     last_root_ = root;
-    return !repeated && (event_->direction == 0 || event_->direction == side_);
+    return !repeated && (event_->direction == 0 || event_->direction == -before);
   }
 
  private:
@@ -96,7 +90,6 @@ class EventTracker {
 
   const Event* event_;
   int side_ = 0;
-  bool is_zero_ = false;
   double t_ = 0.0, last_root_ = 0.0;
   bool found_ = false;
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "method/samples.hpp"
@@ -26,37 +27,33 @@ class FollowedEvent {
   /// The event of the next piece. It outlives neither this object nor the piece.
   SceneEvent begin_piece(double begin) {
     begin_ = farthest_ = begin;
+    begin_side_ = side_;
     return {[this](const State& state) { return follow(state); }, event_->direction, event_->terminal};
   }
 
   /// Whether a jump of the state takes the function through zero, in the event's direction.
   bool is_crossed(const State& after) {
-    const int before = side_;
+    const int before = side_.value_or(0);
     note(event_->function(after));
-    return before != 0 && side_ != before && (event_->direction == 0 || event_->direction == side_);
+    return before != 0 && *side_ != before && (event_->direction == 0 || event_->direction == -before);
   }
 
   bool terminal() const { return event_->terminal; }
 
  private:
-  void note(double value) {
-    if (value != 0.0) side_ = value > 0.0 ? 1 : -1;
-    else if (!is_zero_) side_ = -side_;   // an exact zero counts as crossed, once, as in each piece
-    is_zero_ = value == 0.0;
-  }
+  void note(double value) { side_ = (value > 0.0) - (value < 0.0); }
 
   double follow(const State& state) {
     const double value = event_->function(state), distance = std::abs(state.t - begin_);
-    if (state.t == begin_ && side_ != 0 && !std::isnan(value) && !(value == 0.0 && is_zero_))
-      return std::copysign(std::max(std::abs(value), std::numeric_limits<double>::min()), side_);
+    if (state.t == begin_ && begin_side_ && !std::isnan(value))
+      return *begin_side_ * std::max(std::abs(value), std::numeric_limits<double>::min());
     // Zeros are narrowed down behind the farthest time alone.
     if (state.t == begin_ || distance > std::abs(farthest_ - begin_)) farthest_ = state.t, note(value);
     return value;
   }
 
   const SceneEvent* event_;
-  int side_ = 0;
-  bool is_zero_ = false;
+  std::optional<int> side_, begin_side_;   // 0 at an exact zero, which was found
   double begin_ = 0.0, farthest_ = 0.0;
 };
 
