@@ -198,7 +198,11 @@ def smoke_build_info():
 
 
 def smoke_cmake_prefix():
-    prefix = pathlib.Path(ph.cmake_prefix())
+    try:
+        prefix = pathlib.Path(ph.cmake_prefix())
+    except ph.InvalidInput as error:   # a wheel of the module alone
+        assert "pip install polhode-cpp" in str(error)
+        return
     assert all((prefix / "include/polhode" / name).exists() for name in ("polhode.hpp", "step.hpp", "polhode_step.h"))
     assert (prefix / "lib/cmake/polhode/polhodeConfig.cmake").exists()
 
@@ -327,7 +331,7 @@ def test_shapes_torques_and_elliptic_functions():
 
 
 def test_the_scenes_and_their_references_are_installed():
-    folder = pathlib.Path(ph.cmake_prefix()) / "scenes"
+    folder = pathlib.Path(ph._core.__file__).parent / "scenes"
     assert (folder / "S1.toml").exists() and (folder / "reference/S1.npz").exists()
     assert not list(folder.rglob("*.py"))
 
