@@ -57,7 +57,7 @@ demo: build/.installed ## charts speed against accuracy on the scenes, in a minu
 	@$(PYTHON) -m polhode chart scenes/S*.toml --budget 60s --brief -o demo
 
 test: install ## every test, C++ and Python, as a fresh clone is checked
-	@cmake --build $(BUILD) -j $(JOBS) --target polhode_tests polhode_headers_alone | sed -n '/warning:\|error:/p'
+	@cmake --build $(BUILD) -j $(JOBS) --target polhode_tests polhode_headers_alone polhode_c | sed -n '/warning:\|error:/p'
 	@$(BUILD)/tests/cpp/polhode_tests
 	@$(PYTHON) -m pytest -n $(JOBS) --dist loadfile
 
