@@ -240,7 +240,7 @@ int main() {
   start.push_back(body.rotor_inertia * (body.rotor_speed + dot(body.axis, &start[0])));
   body.damper_inertia = read(), body.damper_viscous = read();
   for (Q& x : body.damper_rates) x = read();
-  for (int i = 0; i < 3; ++i) start.push_back(body.damper_inertia * (start[static_cast<std::size_t>(i)] + body.damper_rates[i]));
+  for (std::size_t i = 0; i < 3; ++i) start.push_back(body.damper_inertia * (start[i] + body.damper_rates[i]));
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       body.I[i][j] -= body.rotor_inertia * body.axis[i] * body.axis[j] + (i == j ? body.damper_inertia : Q(0));
@@ -249,7 +249,8 @@ int main() {
       const int a = (j + 1) % 3, b = (j + 2) % 3, c = (i + 1) % 3, d = (i + 2) % 3;
       body.inverse[i][j] = body.I[a][c] * body.I[b][d] - body.I[a][d] * body.I[b][c];
     }
-  const Q determinant = body.I[0][0] * body.inverse[0][0] + body.I[0][1] * body.inverse[1][0] + body.I[0][2] * body.inverse[2][0];
+  Q determinant = 0;
+  for (int i = 0; i < 3; ++i) determinant += body.I[0][i] * body.inverse[i][0];
   for (auto& row : body.inverse)
     for (Q& x : row) x /= determinant;
   std::vector<Q> times(static_cast<std::size_t>(read()));

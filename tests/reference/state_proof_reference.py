@@ -1,10 +1,10 @@
 """Judge proofs of formulas with states and switches: ``python tests/reference/state_proof_reference.py [--write]``.
 
-Each law is drawn as a tree with switches (abs, sign, min, max, clip, where) and states of its own, and written twice: as
-text for the package, and as C++ for ``__float128``, where extrapolated midpoint steps integrate it from one zero of a guard
-to the next. Some scenes have a driven rotor or a damper, whose equations are written out. Samples lie within a unit of
-each crossing. Two tolerances with other steps must agree to 24 digits. ``--write`` stores the first scenes; ``--scenes``
-and ``--seed`` draw others.
+Each law is drawn as a tree with switches (abs, sign, min, max, clip, where) and states of its own. It is written twice:
+as text for the package, and as C++ for ``__float128``, where extrapolated midpoint steps integrate it from one zero of
+a guard to the next. Some scenes have a driven rotor or a damper, whose equations are written out. Samples lie within a
+unit of each crossing. Two tolerances with other steps must agree to 24 digits. ``--write`` stores the first scenes;
+``--scenes`` and ``--seed`` draw others.
 """
 
 from __future__ import annotations
@@ -35,7 +35,8 @@ class StateLaw(Law):
         for name, code in (("h.x", "h[0]"), ("h.y", "h[1]"), ("h.z", "h[2]"), ("z", "h[3]")):
             text, tree = self.tree(2)
             size, decay = self.number(0.1, 0.6), self.number(0.05, 0.5)
-            rates.append((f"{size[0]} * sin({text}) - {decay[0]} * {name}", f"{size[1]} * sin({tree}) - {decay[1]} * {code}"))
+            rates.append((f"{size[0]} * sin({text}) - {decay[0]} * {name}",
+                          f"{size[1]} * sin({tree}) - {decay[1]} * {code}"))
         self.rates = [code for _, code in rates]
         self.rate_texts = ["[" + ", ".join(text for text, _ in rates[:3]) + "]", rates[3][0]]
 
@@ -98,7 +99,8 @@ def find_numbers(scene: dict) -> list[float]:
             damper["inertia"], damper["viscous"], *damper["rates"], len(scene["times"]), *scene["times"]]
 
 
-def run(program: Path, number: int, scene: dict, tolerance: float, longest: float) -> tuple[list[float], np.ndarray] | None:
+def run(program: Path, number: int, scene: dict, tolerance: float,
+        longest: float) -> tuple[list[float], np.ndarray] | None:
     """Return the times of the crossings and the rows (n, 11 + 4, 2), or None where they are not known."""
     text = " ".join([str(number), repr(tolerance), repr(longest), *(float(x).hex() for x in find_numbers(scene))])
     done = subprocess.run([program], input=text, text=True, capture_output=True, check=False)
@@ -169,7 +171,8 @@ def main() -> int:
             ended += motion.error_kind != "proved"
             if motion.error_kind != "proved" or wrong:
                 print(i, accuracy, motion.error_kind, motion.error, wrong, scene["crossings"], motion.message)
-    print(f"{len(known)} of {len(scenes)} scenes, {crossings} crossings, {numbers} numbers, {outside} outside, {ended} not proved")
+    print(f"{len(known)} of {len(scenes)} scenes, {crossings} crossings, {numbers} numbers, {outside} outside, "
+          f"{ended} not proved")
     return outside
 
 

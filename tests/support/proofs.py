@@ -68,7 +68,8 @@ def count_states_outside(motion, numbers):
     bounds = []
     for side in ("lower", "upper"):
         states = getattr(motion, f"states_{side}")
-        rows = [getattr(motion, f"omega_{side}"), getattr(motion, f"attitude_{side}"), states["h"], states["z"][:, None]]
+        rows = [getattr(motion, f"omega_{side}"), getattr(motion, f"attitude_{side}"), states["h"],
+                states["z"][:, None]]
         rows.append(states["rotor_momentum_0"][:, None] if numbers["rotor"] else np.full((len(motion.t), 1), np.nan))
         rows.append(states["damper_momentum"] if numbers["damper"] else np.full((len(motion.t), 3), np.nan))
         bounds.append(np.hstack(rows))

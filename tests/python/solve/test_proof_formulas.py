@@ -162,7 +162,8 @@ def test_switches_of_time_are_windows():
 
 def test_many_crossings_keep_narrow_bounds():
     # 127 zeros each; the set behind a surface is mapped by the saltation matrix, and not boxed.
-    for text in ("clip(sin(20 * t + attitude.x), -0.5, 0.5) * [1, 0.3, 0]", "sign(sin(20 * t + attitude.x)) * [0.1, 0.3, 0]"):
+    for text in ("clip(sin(20 * t + attitude.x), -0.5, 0.5) * [1, 0.3, 0]",
+                 "sign(sin(20 * t + attitude.x)) * [0.1, 0.3, 0]"):
         motion = prove([Formula(text=text)], times=np.linspace(0.0, 20.0, 11))
         assert motion.error_kind == "proved" and find_width(motion) < 1e-12
 
@@ -174,7 +175,8 @@ def test_where_a_switch_slides_or_is_touched_the_proof_ends_with_a_reason():
         # omega.z = 0.1 + (t - 1)^2 / 2 where the sign's guard is touched
         start = {"a": [0.0, 0.0, 0.0], "0": [0.0, 0.0, 0.6]}.get(text[1], [0.3, 0.2, 0.1])
         parameters = {"load": 0.5} if "load" in text else {}
-        motion = prove([Formula(text=text, **parameters)], inertia=[1.0, 1.0, 1.0], omega=start, times=np.linspace(0.0, 4.0, 41))
+        torque = Formula(text=text, **parameters)
+        motion = prove([torque], inertia=[1.0, 1.0, 1.0], omega=start, times=np.linspace(0.0, 4.0, 41))
         assert motion.error_kind == "limit" and reason in motion.message
         assert motion.proved_span[0] == 0.0 and motion.proved_span[1] < 2.0
         inside = motion.t < motion.proved_span[1]

@@ -195,7 +195,9 @@ class Run {
   /// What is known of the mode's own motion over a bounded step.
   WindowMotion follow_mode(const TaylorStep& step, double length) {
     const Interval whole(math::DD(0.5 * length), 0.5 * length * (1.0 + 0x1p-20));
-    WindowMotion motion{.begin = now_, .end = now_ + Interval(length), .during = now_ + whole, .length = length * TaylorStep::margin};
+    WindowMotion motion;
+    motion.begin = now_, motion.end = now_ + Interval(length), motion.during = now_ + whole;
+    motion.length = length * TaylorStep::margin;
     motion.change_factor = options_.step.switch_factor;
     motion.first_error = errors_.box();
     std::vector<DD> state(state_.size());
@@ -284,7 +286,9 @@ class Run {
         for (std::size_t i = 0; i < slack.size(); ++i) slack[i] += step.rest()[i];
         box = errors_.image_box(derivative_, step.width(), slack);
       }
-      const auto value = [&](std::size_t i) { return Interval(state[i], raised(box[i] + lost[i] + (more.empty() ? 0.0 : more[i]))); };
+      const auto value = [&](std::size_t i) {
+        return Interval(state[i], raised(box[i] + lost[i] + (more.empty() ? 0.0 : more[i])));
+      };
       const bool at_end = t == end_;
       for (std::size_t i = 0; i < 3 && scene_.want().omega; ++i)
         result_.omega[3 * sample + i] = (at_end ? value(i) + end_jump_[i] : value(i)) * Interval(body_.rate());

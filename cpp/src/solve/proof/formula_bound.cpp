@@ -373,7 +373,8 @@ double FormulaStep::find_certain(const Guard& guard, double side, double length)
 double FormulaStep::find_crossing() const {
   double nearest = Interval::infinity;
   for (const Guard& guard : guards_) {
-    const double slope = std::abs(guard.coefficients[1]), off = std::abs(guard.coefficients[0]) + 2.0 * find_width(guard);
+    const double slope = std::abs(guard.coefficients[1]);
+    const double off = std::abs(guard.coefficients[0]) + 2.0 * find_width(guard);
     if (slope > 0.0 && off > 0.0) nearest = std::min(nearest, off / slope);
   }
   return nearest < Interval::infinity ? nearest : 0.0;

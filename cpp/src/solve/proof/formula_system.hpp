@@ -9,14 +9,16 @@ namespace polhode::proof {
 
 /// Equations y' = f(t, y) as a program without roundings: see ExactGraph. They may have switches.
 struct FormulaEquations {
-  int size;                        ///< variables: the rates, the attitude where it is needed, the formulas' own states
+  int size;   ///< variables: the rates, the attitude where it is needed, the formulas' own states
   formula::Program program;        ///< the outputs are f
   std::vector<Interval> values;    ///< of its parameters
   double t0, per_time;             ///< the program's time is t0 + per_time * (time since the start) [s]
   bool has_attitude;
 
   /// Which variable a state of the program is.
-  int find_variable(int state) const { return state < formula::first_extra ? state : state - formula::first_extra + first_own(); }
+  int find_variable(int state) const {
+    return state < formula::first_extra ? state : state - formula::first_extra + first_own();
+  }
   /// The first of the formulas' own states.
   int first_own() const { return has_attitude ? formula::first_extra : formula::first_attitude; }
 };

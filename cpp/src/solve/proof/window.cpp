@@ -47,7 +47,8 @@ class Finder {
       if (!collect()) return window_;
       if (!measure()) return refuse("the switches of its formulas have no bounds");
       bool confirmed = true;
-      for (std::size_t i = 0; i < n_; ++i) confirmed = confirmed && (window_.change[i] < guess[i] || window_.change[i] == 0.0);
+      for (std::size_t i = 0; i < n_; ++i)
+        confirmed = confirmed && (window_.change[i] < guess[i] || window_.change[i] == 0.0);
       if (confirmed) return pass();
       for (std::size_t i = 0; i < n_; ++i) guess[i] = 2.0 * window_.change[i] + 0x1p-900;
     }

@@ -28,7 +28,7 @@ struct Window {
 
 /// What is known of the mode's own motion in a window.
 struct WindowMotion {
-  Interval begin = {}, end = {}, during = {};   ///< its first, its last, and all times since the start, in the equations' units
+  Interval begin = {}, end = {}, during = {};   ///< its first, its last, and all times since the start in the units of f
   double length = 0.0;
   std::vector<Interval> box = {};        ///< holds phi during the window
   std::vector<Interval> first = {}, last = {};   ///< P(0) and P(length)
