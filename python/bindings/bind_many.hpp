@@ -5,6 +5,7 @@
 
 #include "bind_scene.hpp"
 #include "convert.hpp"
+#include "polhode/core/error.hpp"
 #include "polhode/batch/solve_many.hpp"
 
 namespace polhode::python {
@@ -24,9 +25,12 @@ class ManyScenes {
       const Scene& common = *list_[0];
       const double *a = rates + 3 * body, *b = attitudes + 4 * body, *moment = moments + 3 * body;
       InertiaTensor inertia = common.given_inertia_B();
+      if (moments_.size() != 0 && common.changing())
+        throw InvalidInput("inertia", "left out for a scene whose inertia changes", "moments of each body");
       if (moments_.size() != 0) inertia = InertiaTensor::from_moments({moment[0], moment[1], moment[2]});
       return Scene(SceneParts{inertia, {a[0], a[1], a[2]}, {b[0], b[1], b[2], b[3]}, common.given_torques(),
-                              common.times(), common.want(), common.t0(), "", common.given_rotors(), common.given_damper()});
+                              common.times(), common.want(), common.t0(), "", common.given_rotors(), common.given_damper(), common.changing(),
+                              common.momentum(), common.leaving()});
     };
   }
 

@@ -53,11 +53,12 @@ InertiaTensor to_inertia(py::handle value, const char* name) {
 void bind_scene(py::module_& m) {
   bind_scene_rotor(m);
   bind_scene_damper(m);
+  bind_scene_changing(m);
   // The Python class keeps the torques' objects, so that their functions live as long.
   py::class_<Scene>(m, "Scene")
       .def(py::init([](py::handle inertia, py::handle omega, py::handle attitude, const py::iterable& torques,
                        py::handle times, py::handle want, py::handle t0, const py::object& name,
-                       const py::iterable& rotors, py::handle damper) {
+                       const py::iterable& rotors, py::handle damper, py::handle momentum, bool leaving) {
              if (!py::isinstance<py::str>(name)) throw InvalidInput("scene.name", "text", std::string(py::repr(name)));
              if (PyUnicode_AsUTF8(name.ptr()) == nullptr) {
                PyErr_Clear();
@@ -70,17 +71,27 @@ void bind_scene(py::module_& m) {
              std::vector<Rotor> wheels;
              for (const py::handle rotor : rotors)
                wheels.push_back(to_rotor(rotor, "scene.rotors[" + std::to_string(wheels.size()) + "]"));
-             return Scene(SceneParts{to_inertia(inertia, "scene.inertia"), to_vector3(omega, "scene.omega"),
+             std::optional<Changing> changing;
+             if (py::isinstance<Changing>(inertia)) changing = to_changing(inertia, "scene.inertia");
+             // The scene takes the tensor of its start.
+             const InertiaTensor body = changing ? InertiaTensor::from_moments(Vector3d::Ones())
+                                                 : to_inertia(inertia, "scene.inertia");
+             return Scene(SceneParts{body, to_vector3(omega, "scene.omega"),
                                      to_attitude(attitude, "scene.attitude", 3), std::move(list), to_times(times),
                                      to_wanted(want), to_real(t0, "scene.t0"), name.cast<std::string>(),
-                                     std::move(wheels), to_damper(damper)});
+                                     std::move(wheels), to_damper(damper), std::move(changing),
+                                     to_changing(momentum, "scene.momentum"), leaving});
            }),
            py::arg("inertia"), py::arg("omega"), py::arg("attitude"), py::arg("torques"), py::arg("times"),
            py::arg("want"), py::arg("t0"), py::arg("name"), py::arg("rotors"),
-           py::arg("damper"))
-      .def_property_readonly("inertia", &Scene::given_inertia_B)
-      .def_property_readonly("carrier_inertia", &Scene::inertia_B,
+           py::arg("damper"), py::arg("momentum"), py::arg("leaving"))
+      .def_property_readonly("inertia", py::overload_cast<>(&Scene::given_inertia_B, py::const_))
+      .def_property_readonly("carrier_inertia", py::overload_cast<>(&Scene::inertia_B, py::const_),
                              "InertiaTensor J that moves with omega: `inertia` less the axial moments of free rotors and the damper's.")
+      .def_property_readonly("changing", &Scene::changing,
+                             "The inertia of a body that changes, or None. `inertia` is then that of the start.")
+      .def_property_readonly("momentum", &Scene::momentum, "The momentum of parts inside the body, or None.")
+      .def_property_readonly("leaving", &Scene::leaving, "Whether matter that leaves takes its momentum along.")
       .def_property_readonly("damper", &Scene::given_damper, "The viscous slug in the body, or None.")
       .def_property_readonly(
           "rotor_momentum", [](const Scene& scene) { return from_vector3(scene.rotor_momentum()); },
@@ -117,7 +128,7 @@ void bind_scene(py::module_& m) {
         const Quat unit = to_attitude(attitude, "attitude");
         const double q[4] = {unit.x, unit.y, unit.z, unit.w};
         Vector3d tau = Vector3d::Zero();
-        const Matrix3d& I_B = scene.inertia_B().matrix();
+        const Matrix3d I_B = scene.inertia_B(to_real(t, "t"));
         std::vector<AnyTorque> torques = scene.given_torques();
         if (!states.is_none()) set_starts(torques, scene.states(), to_state_numbers(scene.states(), states));
         SeveralTorques{torques}.add(TorqueInput{to_real(t, "t"), w.data(), q, I_B}, tau.data());

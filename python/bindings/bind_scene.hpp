@@ -2,6 +2,7 @@
 
 #include "bind.hpp"
 #include "polhode/inertia/inertia_tensor.hpp"
+#include "polhode/scene/changing.hpp"
 #include "polhode/scene/damper.hpp"
 #include "polhode/scene/rotor.hpp"
 #include "polhode/torque/torques.hpp"
@@ -17,6 +18,8 @@ AnyTorque to_torque(py::handle value, const std::string& name);
 /// polhode.Rotor: a wheel in a body.
 void bind_scene_rotor(py::module_& m);
 void bind_scene_damper(py::module_& m);
+void bind_scene_changing(py::module_& m);
+std::optional<Changing> to_changing(py::handle value, const char* name);
 std::optional<Damper> to_damper(py::handle value);
 Rotor to_rotor(py::handle value, const std::string& name);
 

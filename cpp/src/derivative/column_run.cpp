@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "method/samples.hpp"
+#include "derivative/changing_columns.hpp"
 #include "derivative/column_motion.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/core/interrupt.hpp"
@@ -100,6 +101,7 @@ ColumnRun::ColumnRun(const Scene& scene, const std::vector<SceneParameter>& para
       side_(side),
       pieces_(cut(scene, find_further_ends(scene))),
       states_(static_cast<std::size_t>(scene.count_states())) {
+  if (scene.changes()) require_fixed_body(scene, parameters);
   const bool by_windows = std::any_of(parameters.begin(), parameters.end(), [](const SceneParameter& parameter) {
     return parameter.of == Of::torque_windows || parameter.of == Of::rotor_windows;
   });
@@ -179,6 +181,7 @@ std::vector<ColumnCause> ColumnRun::find_causes(const Piece& piece, const std::v
     if (during != nullptr && !(from < to ? during->acts_throughout(from, to) : during->acts_at(from))) continue;
     causes[c].torque = drop_windows(torque);
     causes[c].field = parameter.field, causes[c].component = parameter.component;
+    if (piece.changes) find_scaled(scene_, piece, parameter.index, causes[c]);
   }
   return causes;
 }
@@ -289,6 +292,15 @@ void ColumnRun::cross(const Piece& before, const std::vector<bool>& from, const 
   at.state.omega = after.state.omega;
 }
 
+void ColumnRun::change(const Momentum& before, const Momentum& after, Moment& at) const {
+  if (before == after) return;
+  for (std::size_t c = 0; c < parameters_.size(); ++c) {
+    const Vector3d own{at.at(0, c), at.at(1, c), at.at(2, c)};
+    at.add(0, c, carry_rates(scene_, own, before, after) - own);
+  }
+  at.state.omega += compute_rate_jump(scene_, at.state.omega, before, after);
+}
+
 ColumnSamples ColumnRun::run(double rtol, long max_steps, std::size_t most) const {
   const std::size_t samples = scene_.times().size(), columns = parameters_.size();
   ColumnSamples out;
@@ -328,11 +340,15 @@ void ColumnRun::follow(const std::vector<Piece>& pieces, const std::vector<std::
   };
   put_now();
   const Piece* before = &pieces.front();
+  Momentum momentum = find_momentum(scene_, scene_.t0());
   for (const Piece& piece : pieces) {
     const bool last = &piece == &pieces.back();
     if (!forward) put_now();
     const std::vector<bool> here = find_rotating(piece);
-    if (&piece != before || here != rotating) cross(*before, rotating, here, forward, at);
+    if (scene_.changes()) {
+      change(momentum, find_momentum(scene_, piece, piece.begin), at);
+      momentum = find_momentum(scene_, piece, piece.end);
+    } else if (&piece != before || here != rotating) cross(*before, rotating, here, forward, at);
     put_now();
     rotating = here, before = &piece;
     if (piece.end == at.state.t) continue;
@@ -360,7 +376,8 @@ void ColumnRun::follow(const std::vector<Piece>& pieces, const std::vector<std::
     if (!last) continue;
     std::vector<bool> then;
     for (const Rotor& rotor : scene_.rotors()) then.push_back(rotor.rotates_at(at.state.t));
-    if (forward) cross(piece, rotating, then, forward, at);   // as if later samples followed
+    if (forward && scene_.changes()) change(momentum, find_momentum(scene_, at.state.t), at);
+    else if (forward) cross(piece, rotating, then, forward, at);   // as if later samples followed
     put_now();
   }
 }

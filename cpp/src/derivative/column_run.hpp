@@ -45,6 +45,8 @@ class ColumnRun {
   std::vector<double> find_state_rates(const Moment& at, const std::vector<AnyTorque>& torques) const;
   Vector3d accelerate(const Moment& at, const std::vector<AnyTorque>& torques, const Vector3d& h) const;
   Vector3d divide(const Vector3d& L_B) const { return J_inverse_ * L_B; }
+  /// Carries a state and its columns over a jump of a body that changes.
+  void change(const Momentum& before, const Momentum& after, Moment& at) const;
   void cross(const Piece& before, const std::vector<bool>& from, const std::vector<bool>& to, bool forward,
              Moment& at) const;
 

@@ -126,7 +126,7 @@ std::vector<SensitivityTo> find_closed_columns(const Scene& scene, const std::ve
                                                                           {"inertia", SensitivityTo::inertia},
                                                                           {"axes", SensitivityTo::axes}};
   std::vector<SensitivityTo> columns;
-  if (!scene.torques().empty() || !scene.rotors().empty()) return columns;
+  if (!scene.torques().empty() || !scene.rotors().empty() || scene.changes()) return columns;
   for (const std::string& group : groups) {
     const auto* found = std::find_if(std::begin(closed), std::end(closed), [&](const auto& one) { return one.first == group; });
     if (found == std::end(closed)) return {};

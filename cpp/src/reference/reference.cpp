@@ -146,6 +146,46 @@ class LongDoubleSeries {
   std::vector<LawSeries> laws_;   // of the torques
 };
 
+/// The angular momentum in the body over the rates, H = J w + h, in a piece of a body that changes.
+struct RealMomentum {
+  Real J[3][3], h[3];
+
+  RealMomentum(const Scene& scene, const BodyPiece& body, const Vector3d& rotors, Real t) {
+    const Matrix3d given = scene.given_inertia_B().matrix();
+    for (int i = 0; i < 3; ++i) {
+      const auto row = static_cast<std::size_t>(i);
+      h[i] = rotors[i] + (body.momentum ? Changing::compute_number(*body.momentum, row, t) : 0);
+      for (int j = 0; j < 3; ++j) {
+        const std::size_t column = static_cast<std::size_t>(j), most = std::max(row, column), least = std::min(row, column);
+        Real entry = given(i, j);
+        if (body.inertia && body.inertia->terms.front().size() == 9)
+          entry = (Changing::compute_number(*body.inertia, 3 * most + least, t) +
+                   Changing::compute_number(*body.inertia, 3 * least + most, t)) / 2;
+        else if (body.inertia)
+          entry = i == j ? Changing::compute_number(*body.inertia, row, t) : 0;
+        J[i][j] = entry - scene.inertia_reduction()(i, j);
+      }
+    }
+  }
+
+  /// Rates that become those after a jump from this to another.
+  void jump(const RealMomentum& after, bool leaving, Real* w) const {
+    Real v[3], determinant = 0, cofactor[3][3];
+    for (int i = 0; i < 3; ++i) {
+      const Real (&M)[3][3] = leaving ? after.J : J;
+      v[i] = h[i] - after.h[i] + M[i][0] * w[0] + M[i][1] * w[1] + M[i][2] * w[2];
+    }
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        const int a = (i + 1) % 3, b = (i + 2) % 3, c = (j + 1) % 3, d = (j + 2) % 3;
+        cofactor[i][j] = after.J[a][c] * after.J[b][d] - after.J[a][d] * after.J[b][c];
+      }
+    for (int i = 0; i < 3; ++i) determinant += after.J[0][i] * cofactor[0][i];
+    for (int i = 0; i < 3; ++i)
+      w[i] = (cofactor[i][0] * v[0] + cofactor[i][1] * v[1] + cofactor[i][2] * v[2]) / determinant;
+  }
+};
+
 /// Integrates from t0 through the times in the order of `visit`, all on one side of t0. Continues with the next piece
 /// at each end of a window.
 void follow(const Scene& scene, const ReferenceOptions& options, const std::vector<Piece>& pieces,
@@ -158,8 +198,17 @@ void follow(const Scene& scene, const ReferenceOptions& options, const std::vect
   }
   std::size_t at = 0;
   LongDoubleSeries body(scene, options.order);
+  const auto find_body = [&](std::size_t piece, Real t) {
+    const double middle = 0.5 * (pieces[piece].begin + pieces[piece].end);
+    return RealMomentum(scene, pieces[piece].body, scene.rotor_momentum(middle), t);
+  };
+  const auto find_later = [&](double t) {
+    return RealMomentum(scene, scene.find_body_piece(t), scene.rotor_momentum(t), t);
+  };
   const auto enter_piece = [&](Real* y) {
-    body.jump(scenes[at].rotor_momentum(), y);
+    const double t = pieces[at].begin;
+    if (!scene.changes()) body.jump(scenes[at].rotor_momentum(), y);
+    else (at == 0 ? find_later(t) : find_body(at - 1, t)).jump(find_body(at, t), scene.leaving(), y);
     body = LongDoubleSeries(scenes[at], options.order);
     body.restart(y);
   };
@@ -181,7 +230,9 @@ void follow(const Scene& scene, const ReferenceOptions& options, const std::vect
       Real y[7];
       body.state(s, y);
       const double when = scene.times()[visit[next]];
-      if (when == pieces[at].end) body.jump(scene.rotor_momentum(when), y);
+      if (when == pieces[at].end && !scene.changes()) body.jump(scene.rotor_momentum(when), y);
+      if (when == pieces[at].end && scene.changes())
+        find_body(at, when).jump(find_later(when), scene.leaving(), y);
       for (std::size_t i = 0; i < 3; ++i) found.omega[3 * visit[next] + i] = static_cast<double>(y[i]);
       for (std::size_t i = 0; i < 4; ++i) found.attitude[4 * visit[next] + i] = static_cast<double>(y[3 + i]);
     }

@@ -57,6 +57,37 @@ void require_no_gradient(const std::vector<AnyTorque>& torques) {
   }
 }
 
+/// The axial moments of free rotors and the damper's.
+Matrix3d sum_reduction(const std::vector<Rotor>& rotors, const std::optional<Damper>& damper) {
+  Matrix3d sum = Matrix3d::Zero();
+  for (const Rotor& rotor : rotors)
+    if (rotor.free() && rotor.inertia()) sum += *rotor.inertia() * rotor.axis() * rotor.axis().transpose();
+  if (damper) sum += damper->inertia() * Matrix3d::Identity();
+  return sum;
+}
+
+void require_cover(const Changing& changing, const char* where, double first, double last) {
+  if (changing.begin() <= first && last <= changing.end()) return;
+  throw InvalidInput(where, "of pieces from " + to_text(first) + " to " + to_text(last) + " s",
+                     to_text(changing.begin()) + " to " + to_text(changing.end()) + " s",
+                     "give before= and after=, or further pieces");
+}
+
+void require_changes(const SceneParts& parts) {
+  if (parts.leaving && !parts.changing)
+    throw InvalidInput("scene.leaving", "left out for a constant inertia", "true", "no matter leaves");
+  if (!parts.changing && !parts.momentum) return;
+  const auto [least, most] = std::minmax_element(parts.times.begin(), parts.times.end());
+  const double first = std::min(parts.t0, *least), last = std::max(parts.t0, *most);
+  if (parts.changing) {
+    require_cover(*parts.changing, "scene.inertia", first, last);
+    parts.changing->require_inertia("scene.inertia", sum_reduction(parts.rotors, parts.damper));
+  }
+  if (!parts.momentum) return;
+  if (parts.momentum->width() != 3) throw InvalidInput("scene.momentum", "of three numbers", "nine");
+  require_cover(*parts.momentum, "scene.momentum", first, last);
+}
+
 void require_free_name(const SceneParts& parts, const std::string& name) {
   if (formula::find_place(list_states(parts.torques), name).count > 0)
     throw InvalidInput("scene.torques", "without a state of the name " + name, name, "it is a momentum in the body");
@@ -105,6 +136,8 @@ double find_momentum(const Scene& scene, const Rotor& rotor, const double* state
 }  // namespace
 
 Scene::Scene(SceneParts parts) {
+  if (parts.changing && std::isfinite(parts.t0))
+    parts.inertia_B = InertiaTensor::from_trusted(parts.changing->tensor(parts.t0), parts.changing->physical());
   const Vector3d& moments = parts.inertia_B.moments();
   if (!(moments.minCoeff() > 0.0)) {
     throw InvalidInput("scene.inertia", "a tensor with three positive principal moments",
@@ -128,11 +161,15 @@ Scene::Scene(SceneParts parts) {
   if (!parts.want.omega && !parts.want.attitude) {
     throw InvalidInput("scene.want", "omega, attitude or both", "neither");
   }
+  require_changes(parts);
   add_driven(parts);
   torque_sum_ = summarize(parts.torques);
+  if (parts.changing || parts.momentum) torque_sum_.keeps_energy = torque_sum_.keeps_jacobi = false;
+  if (parts.leaving) torque_sum_.keeps_vertical = false;
   states_ = list_states(parts.torques);
   if (!parts.rotors.empty() || parts.damper) {
     carrier_ = make_carrier(parts.inertia_B, parts.rotors, parts.damper);
+    reduction_ = sum_reduction(parts.rotors, parts.damper);
     if (carrier_) require_no_gradient(parts.torques);
     bool steady = true, any = false;
     for (const Rotor& rotor : parts.rotors) {
@@ -147,6 +184,35 @@ Scene::Scene(SceneParts parts) {
     return;
   }
   parts_ = std::make_shared<const SceneParts>(std::move(parts));
+}
+
+Matrix3d Scene::given_inertia_B(double t) const {
+  return parts_->changing ? parts_->changing->tensor(t) : parts_->inertia_B.matrix();
+}
+
+Matrix3d Scene::inertia_B(double t) const {
+  return parts_->changing ? Matrix3d(parts_->changing->tensor(t) - reduction_) : inertia_B().matrix();
+}
+
+Vector3d Scene::inner_momentum(double t) const {
+  return parts_->momentum ? parts_->momentum->vector(t) : Vector3d(Vector3d::Zero());
+}
+
+std::vector<double> Scene::find_changes(double first, double last) const {
+  std::vector<double> times;
+  for (const std::optional<Changing>* one : {&parts_->changing, &parts_->momentum}) {
+    if (!*one) continue;
+    for (const Changing::Piece& piece : (*one)->pieces())
+      if (first < piece.begin && piece.begin < last) times.push_back(piece.begin);
+  }
+  return times;
+}
+
+BodyPiece Scene::find_body_piece(double t, bool before) const {
+  BodyPiece piece;
+  if (parts_->changing) piece.inertia = parts_->changing->find(t, before);
+  if (parts_->momentum) piece.momentum = parts_->momentum->find(t, before);
+  return piece;
 }
 
 Vector3d Scene::rotor_momentum(double t) const {
@@ -195,7 +261,7 @@ bool Scene::has_inner_states() const {
 }
 
 bool Scene::is_closed() const {
-  return std::all_of(torques().begin(), torques().end(),
+  return !leaving() && std::all_of(torques().begin(), torques().end(),
                      [this](const AnyTorque& torque) { return is_drive(*this, torque); });
 }
 
@@ -225,7 +291,7 @@ void compute_damper_rates(const Scene& scene, std::size_t n, const double* omega
 }
 
 Vector3d sum_momenta(const Scene& scene, double t, const double* states) {
-  Vector3d sum = scene.rotor_momentum(t);
+  Vector3d sum = scene.rotor_momentum(t) + scene.inner_momentum(t);
   for (const Rotor& rotor : scene.rotors())
     if (rotor.is_driven()) sum += find_momentum(scene, rotor, states) * rotor.axis();
   if (scene.damper()) sum += find_damper_momentum(scene, states);

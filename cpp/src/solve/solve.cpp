@@ -16,6 +16,7 @@
 #include "solve/ground/formulas.hpp"
 #include "solve/ground/options.hpp"
 #include "solve/ground/pieces.hpp"
+#include "solve/run/keep_momentum.hpp"
 
 namespace polhode {
 
@@ -124,6 +125,7 @@ Motion PlannedScene::run(const SolveOptions& options) const {
   check_options(decision_->scene, run);
   Motion motion = run.proof ? prove(*decision_, run) : run_divided(decision_, run);
   if (!motion.all_finite()) refuse_samples(motion);
+  else keep_momentum(decision_->scene, motion);
   for (const LeftOut& left : decision_->left_out) motion.message.append("; ").append(describe(left));
   motion.stats.seconds = find_seconds_since(begin);
   return motion;

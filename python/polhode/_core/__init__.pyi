@@ -1295,8 +1295,137 @@ class Damper:
         """
         Damping between sphere and body [N m s].
         """
+class Changing:
+    """
+    Changing(pieces, *, before=None, after=None, physical=True)
+
+    An inertia or a momentum that changes with time: a polynomial in each of its pieces.
+
+    As `inertia` of a `Scene` it is the tensor of a body whose parts move or leave; as `momentum`, the angular momentum of
+    parts inside, relative to the body axes. Values may jump between pieces; at such a time the later value holds.
+
+    Parameters
+    ----------
+    pieces : iterable of (begin, end, terms)
+        In the order of time, without gaps [s]. The value is ``A0 + A1 (t - begin) + A2 (t - begin)^2 + ...``, with the terms
+        ``[A0, A1, ...]`` of shape (3,) or (3, 3) each. Three numbers are a vector, or the moments about the body axes.
+    before, after : array_like, optional
+        Constant values before the first piece and after the last.
+    physical : bool
+        Whether an inertia must have the triangle inequality at all times.
+
+    Raises
+    ------
+    InvalidInput
+        For no pieces, gaps, overlaps, numbers that are not finite, and terms of several shapes. A scene refuses an inertia
+        that is not positive definite at some time.
+
+    Examples
+    --------
+    >>> import polhode as ph
+    >>> boom = ph.Changing.ramp((1, 2, 3), (2, 4, 5), (5, 15), order=1)
+    >>> boom.at(10.0).tolist()
+    [1.5, 3.0, 4.0]
+    """
+    @staticmethod
+    def ramp(before: typing.Any, after: typing.Any, times: typing.Any, *, order: typing.Any = 5, physical: bool = True) -> Changing:
+        """
+        Return the change from one value to another between two times.
+
+        With s from 0 to 1 between the times it is s for order 1, ``s^2 (3 - 2 s)`` for order 3, and ``s^3 (10 - 15 s + 6 s^2)`` for
+        order 5, whose rate and acceleration vanish at both ends.
+
+        Parameters
+        ----------
+        before, after : array_like, shape (3,) or (3, 3)
+            Constant values before and after.
+        times : (float, float)
+            Begin and end [s].
+        order : {1, 3, 5}
+            Degree of the polynomial.
+        physical : bool
+            Whether an inertia must have the triangle inequality at all times.
+
+        Returns
+        -------
+        Changing
+            A constant, a polynomial, and a constant.
+
+        Raises
+        ------
+        InvalidInput
+            For times that are not finite or not in order, values of several shapes, and another order.
+        """
+    @staticmethod
+    def table(t: typing.Any, values: typing.Any, *, physical: bool = True) -> Changing:
+        """
+        Return values that are linear between given times, and constant outside.
+
+        Parameters
+        ----------
+        t : array_like, shape (n,)
+            Times in their order, at least two [s].
+        values : array_like, shape (n, 3) or (n, 3, 3)
+            The values there.
+        physical : bool
+            Whether an inertia must have the triangle inequality at all times.
+
+        Returns
+        -------
+        Changing
+            A constant, n - 1 linear pieces, and a constant.
+
+        Raises
+        ------
+        InvalidInput
+            For times that are not in order or not finite, and another number of values.
+        """
+    def __eq__(self, arg0: typing.Any) -> bool:
+        ...
+    def __getstate__(self) -> tuple[typing.Any, ...]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, pieces: typing.Any, *, before: typing.Any = None, after: typing.Any = None, physical: bool = True) -> None:
+        ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: tuple[typing.Any, ...]) -> None:
+        ...
+    def at(self, t: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Return the values at times.
+
+        Parameters
+        ----------
+        t : array_like
+            Times [s]. At the time of a jump the later value holds.
+
+        Returns
+        -------
+        ndarray, shape (..., 3) or (..., 3, 3)
+
+        Raises
+        ------
+        InvalidInput
+            For a time outside the pieces.
+        """
+    @property
+    def physical(self) -> bool:
+        """
+        Whether an inertia must have the triangle inequality.
+        """
+    @property
+    def pieces(self) -> tuple[typing.Any, ...]:
+        """
+        tuple of (begin, end, terms), with the constant ones before and after.
+        """
 class Scene:
-    def __init__(self, inertia: typing.Any, omega: typing.Any, attitude: typing.Any, torques: collections.abc.Iterable[typing.Any], times: typing.Any, want: typing.Any, t0: typing.Any, name: typing.Any, rotors: collections.abc.Iterable[typing.Any], damper: typing.Any) -> None:
+    def __init__(self, inertia: typing.Any, omega: typing.Any, attitude: typing.Any, torques: collections.abc.Iterable[typing.Any], times: typing.Any, want: typing.Any, t0: typing.Any, name: typing.Any, rotors: collections.abc.Iterable[typing.Any], damper: typing.Any, momentum: typing.Any, leaving: bool) -> None:
         ...
     def __reduce__(self) -> tuple[typing.Any, ...]:
         """
@@ -1331,6 +1460,11 @@ class Scene:
         InertiaTensor J that moves with omega: `inertia` less the axial moments of free rotors and the damper's.
         """
     @property
+    def changing(self) -> Changing | None:
+        """
+        The inertia of a body that changes, or None. `inertia` is then that of the start.
+        """
+    @property
     def damper(self) -> Damper | None:
         """
         The viscous slug in the body, or None.
@@ -1338,6 +1472,16 @@ class Scene:
     @property
     def inertia(self) -> InertiaTensor:
         ...
+    @property
+    def leaving(self) -> bool:
+        """
+        Whether matter that leaves takes its momentum along.
+        """
+    @property
+    def momentum(self) -> Changing | None:
+        """
+        The momentum of parts inside the body, or None.
+        """
     @property
     def name(self) -> str:
         ...

@@ -40,7 +40,9 @@ class States(NamedTuple):
 
 def is_free(recipe: EnsembleRecipe, point: Point) -> bool:
     """Return True if the closed form of free bodies serves: no torque, no rotor, and no method asked of it."""
-    return not point.nominal.torques and not point.nominal.rotors and not set(recipe.options) - {"accuracy"}
+    nominal = point.nominal
+    changes = nominal.changing is not None or nominal.momentum is not None
+    return not (nominal.torques or nominal.rotors or changes) and not set(recipe.options) - {"accuracy"}
 
 
 def check_options(recipe: EnsembleRecipe) -> None:

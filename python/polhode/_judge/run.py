@@ -75,6 +75,8 @@ def judge(
         raise InvalidInput("inertia: must be left out with scene, which has one; got both")
     if scene is not None and not isinstance(scene, Scene):
         raise InvalidInput(f"scene: must be a polhode.Scene, got {type(scene).__name__}")
+    if scene is not None and (scene.changing is not None or scene.momentum is not None):
+        raise InvalidInput("scene: must have a body of constant inertia and momentum, got one that changes")
     if scene is not None and (scene.damper is not None
                               or any(name.startswith("rotor_momentum_") for name in scene.states)):
         raise InvalidInput("scene: must have no damper and no motors or friction of rotors, got one with them")

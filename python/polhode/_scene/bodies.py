@@ -1,4 +1,4 @@
-"""Bodies in scene files: moments, a matrix, a shape, a mesh, or several parts."""
+"""Bodies in scene files: moments, a matrix, a shape, a mesh, several parts, or pieces of one that changes."""
 
 from __future__ import annotations
 
@@ -44,7 +44,31 @@ def _check(table: Any, choices: tuple[str, ...], more: set[str]) -> None:
 
 
 def _check_body(body: Any) -> None:
-    _check(body, BODIES, {"about"} if body.moments is None and body.matrix is None else set())
+    pieces = body.pieces or []
+    if any(piece.inertia is not None for piece in pieces):
+        wrong = body.model_fields_set - {"pieces", "leaving", "physical"}
+        if wrong:
+            raise ValueError(f"unknown key {min(wrong)!r} beside pieces with an inertia")
+        return
+    more = {"about"} if body.moments is None and body.matrix is None else set()
+    _check(body, BODIES, more | {"pieces", "leaving"})
+
+
+def _check_piece(piece: Any) -> None:
+    if piece.inertia is None and piece.momentum is None:
+        raise ValueError("give inertia, momentum or both")
+
+
+@cache
+def piece_model() -> Any:
+    """Return the pydantic model of a piece of a body that changes, with the terms of its polynomials."""
+    kind = kinds()
+    vector: Any = kind.vector
+    either: Any = kind.vector | kind.matrix
+    tensors: Any = list[either]
+    vectors: Any = list[vector]
+    return model("Piece", _check_piece, **{"from": (float, ...), "to": (float, ...)}, inertia=(tensors | None, None),
+                 momentum=(vectors | None, None))
 
 
 def _check_part(part: Any) -> None:
@@ -72,9 +96,11 @@ def body_model() -> Any:
     kind = kinds()
     part: Any = part_model()
     parts: Any = list[part]
+    piece: Any = piece_model()
+    pieces: Any = list[piece]
     return model("Body", _check_body, "allow", moments=(kind.vector | None, None), matrix=(kind.matrix | None, None),
                  **_solid(), parts=(parts | None, None), about=(kind.vector | None, None),
-                 physical=(bool, True))
+                 physical=(bool, True), pieces=(pieces | None, None), leaving=(bool, False))
 
 
 def _solid() -> dict[str, Any]:
@@ -161,8 +187,28 @@ def _shape(entry: Any, where: str) -> _core.MassProperties:
         raise InvalidInput(f"{where}: {error}") from None
 
 
+def changing_of(body: Any, name: str) -> _core.Changing | None:
+    """Return the inertia or the momentum that the pieces of a [body] table describe, or None."""
+    pieces = [(getattr(piece, "from"), piece.to, getattr(piece, name)) for piece in body.pieces or []
+              if getattr(piece, name) is not None]
+    if not pieces:
+        return None
+    try:
+        return _core.Changing(pieces, physical=body.physical)
+    except InvalidInput as error:
+        raise InvalidInput(f"body.pieces: {name}: {error}") from None
+
+
 def body_inertia(body: Any) -> _core.InertiaTensor:
-    """Return the InertiaTensor that a [body] table describes."""
+    """Return the InertiaTensor that a [body] table describes.
+
+    Raises
+    ------
+    InvalidInput
+        For a body that is none, and for pieces of an inertia that changes.
+    """
+    if changing_of(body, "inertia") is not None:
+        raise InvalidInput("body: must have a constant inertia here, got pieces")
     if is_solid(body):
         properties = body_properties(body)
         return properties.inertia if body.about is None else properties.about(body.about)

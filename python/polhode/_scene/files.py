@@ -14,7 +14,7 @@ import numpy as np
 from .. import _files, torques
 from .._core import Damper, InvalidInput, Rotor
 from .._orbit.orbit import Orbit
-from .bodies import attitude_of, body_inertia, body_model, place_meshes
+from .bodies import attitude_of, body_inertia, body_model, changing_of, place_meshes
 from .orbits import make_orbits, orbit_model
 from .scene import Scene, scene_folder
 from .validation import euler_model, kinds, model, one_of, validate
@@ -202,7 +202,7 @@ def make_scene(data: dict[str, Any], where: str = "scene") -> Scene:
     try:
         orbits = make_orbits(entry.orbits)
         return Scene(
-            inertia=body_inertia(entry.body),
+            inertia=changing_of(entry.body, "inertia") or body_inertia(entry.body),
             omega=np.radians(start.omega_deg) if start.omega is None else start.omega,
             attitude=attitude_of(start),
             torques=[_torque(torque, orbits) for torque in entry.torques],
@@ -212,6 +212,8 @@ def make_scene(data: dict[str, Any], where: str = "scene") -> Scene:
             name=entry.name,
             rotors=_rotors(entry.rotors),
             damper=None if entry.damper is None else Damper(**entry.damper.model_dump()),
+            momentum=changing_of(entry.body, "momentum"),
+            leaving=entry.body.leaving,
         )
     except InvalidInput as error:
         raise InvalidInput(f"{where}: {error}") from None

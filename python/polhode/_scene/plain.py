@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from .. import torques
-from .._core import Damper, InertiaTensor, InvalidInput, Rotor
+from .._core import Changing, Damper, InertiaTensor, InvalidInput, Rotor
 from .scene import Scene, _restore
 
 
@@ -80,7 +80,12 @@ def _from_torque(data: dict[str, Any]) -> Any:
 def to_plain(scene: Scene) -> dict[str, Any]:
     """Return a scene as lists, numbers and text. Of a torque that is a function, its name stands there."""
     matrix, physical = _state(scene.inertia)
-    return {"inertia": matrix, "physical": physical, "omega": scene.omega.tolist(), "attitude": scene.attitude.tolist(),
+    given = {"changing": scene.changing, "momentum": scene.momentum}
+    changes: dict[str, Any] = {name: _state(value) for name, value in given.items() if value is not None}
+    if scene.leaving:
+        changes["leaving"] = True
+    return {"inertia": matrix, "physical": physical, **changes,
+            "omega": scene.omega.tolist(), "attitude": scene.attitude.tolist(),
             "torques": [_torque(torque) for torque in scene.torques],
             "rotors": [_state(rotor) for rotor in scene.rotors],
             **({} if scene.damper is None else {"damper": _state(scene.damper)}),
@@ -95,8 +100,11 @@ def from_plain(data: dict[str, Any]) -> Scene:
     InvalidInput, LookupError, TypeError, ValueError
         For data that is none of a scene.
     """
+    changes = {name: _made(Changing, data[name]) for name in ("changing", "momentum") if name in data}
+    inertia = changes.get("changing") or InertiaTensor(data["inertia"], physical=bool(data["physical"]))
     return _restore(Scene, {
-        "inertia": InertiaTensor(data["inertia"], physical=bool(data["physical"])), "omega": data["omega"],
+        "inertia": inertia, "momentum": changes.get("momentum"), "leaving": bool(data.get("leaving", False)),
+        "omega": data["omega"],
         "attitude": np.asarray(data["attitude"], dtype=float),
         "torques": [_from_torque(torque) for torque in data["torques"]],
         "rotors": [_made(Rotor, rotor) for rotor in data["rotors"]],

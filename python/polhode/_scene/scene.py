@@ -22,7 +22,7 @@ class Scene(_core.Scene):
 
     Parameters
     ----------
-    inertia : InertiaTensor, or array_like of shape (3,) or (3, 3)
+    inertia : InertiaTensor, Changing, or array_like of shape (3,) or (3, 3)
         About the centre of mass, or about the pivot of a body with one [kg m^2]. Three numbers are principal moments
         about the body axes, in any order. Rotors are part of the body, locked.
     omega : array_like, shape (3,)
@@ -43,6 +43,11 @@ class Scene(_core.Scene):
         Wheels in the body, in any number. See `Rotor`.
     damper : Damper, optional
         A viscous slug in the body. See `Damper`.
+    momentum : Changing, optional
+        Angular momentum of parts inside, relative to the body axes [kg m^2/s].
+    leaving : bool
+        Of an inertia that changes: matter leaves at rest relative to the body, and takes its momentum along. Else parts
+        of the body move, and its angular momentum stays.
 
     Raises
     ------
@@ -67,12 +72,15 @@ class Scene(_core.Scene):
         name: str = "",
         rotors: Iterable[_core.Rotor] = (),
         damper: _core.Damper | None = None,
+        momentum: _core.Changing | None = None,
+        leaving: bool = False,
     ) -> None:
         kept = to_items(torques, "scene.torques", "torques") if isinstance(torques, Iterable) else (torques,)
         if not isinstance(rotors, Iterable):
             rotors = (rotors,)
         rotors = to_items(rotors, "scene.rotors", "rotors")
-        super().__init__(inertia, omega, attitude, kept, times, want, t0, name, rotors, damper)
+        super().__init__(inertia, omega, attitude, kept, times, want, t0, name, rotors, damper, momentum,
+                         bool(leaving))
         self._torques = kept   # the compiled scene holds plain pointers to their functions
 
     @property
@@ -107,7 +115,7 @@ class Scene(_core.Scene):
 
     def _parts(self) -> dict[str, Any]:
         return {
-            "inertia": self.inertia,
+            "inertia": self.inertia if self.changing is None else self.changing,
             "omega": self.omega,
             "attitude": self.attitude,
             "torques": self.torques,
@@ -117,6 +125,8 @@ class Scene(_core.Scene):
             "name": self.name,
             "rotors": self.rotors,
             "damper": self.damper,
+            "momentum": self.momentum,
+            "leaving": self.leaving,
         }
 
     def replace(self, **changes: Any) -> Scene:

@@ -67,6 +67,18 @@ def list_keywords(rotor: Any) -> dict[str, Any]:
             and not (name in drive and value == drive[name])}
 
 
+def _body(scene: Scene) -> dict[str, Any]:
+    """Return the [body] table; pieces of the inertia come before those of the momentum."""
+    matrix, physical = scene.inertia.__getstate__()
+    body: dict[str, Any] = {} if scene.changing else {"matrix": matrix}
+    if not physical:
+        body["physical"] = False
+    pieces = [{"from": begin, "to": end, name: terms}
+              for name, changing in (("inertia", scene.changing), ("momentum", scene.momentum)) if changing
+              for begin, end, terms in changing.pieces]
+    return body | ({"pieces": pieces} if pieces else {}) | ({"leaving": True} if scene.leaving else {})
+
+
 def to_toml(scene: Scene) -> str:
     """Return a scene as the text of a scene file.
 
@@ -76,8 +88,7 @@ def to_toml(scene: Scene) -> str:
         For a torque that is a Python function.
     """
     lines = [f"name = {_value(scene.name)}", f"want = {_value(list(scene.want))}"]
-    matrix, physical = scene.inertia.__getstate__()
-    _table(lines, "[body]", {"matrix": matrix, **({} if physical else {"physical": False})})
+    _table(lines, "[body]", _body(scene))
     _table(lines, "[start]", {"omega": scene.omega, "attitude": scene.attitude, "t0": scene.t0})
     _table(lines, "[times]", {"values": scene.times})
     orbits = Names()

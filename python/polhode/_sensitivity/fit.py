@@ -176,6 +176,8 @@ def fit(
     """
     if scene is not None and not isinstance(scene, Scene):
         raise InvalidInput(f"scene: must be a polhode.Scene, got {type(scene).__name__}")
+    if scene is not None and (scene.changing is not None or scene.momentum is not None):
+        raise InvalidInput("scene: must have a body of constant inertia and momentum, got one that changes")
     driven = scene is not None and bool(len(scene.torques) or len(scene.rotors))
     measurements, groups = _to_data(data), _to_groups(fit, driven)
     if not is_one_of(loss, LOSSES):

@@ -90,6 +90,8 @@ def lyapunov(scene: Scene, span: float | None = None, *, accuracy: float = 1e-9)
     accuracy = to_number(accuracy, "accuracy")
     rate = float(np.linalg.norm(scene.omega))
     parts = int(min(max(PARTS, length * rate / (2 * math.pi * TURN)), 1_000_000))
+    if scene.changing is not None or scene.momentum is not None:
+        raise InvalidInput("lyapunov: must be of a scene whose body is constant, got one that changes")
     if scene.damper is not None or any(name.startswith("rotor_momentum_") for name in scene.states):
         raise InvalidInput("lyapunov: must be of a scene without a damper and without motors or friction of rotors, "
                                  "got one with them; their momenta are states, which it does not carry")

@@ -151,6 +151,11 @@ def smoke_damper():
     assert slug.rates.tolist() == [0, 0, 0] and scene(damper=slug).damper == slug
 
 
+def smoke_changing():
+    boom = ph.Changing.ramp((1, 2, 2.5), (2, 3, 3.5), (0, 1))
+    assert boom.at(0.5).tolist() == [1.5, 2.5, 3.0] and scene(inertia=boom).changing == boom
+
+
 def smoke_scene():
     assert pickle.loads(pickle.dumps(scene())) == scene() and scene(t0=1.0) != scene()
 
@@ -277,6 +282,7 @@ SMOKE = {
     "Plan": smoke_plan,
     "PrincipalAxes": smoke_principal_axes,
     "Rotation": smoke_rotation,
+    "Changing": smoke_changing,
     "Damper": smoke_damper,
     "Rotor": smoke_rotor,
     "Scene": smoke_scene,

@@ -300,7 +300,8 @@ PROMISED = {"ensemble": 1.5}
 OUT = {
     "sets up one body, in microseconds": (
         "DampedFree", "FreeMotion", "Gyrostat", "HeavyTop", "Pendulum", "DampedFree.slowed_time", "Event", "Rotor",
-        "Damper", "Orbit", "Orbit.from_elements", "Orbit.table", "MagneticField", "MagneticField.at", "Plate",
+        "Changing", "Changing.at", "Changing.ramp", "Changing.table", "Damper", "Orbit", "Orbit.from_elements",
+        "Orbit.table", "MagneticField", "MagneticField.at", "Plate",
         "InertiaTensor", "MassProperties", "PrincipalAxes", "shapes.", "torques.", "formula.", "generalised_forces",
         "effect",
         "inertia.check", "inertia.diagnose", "inertia.equivalent_box", "inertia.equivalent_ellipsoid",

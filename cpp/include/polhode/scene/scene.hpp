@@ -7,6 +7,7 @@
 
 #include "polhode/core/state.hpp"
 #include "polhode/inertia/inertia_tensor.hpp"
+#include "polhode/scene/changing.hpp"
 #include "polhode/scene/damper.hpp"
 #include "polhode/scene/rotor.hpp"
 #include "polhode/torque/torques.hpp"
@@ -23,7 +24,8 @@ struct Wanted {
 /// The parts of a scene, to be filled by name.
 struct SceneParts {
   InertiaTensor inertia_B;                       ///< about the centre of mass, or about the pivot of a body held at
-                                                 ///< one; of all, rotors included and locked
+                                                 ///< one; of all, rotors included and locked. Of a body that
+                                                 ///< changes, any tensor: that of t0 takes its place
   Vector3d omega = Vector3d::Zero();             ///< w_B at t0 [rad/s]
   Quat attitude = {};                            ///< q_WB at t0
   std::vector<AnyTorque> torques = {};
@@ -33,6 +35,21 @@ struct SceneParts {
   std::string name = {};
   std::vector<Rotor> rotors = {};                ///< in the body, in any number
   std::optional<Damper> damper = {};             ///< in the body
+  std::optional<Changing> changing = {};         ///< the inertia, where it changes
+  std::optional<Changing> momentum = {};         ///< h_B of parts that move within the body [N m s]
+  bool leaving = false;                          ///< matter that leaves takes its momentum along
+};
+
+/// The inertia and the momentum of parts inside, in one piece of time of a body that changes.
+///
+/// With H = J w + h the angular momentum in body axes, H' = H x w + tau. Where J or h jumps, H stays and w jumps. If
+/// matter leaves at rest relative to the body, it takes J' w along: J w' = H x w + tau - h', and w stays where J jumps.
+struct BodyPiece {
+  std::optional<Changing::Piece> inertia = {};    ///< J; nothing: that of the scene
+  std::optional<Changing::Piece> momentum = {};   ///< h; nothing: zero
+  bool is_constant() const {
+    return (!inertia || inertia->is_constant()) && (!momentum || momentum->is_constant());
+  }
 };
 
 /// What there is: a body with its rotors, its start, its torques, and what is wanted. Checked here, once, and never
@@ -46,6 +63,22 @@ class Scene {
   /// The inertia J that moves with omega: the given one, less the axial moments of free rotors and the damper's.
   const InertiaTensor& inertia_B() const { return carrier_ ? *carrier_ : parts_->inertia_B; }
   const InertiaTensor& given_inertia_B() const { return parts_->inertia_B; }   ///< of all, rotors included and locked
+  /// The inertia or the momentum of parts inside depends on time. inertia_B() is then that of t0.
+  bool changes() const { return parts_->changing || parts_->momentum; }
+  const std::optional<Changing>& changing() const { return parts_->changing; }
+  const std::optional<Changing>& momentum() const { return parts_->momentum; }
+  bool leaving() const { return parts_->leaving; }
+  /// The inertia that moves with omega at a time, in the piece that holds from it on.
+  Matrix3d inertia_B(double t) const;
+  Matrix3d given_inertia_B(double t) const;
+  /// What free rotors and the damper take from the inertia.
+  const Matrix3d& inertia_reduction() const { return reduction_; }
+  /// The momentum of parts inside at a time, without rotors.
+  Vector3d inner_momentum(double t) const;
+  /// The times within a span at which a piece of the body ends.
+  std::vector<double> find_changes(double first, double last) const;
+  /// The body's piece that holds from a time on, or up to it.
+  BodyPiece find_body_piece(double t, bool before = false) const;
   const Vector3d& omega() const { return parts_->omega; }
   const Quat& attitude() const { return parts_->attitude; }
   /// The torques as given, and behind them those of driven rotors on the carrier.
@@ -84,6 +117,7 @@ class Scene {
  private:
   std::shared_ptr<const SceneParts> parts_;
   std::shared_ptr<const InertiaTensor> carrier_;   ///< null without free rotors and damper
+  Matrix3d reduction_ = Matrix3d::Zero();
   Vector3d rotor_momentum_ = Vector3d::Zero();
   TorqueSum torque_sum_;
   std::vector<formula::Input> states_;

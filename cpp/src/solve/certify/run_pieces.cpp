@@ -29,11 +29,34 @@ std::optional<Scene> zero_negligible_rates(const Scene& piece, const Scene& whol
   return Scene(std::move(parts));
 }
 
-/// Adds the rounding of a jump of the rates, and of the momentum behind it, to the errors that a trace carries.
-void add_jump(const Scene& part, const Vector3d& dh, ode::ErrorTrace& trace) {
+/// Carries the errors of a trace over a jump of the rates. Adds the rounding of the jump, and of the momentum behind it.
+/// @param omega  after the jump
+void add_jump(const Scene& scene, const Vector3d& omega, const Momentum& before, const Momentum& after,
+              ode::ErrorTrace& trace) {
+  double dh = (after.h - before.h).norm();
+  if (after.J != before.J) {
+    for (double* error : {trace.loss, trace.spread, trace.sample}) {
+      const Vector3d carried = carry_rates(scene, {error[0], error[1], error[2]}, before, after);
+      std::copy_n(carried.data(), 3, error);
+    }
+    dh += (after.J - before.J).norm() * omega.norm();
+  }
   constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
-  const double size = rounding * trace.scale * dh.norm() / part.inertia_B().moments()[0];
+  const double size = rounding * trace.scale * dh / compute_principal_axes(after.J).moments[0];
   for (int i = 0; i < 3; ++i) trace.spread[i] += std::copysign(size, trace.spread[i]);
+}
+
+/// Where momenta of parts inside cancel, rates are left that are rounding alone. They have no digits for a bound that is
+/// relative to them, so they become zero, and an error.
+std::optional<Scene> drop_rounded_rates(const Scene& part, ode::ErrorTrace& trace) {
+  constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
+  const double rate = part.omega().norm();
+  if (rate == 0.0 || !(rate < rounding * trace.largest)) return std::nullopt;
+  for (int i = 0; i < 3; ++i)
+    trace.spread[i] += std::copysign(trace.scale * std::abs(part.omega()[i]), trace.spread[i]);
+  SceneParts parts = part.parts();
+  parts.omega.setZero();
+  return Scene(std::move(parts));
 }
 
 /// A comparison may have a time at the start itself, so a piece in a direction that was not planned. It has no length,
@@ -90,7 +113,7 @@ Motion run_planned(const Decision& decision, const Scene& scene, const SolveOpti
     runs.back() = "taylor";
     return Motion(taylor_method.integrate(start, to_run_options(piece_options, {std::max(rtol, least)})));
   };
-  Vector3d h = Vector3d::Zero();   // of the rotors before the piece
+  Momentum momentum{Matrix3d::Zero(), Vector3d::Zero()};   // before the piece
   const auto run_piece = [&](const Scene& part, const Piece& piece, const SolveOptions& piece_options) {
     if (trace == nullptr) return run_one(part, piece, piece_options);
     if (piece.begin == scene.t0()) {
@@ -101,11 +124,13 @@ Motion run_planned(const Decision& decision, const Scene& scene, const SolveOpti
       std::copy(states.begin(), states.end(), start + ode::series_width);
       trace->start(start, ode::series_width + static_cast<int>(states.size() + 7) / 8 * 8);
       trace->continued = true;
-      h = scene.rotor_momentum();
+      momentum = find_momentum(scene, scene.t0());
     }
-    if (part.rotor_momentum() != h) add_jump(part, part.rotor_momentum() - h, *trace);
-    h = part.rotor_momentum();
-    Motion motion = run_one(part, piece, piece_options);
+    if (const Momentum after = find_momentum(scene, piece, piece.begin); !(after == momentum))
+      add_jump(scene, part.omega(), momentum, after, *trace);
+    momentum = find_momentum(scene, piece, piece.end);
+    const std::optional<Scene> at_rest = piece.form == nullptr ? drop_rounded_rates(part, *trace) : std::nullopt;
+    Motion motion = run_one(at_rest ? *at_rest : part, piece, piece_options);
     trace->before += std::abs(piece.end - piece.begin);
     return motion;
   };

@@ -196,6 +196,7 @@ Effect compute_effect(const Scene& scene, std::size_t torque) {
       return effect::refuse("what remains is not a free body: " + std::string(torque_name(torques[i])) + " acts");
   }
   if (!scene.rotors().empty()) return effect::refuse("what remains is not a free body: rotors act");
+  if (scene.changes()) return effect::refuse("what remains is not a free body: the body changes");
   // A formula may be one or several torques of the list.
   const Scene alone = resolve_formulas(scene.with_torques({torques[torque]}), AsCustom::no);
   std::vector<std::size_t> parts(alone.torques().size());

@@ -154,7 +154,9 @@ Scene resolve_formulas(const Scene& scene, AsCustom as_custom, Recognitions& rec
     const AnyTorque torque = given[i];
     const Formula* formula = find_formula(torque);
     if (formula == nullptr) continue;
-    const auto& known = recognitions.find(*formula, scene);
+    // A law with the inertia would be known by that of one time.
+    static const std::optional<std::vector<KnownTorque>> unknown;
+    const auto& known = scene.changing() ? unknown : recognitions.find(*formula, scene);
     if (!known) {
       const bool steps_over = as_custom == AsCustom::yes && formula->has_switches() && formula->states().empty();
       if (steps_over) torques[i] = with_window(torque, formula->as_custom(scene.inertia_B().matrix()));

@@ -21,7 +21,8 @@ double compute_kinetic(const Matrix3d& I, const double* w) {
 
 double compute_potential(const Scene& scene, double t, const double* omega, const double* attitude) {
   double sum = 0.0;
-  const TorqueInput in{t, omega, attitude, scene.inertia_B().matrix()};
+  const Matrix3d inertia_B = scene.inertia_B(t);
+  const TorqueInput in{t, omega, attitude, inertia_B};
   for (const AnyTorque& torque : scene.torques()) {
     std::visit([&](const auto& acting) { sum += acting.compute_potential(in); }, torque);
   }
@@ -36,7 +37,7 @@ double relative(double difference, double scale) {
 /// Only the friction of rotors acts: the energy never rises.
 bool only_loses_energy(const Scene& scene) {
   return scene.is_closed() && scene.has_inner_states() &&
-         std::all_of(scene.rotors().begin(), scene.rotors().end(), [](const Rotor& rotor) {
+         !scene.changes() && std::all_of(scene.rotors().begin(), scene.rotors().end(), [](const Rotor& rotor) {
            return !rotor.parts().law && rotor.parts().torque == 0.0 && !rotor.has_windows();
          });
 }
@@ -67,7 +68,7 @@ void compute_energy(const Scene& scene, std::size_t n, const double* t, const do
   for (std::size_t i = 0; i < n; ++i) {
     if (i % rows_between_checks == 0) check_interrupt();
     const double* q = attitude != nullptr ? attitude + 4 * i : identity;
-    energy[i] = compute_kinetic(scene.inertia_B().matrix(), omega + 3 * i);
+    energy[i] = compute_kinetic(scene.inertia_B(t[i]), omega + 3 * i);
     if (!scene.torques().empty()) energy[i] += compute_potential(scene, t[i], omega + 3 * i, q);
     if (driven) energy[i] += sum_energies(scene, states + width * i);
   }
@@ -75,12 +76,12 @@ void compute_energy(const Scene& scene, std::size_t n, const double* t, const do
 
 void compute_angular_momentum(const Scene& scene, std::size_t n, const double* t, const double* omega,
                               const double* attitude, double* L_W, const double* states) {
-  const bool rotors = scene.torque_sum().rotors || scene.has_inner_states();
+  const bool rotors = scene.torque_sum().rotors || scene.has_inner_states() || scene.momentum();
   const auto width = static_cast<std::size_t>(scene.count_states());
   for (std::size_t i = 0; i < n; ++i) {
     if (i % rows_between_checks == 0) check_interrupt();
     const double *w = omega + 3 * i, *q = attitude + 4 * i;
-    Vector3d L_B = scene.inertia_B().matrix() * Vector3d{w[0], w[1], w[2]};
+    Vector3d L_B = scene.inertia_B(t[i]) * Vector3d{w[0], w[1], w[2]};
     if (rotors) L_B += sum_momenta(scene, t[i], states + width * i);
     const Vector3d L = rotate({q[0], q[1], q[2], q[3]}, L_B);
     std::copy_n(L.data(), 3, L_W + 3 * i);
@@ -98,7 +99,7 @@ std::map<std::string, double> compute_drift(const Scene& scene, const Motion& mo
   const double* states = motion.states.data();
   const std::vector<double> start_states = formula::list_values(scene.states());
   const bool has_attitude = !motion.attitude.empty();
-  const bool sees_energy = free || (sum.has_potential && has_attitude);
+  const bool sees_energy = (free && !scene.changes()) || (sum.has_potential && has_attitude);
 
   const Quat& q0 = scene.attitude();
   const double start_attitude[4] = {q0.x, q0.y, q0.z, q0.w};
@@ -123,7 +124,9 @@ std::map<std::string, double> compute_drift(const Scene& scene, const Motion& mo
     // The momenta of a body and its rotors may nearly cancel.
     const double own = (scene.inertia_B().matrix() * scene.omega()).norm();
     const Vector3d h = sum_momenta(scene, scene.t0(), start_states.data());
-    const double scale = sum.rotors || driven ? own + h.norm() : math::hypot(L0[0], L0[1], L0[2]);
+    double scale = sum.rotors || driven || scene.momentum() ? own + h.norm() : math::hypot(L0[0], L0[1], L0[2]);
+    for (std::size_t i = 0; i < n && scene.momentum(); ++i)   // the start may be at rest
+      scale = std::max(scale, 2 * sum_momenta(scene, motion.t[i], states + i * motion.states.size() / n).norm());
     drift["angular_momentum"] = relative(moved, scale);
   }
   if (!closed && sum.keeps_vertical && has_attitude) {

@@ -70,6 +70,8 @@ void require_provable(const Scene& scene, const SolveOptions& options) {
     throw InvalidInput("certify='proof'", "used where the processor rounds to nearest", "another rounding mode",
                        "the bounds on rounding hold for that mode alone: a library or fesetround() changed it");
   }
+  if (scene.changes())
+    refuse_with_proof("certify", "a body that changes", "a proof encloses bodies of constant inertia and momentum");
   if (calls_custom(scene)) {
     throw InvalidInput("certify='proof'", "left out with torques of the user's own", "a Custom torque",
                        "its function gives numbers, and a proof needs bounds on them at every state nearby: write it as "

@@ -16,6 +16,13 @@ struct Piece {
   double begin, end;
   std::vector<AnyTorque> torques;   ///< those that act, without their windows
   std::vector<Rotor> rotors;        ///< those that rotate, without their windows
+  /// The inertia that the piece's scene is given, where it is not that of the whole scene.
+  std::optional<InertiaTensor> inertia_B = {};
+  BodyPiece body = {};              ///< of a body that changes
+  bool changes = false;             ///< the body changes within the piece: its torques say how
+  std::vector<std::string> names = {};   ///< of the scene's torques that act, where the body changes
+  std::vector<std::size_t> numbers = {};   ///< of the scene's torques, in the order of those of the piece
+  bool keeps_damper = true;         ///< else the damper stands in the torques
   PiecePlan plan = {};              ///< its model and method; no method before planning
   const ClosedFormRecord* form = nullptr;   ///< what runs it: a closed form, or the plan's method where it is null
 };
@@ -30,7 +37,7 @@ struct Pieces {
   std::vector<const Piece*> all() const;
 };
 
-/// True if a torque or a rotor has windows, or a torque of the user's own has breaks.
+/// True if a torque or a rotor has windows, a torque of the user's own has breaks, or the body changes.
 bool has_windows(const Scene& scene);
 /// The scene whose own torques of the user have these breaks as well.
 Scene add_breaks(const Scene& scene, const std::vector<double>& times);
@@ -38,6 +45,20 @@ bool has_rotor_windows(const Scene& scene);
 
 /// The change of omega where the momentum of the rotors jumps by dh: -J^-1 dh, because J w + h is continuous.
 Vector3d compute_rate_jump(const InertiaTensor& J_B, const Vector3d& dh_B);
+
+/// How omega and the angular momentum in body axes are related at a time, H = J w + h, without momenta that are states.
+struct Momentum {
+  Matrix3d J;   ///< which moves with omega
+  Vector3d h;
+  friend bool operator==(const Momentum&, const Momentum&) = default;
+};
+Momentum find_momentum(const Scene& scene, double t);                       ///< in the piece that holds from t on
+Momentum find_momentum(const Scene& scene, const Piece& piece, double t);   ///< in a piece, at one of its ends
+
+/// The change of omega where these jump: J w + h is continuous, or w and h are where matter leaves.
+Vector3d compute_rate_jump(const Scene& scene, const Vector3d& omega, const Momentum& before, const Momentum& after);
+/// The same for a small change of omega alone: what it becomes.
+Vector3d carry_rates(const Scene& scene, const Vector3d& d_omega, const Momentum& before, const Momentum& after);
 
 /// @param method_switches  further times at which to cut
 Pieces cut(const Scene& scene, std::vector<double> method_switches = {});

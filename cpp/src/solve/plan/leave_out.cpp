@@ -77,7 +77,8 @@ std::optional<Negligible> find_negligible(const Scene& scene, const SolveOptions
   if (!options.leave_out || options.proof || is_by_tolerance(options)) return std::nullopt;
   if (!method_is_free(options) && options.method != "exact") return std::nullopt;
   const std::vector<AnyTorque>& torques = scene.torques();
-  if (scene.torque_sum().acting == 0 || !scene.rotors().empty() || calls_custom(scene)) return std::nullopt;
+  if (scene.torque_sum().acting == 0 || !scene.rotors().empty() || scene.changes() || calls_custom(scene))
+    return std::nullopt;
   const double rate = scene.omega().norm(), accuracy = get_accuracy(options);
   if (!(rate > 0.0)) return std::nullopt;
   const auto& times = scene.times();

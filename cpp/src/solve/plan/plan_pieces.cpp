@@ -102,7 +102,8 @@ class PiecePlanner {
   }
 
   bool may_step_slow_forms() const {
-    return method_is_free(options_) && options_.formulation == Formulation::euler &&
+    // A closed form keeps the angular momentum, and so do those of all constant pieces of a body that changes.
+    return method_is_free(options_) && options_.formulation == Formulation::euler && !scene_.changes() &&
            std::any_of(pieces_.begin(), pieces_.end(), [](const Piece* piece) {
              return !piece->rotors.empty() && summarize(piece->torques).acting == 0;
            });
@@ -211,26 +212,31 @@ class PiecePlanner {
   }
 
   PiecePlan& plan_piece(const Scene& part) {
-    PiecePlan& plan = pieces_[facts_.size()]->plan;
+    Piece& piece = *pieces_[facts_.size()];
+    PiecePlan& plan = piece.plan;
     const Facts facts = compute_facts(part);
     const auto [begin, end] = std::minmax({part.t0(), part.times().back()});
     plan = {.begin = begin, .end = end, .model = "euler", .turns = facts.turns};
+    plan.torques = piece.names;
     for (const AnyTorque& torque : part.torques()) {
-      if (!traits(torque).vanishes) plan.torques.emplace_back(torque_name(torque));
+      if (!piece.changes && !traits(torque).vanishes) plan.torques.emplace_back(torque_name(torque));
     }
-    if (!part.rotor_momentum().isZero(0.0)) plan.torques.emplace_back("rotors");
+    const Momentum momentum = find_momentum(scene_, piece, piece.begin);
+    const bool moves = piece.body.momentum && !Changing::compute_vector(*piece.body.momentum, piece.begin).isZero(0.0);
+    if (moves) plan.torques.emplace_back("momentum");
+    if (!momentum.h.isZero(0.0) && !scene_.rotors().empty()) plan.torques.emplace_back("rotors");
     form_.reset();
     const ClosedFormRecord* record =
         method_is_free(options_) || options_.method == "exact" ? find_closed_form_record(part, facts) : nullptr;
     PieceWork work{.turns = facts.turns, .form = record};
     if (record != nullptr && !(step_slow_forms_ && record->slow_set_up)) form_ = record->make(part, facts);
-    Piece& piece = *pieces_[facts_.size()];
     piece.form = form_ ? &form_->record() : nullptr;
     if (form_) {
       plan.model = form_->name(), plan.method = "exact";
     } else {
       plan.method = choose_piece_method(part, facts);
       if (options_.formulation == Formulation::lagrangian) plan.model = "lagrangian";
+      else if (piece.changes) plan.model = "changing";
     }
     if (record != nullptr) work.error_set_ups = record->count_error_set_ups(part, facts);
     facts_.push_back(facts);

@@ -78,7 +78,7 @@ class PieceRunner {
     events_.clear();
     for (const SceneEvent& event : options_.events) events_.emplace_back(event);
     for (FollowedEvent& event : events_) event.begin_piece(start.t).function(start);
-    Vector3d h = scene_.rotor_momentum();
+    Momentum momentum = find_momentum(scene_, scene_.t0());
     std::size_t next = 0;
     // The zeros of a start that a closed form needs are kept through the pieces before it too.
     const bool keep_zeros = std::any_of(pieces.begin(), pieces.end(), [](const Piece& piece) {
@@ -94,16 +94,17 @@ class PieceRunner {
         times.push_back(t);
       }
       if (!last || times.empty()) times.push_back(piece.end);
-      if (const Vector3d h_piece = sum_momenta(piece.rotors, scene_.omega()); h_piece != h) {
-        start.omega += compute_rate_jump(scene_.inertia_B(), h_piece - h);
-        h = h_piece;
+      if (const Momentum after = find_momentum(scene_, piece, piece.begin); !(after == momentum)) {
+        start.omega += compute_rate_jump(scene_, start.omega, momentum, after);
         if (ends_at_jump(start)) return true;
       }
+      momentum = find_momentum(scene_, piece, piece.end);
       const Scene part = make_piece_scene(scene_, piece, start, std::move(times), want);
       if (part.torque_sum().acting > 0) require_true_claims(part);
       Motion motion = run_(part, piece, make_options(piece, pieces.back().end));
       add(motion);
-      place(part, motion, std::span(order).subspan(first, next - first), piece.end);
+      const Vector3d jump = find_jump(motion, momentum, piece.end);
+      place(part, motion, std::span(order).subspan(first, next - first), piece.end, jump);
       const bool finished = motion.status == Status::finished;
       motion_.t_reached = finished ? piece.end : find_reached(motion, piece);
       if (finished && !last) start = get_join(motion, piece.end, want, keep_zeros);
@@ -112,10 +113,10 @@ class PieceRunner {
       if (motion.status == Status::max_steps) motion_.message = describe_max_steps();
       bool ended = false;
       if (last && finished && forward) {
-        motion.end_jump = find_jump(part, piece.end);
-        if (!options_.events.empty() && !motion.end_jump.isZero(0.0)) {
+        motion.end_jump = jump;
+        if (!options_.events.empty() && !jump.isZero(0.0)) {
           State after = get_end(motion, piece.end, want);
-          after.omega += motion.end_jump;
+          after.omega += jump;
           ended = ends_at_jump(after);
         }
       }
@@ -153,9 +154,9 @@ class PieceRunner {
 
   /// Copies the rows of a piece into the rows of the motion. A sample at the end of a forward piece has the rates after
   /// the jump there, because a window includes its begin.
-  void place(const Scene& part, const Motion& motion, std::span<const std::size_t> order, double end) {
+  void place(const Scene& part, const Motion& motion, std::span<const std::size_t> order, double end,
+             const Vector3d& jump) {
     std::size_t row = 0;
-    const Vector3d jump = find_jump(part, end);
     for (std::size_t i = 0; i < order.size() && row < motion.t.size(); ++i) {
       if (motion.t[row] != part.times()[i]) continue;
       if (!motion_.omega.empty()) std::copy_n(motion.omega.data() + 3 * row, 3, motion_.omega.data() + 3 * order[i]);
@@ -170,10 +171,12 @@ class PieceRunner {
     }
   }
 
-  /// The change of omega at the end of a piece.
-  Vector3d find_jump(const Scene& part, double end) const {
-    const Vector3d dh = scene_.rotor_momentum(end) - part.rotor_momentum();
-    return dh.isZero(0.0) ? dh : compute_rate_jump(scene_.inertia_B(), dh);
+  /// The change of omega at the end of a piece, where the motion has its last row.
+  Vector3d find_jump(const Motion& motion, const Momentum& before, double end) const {
+    const Momentum after = find_momentum(scene_, end);
+    if (after == before || motion.omega.size() < 3) return Vector3d::Zero();
+    const double* w = motion.omega.data() + motion.omega.size() - 3;
+    return compute_rate_jump(scene_, {w[0], w[1], w[2]}, before, after);
   }
 
   static double find_reached(const Motion& motion, const Piece& piece) {

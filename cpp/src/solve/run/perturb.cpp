@@ -69,6 +69,14 @@ Rotor perturb_rotor(const Rotor& rotor, Perturber& perturber) {
   return Rotor(std::move(parts));
 }
 
+Changing perturb_terms(const Changing& changing, int units) {
+  std::vector<Changing::Piece> pieces = changing.pieces();
+  for (Changing::Piece& piece : pieces)
+    for (std::vector<double>& term : piece.terms)
+      for (double& x : term) x = perturb_alone(x, units);
+  return Changing(std::move(pieces), changing.physical());
+}
+
 /// A damping matrix proportional to the inertia, as the torque that stays so when both are perturbed. A piece with it
 /// may have a closed form.
 template <class Torque>
@@ -130,6 +138,9 @@ Scene perturb(const Scene& scene, int units) {
       I(i, j) = I(j, i) = cut ? perturb_alone(I(i, j), units) : perturber(I(i, j));
   SceneParts parts = scene.parts();
   parts.inertia_B = InertiaTensor::from_trusted(I, scene.given_inertia_B().physical());
+  // Equal numbers stay equal, so that what is constant stays so.
+  for (std::optional<Changing>* one : {&parts.changing, &parts.momentum})
+    if (*one) *one = perturb_terms(**one, units);
   perturber.apply(parts.omega);
   const Quat& q = scene.attitude();
   parts.attitude = {perturber(q.x), perturber(q.y), perturber(q.z), perturber(q.w)};
