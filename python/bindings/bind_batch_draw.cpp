@@ -3,7 +3,7 @@
 
 #include "convert.hpp"
 #include "gil.hpp"
-#include "polhode/batch/draw.hpp"
+#include "polhode/math/draw.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/math/detail/normal.hpp"
 

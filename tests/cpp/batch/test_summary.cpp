@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "polhode/batch/draw.hpp"
+#include "polhode/math/draw.hpp"
 #include "polhode/batch/summary.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/math/detail/philox.hpp"

@@ -1,4 +1,4 @@
-#include "polhode/batch/draw.hpp"
+#include "polhode/math/draw.hpp"
 
 #include <algorithm>
 #include <bit>
