@@ -14,6 +14,7 @@ void bind_inertia_checks(py::module_& m);
 void bind_torque(py::module_& m);
 void bind_exact(py::module_& m);
 void bind_ode(py::module_& m);
+void bind_clock(py::module_& m);
 void bind_scene(py::module_& m);
 void bind_solve(py::module_& m);
 void bind_solve_sensitivity(py::module_& m);

@@ -134,6 +134,11 @@ void bind_symbols(py::module_& m) {
   py::class_<Text>(m, "Text").def("__eq__", [](const Text& a, const py::object& b) {
     return py::isinstance<Text>(b) && a == b.cast<const Text&>();
   }).def("__hash__", [](const Text& text) { return py::hash(py::str(text.torque)); });
+  m.def("split_text", [](const Text& text) {   // (shared parts, new numbers of each state)
+    py::dict rates;
+    for (std::size_t i = 0; i < text.states.size(); ++i) rates[py::str(text.states[i].name)] = text.rates[i];
+    return py::make_tuple(from_let(text.let), rates);
+  });
   py::class_<Traced>(m, "Number").def_property_readonly("constant", [](const Traced& traced) -> py::object {
     if (!traced.expr.form().is_constant()) return py::none();
     return py::float_(traced.expr.form().constant);

@@ -2,6 +2,7 @@
 
 #include <pybind11/stl.h>
 
+#include "bind_clock.hpp"
 #include "bind_torque.hpp"
 #include "convert.hpp"
 #include "polhode/core/error.hpp"
@@ -58,7 +59,8 @@ void bind_scene(py::module_& m) {
   py::class_<Scene>(m, "Scene")
       .def(py::init([](py::handle inertia, py::handle omega, py::handle attitude, const py::iterable& torques,
                        py::handle times, py::handle want, py::handle t0, const py::object& name,
-                       const py::iterable& rotors, py::handle damper, py::handle momentum, bool leaving) {
+                       const py::iterable& rotors, py::handle damper, py::handle momentum, bool leaving,
+                       const py::iterable& controllers) {
              if (!py::isinstance<py::str>(name)) throw InvalidInput("scene.name", "text", std::string(py::repr(name)));
              if (PyUnicode_AsUTF8(name.ptr()) == nullptr) {
                PyErr_Clear();
@@ -71,6 +73,9 @@ void bind_scene(py::module_& m) {
              std::vector<Rotor> wheels;
              for (const py::handle rotor : rotors)
                wheels.push_back(to_rotor(rotor, "scene.rotors[" + std::to_string(wheels.size()) + "]"));
+             std::vector<Controller> clocks;
+             for (const py::handle one : controllers)
+               clocks.push_back(to_controller(one, "scene.controllers[" + std::to_string(clocks.size()) + "]"));
              std::optional<Changing> changing;
              if (py::isinstance<Changing>(inertia)) changing = to_changing(inertia, "scene.inertia");
              // The scene takes the tensor of its start.
@@ -80,11 +85,12 @@ void bind_scene(py::module_& m) {
                                      to_attitude(attitude, "scene.attitude", 3), std::move(list), to_times(times),
                                      to_wanted(want), to_real(t0, "scene.t0"), name.cast<std::string>(),
                                      std::move(wheels), to_damper(damper), std::move(changing),
-                                     to_changing(momentum, "scene.momentum"), leaving});
+                                     to_changing(momentum, "scene.momentum"), leaving, std::move(clocks)});
            }),
            py::arg("inertia"), py::arg("omega"), py::arg("attitude"), py::arg("torques"), py::arg("times"),
            py::arg("want"), py::arg("t0"), py::arg("name"), py::arg("rotors"),
-           py::arg("damper"), py::arg("momentum"), py::arg("leaving"))
+           py::arg("damper"), py::arg("momentum"), py::arg("leaving"),
+           py::arg("controllers") = py::tuple())
       .def_property_readonly("inertia", py::overload_cast<>(&Scene::given_inertia_B, py::const_))
       .def_property_readonly("carrier_inertia", py::overload_cast<>(&Scene::inertia_B, py::const_),
                              "InertiaTensor J that moves with omega: `inertia` less the axial moments of free rotors and the damper's.")
@@ -99,7 +105,7 @@ void bind_scene(py::module_& m) {
       .def_property_readonly("rotors",
                              [](const Scene& scene) {
                                py::list list;
-                               for (const Rotor& rotor : scene.rotors()) list.append(rotor.with_state(""));
+                               for (const Rotor& rotor : scene.rotors()) list.append(rotor.as_given());
                                return py::tuple(list);
                              })
       .def_property_readonly("omega", [](const Scene& scene) { return from_vector3(scene.omega()); })

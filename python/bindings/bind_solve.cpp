@@ -35,6 +35,7 @@ struct Answer {
   Wanted want;
   PlannedScene planned;   // what ran
   std::vector<formula::Input> states;
+  std::vector<Controller> controllers;
 };
 
 /// Rows of the states' numbers as arrays by their names: (n,) of a number, (n, k) of a vector.
@@ -90,7 +91,27 @@ std::unique_ptr<Answer> solve_scene(const Scene& scene, const py::dict& given, p
   PlannedScene planned = made != nullptr ? *made : PlannedScene(scene, options);
   Motion motion = planned.run(options);
   if (made == nullptr) motion.stats += planned.cost();
-  return std::unique_ptr<Answer>(new Answer{std::move(motion), scene.want(), std::move(planned), scene.states()});
+  return std::unique_ptr<Answer>(new Answer{std::move(motion), scene.want(), std::move(planned), scene.states(), scene.controllers()});
+}
+
+/// Of each controller a dict of t, measurement (a dict), command and states (a dict).
+py::list list_ticks(const Answer& answer) {
+  py::list all;
+  for (std::size_t i = 0; i < answer.motion.ticks.size(); ++i) {
+    const Ticks& ticks = answer.motion.ticks[i];
+    const Controller& controller = answer.controllers[i];
+    std::vector<formula::Input> measured = {{"omega", std::vector<double>(3)}, {"attitude", std::vector<double>(4)}};
+    for (const formula::Input& input : controller.inputs())
+      if (input.name == "field" || input.name == "speed") measured.push_back(input);
+    const auto n = static_cast<py::ssize_t>(ticks.t.size()), m = static_cast<py::ssize_t>(controller.count_commands());
+    py::dict one;
+    one["t"] = Array(n, ticks.t.data());
+    one["measurement"] = name_states(measured, ticks.measurement);
+    one["command"] = Array({n, m}, ticks.command.data());
+    one["states"] = name_states(controller.parts().law.states, ticks.states);
+    all.append(one);
+  }
+  return all;
 }
 
 py::dict describe_stats(const Motion& motion) {
@@ -157,6 +178,7 @@ void bind_solve(py::module_& m) {
       .def_property_readonly("events", [](const Answer& answer) { return describe_events(answer); })
       .def_property_readonly("states",
                              [](const Answer& answer) { return name_states(answer.states, answer.motion.states); })
+      .def_property_readonly("ticks", [](const Answer& answer) { return list_ticks(answer); })
       .def_property_readonly("plan",
                              [](const Answer& answer) {
                                const Motion& motion = answer.motion;

@@ -61,6 +61,7 @@ PYBIND11_MODULE(polhode_core, m, pybind11::mod_gil_not_used()) {
   bind_torque(m);
   bind_exact(m);
   bind_ode(m);
+  bind_clock(m);
   bind_scene(m);
   bind_solve(m);
   bind_solve_sensitivity(m);

@@ -26,6 +26,8 @@ from ._batch.solve_many import solve_many as solve_many
 from ._batch.step import step as step
 from ._build import build_info as build_info
 from ._build import cmake_prefix as cmake_prefix
+from ._clock.controller import Controller as Controller
+from ._clock.controller import Measure as Measure
 from ._core import Changing as Changing
 from ._core import Damper as Damper
 from ._core import IntegrationFailure as IntegrationFailure

@@ -89,6 +89,35 @@ def to_xarray(dims: tuple[str, ...], coordinates: dict[str, Any], arrays: dict[s
     return xarray.Dataset(variables, coords, attributes)
 
 
+def _ticks_columns(arrays: dict[str, Any]) -> dict[str, Any]:
+    columns: dict[str, Any] = {}
+    for name, array in arrays.items():
+        own = name.rpartition(".")[2]
+        if own in COMPONENTS:
+            columns |= columns_of(own, array)
+        else:
+            columns |= {own: array} if array.ndim == 1 else {f"{own}_{k}": array[:, k] for k in range(array.shape[1])}
+    return columns
+
+
+def ticks_to_pandas(t: Any, arrays: dict[str, Any]) -> Any:
+    """Return a table of one controller's ticks."""
+    return need("pandas").DataFrame({"t": t, **_ticks_columns(arrays)})
+
+
+def add_ticks(dataset: Any, ticks: list[tuple[Any, dict[str, Any]]]) -> Any:
+    """Return a Dataset with variables of each controller's ticks, along a dimension of their own."""
+    for i, (t, arrays) in enumerate(ticks):
+        dim = f"ticks_{i}"
+        added: dict[str, Any] = {f"{dim}_t": ((dim,), t, {"units": "s",
+                                                          "long_name": f"times of the ticks of controller {i}"})}
+        for name, array in arrays.items():
+            own = f"{dim}_{name.rpartition('.')[2]}"
+            added[own] = ((dim, f"{own}_component")[:array.ndim], array)
+        dataset = dataset.assign(added)
+    return dataset
+
+
 def check_path(path: str | os.PathLike[str]) -> pathlib.Path:
     """Return the path of a file to save; refuse other suffixes."""
     found = _files.to_path(path, "path")

@@ -11,6 +11,7 @@ from ._core import InvalidInput
 from ._scene.plain import from_plain
 from ._solve.motion import EventHit, Motion
 from ._solve.plan import Plan
+from ._solve.ticks import Ticks
 
 if TYPE_CHECKING:
     from ._wings import Ensemble
@@ -69,6 +70,7 @@ def _motion(about: dict[str, Any], arrays: dict[str, Any]) -> Motion:
         {name: arrays.get(name) for name in names},
         states=_named("states", arrays), scene=scene, **{
             part: None if span is None else _named(part, arrays) for part in ("states_lower", "states_upper")},
+        ticks=tuple(_ticks(f"ticks.{i}.", arrays) for i in range(len(scene.controllers))),
         _answer=None, _options=wishes, t=arrays["t"],
         options=about["options"], status=str(about["status"]), _message=str(about["message"]), stats=about["stats"],
         error=float(about["error"]), error_kind=str(about["error_kind"]), asked=float(about["asked"]),
@@ -83,6 +85,13 @@ def _motion(about: dict[str, Any], arrays: dict[str, Any]) -> Motion:
 
 def _named(part: str, arrays: dict[str, Any]) -> dict[str, Any]:
     return {name[len(part) + 1:]: array for name, array in arrays.items() if name.startswith(f"{part}.")}
+
+
+def _ticks(head: str, arrays: dict[str, Any]) -> Ticks:
+    own = {name.removeprefix(head): array for name, array in arrays.items() if name.startswith(head)}
+    parts = {part: {name.removeprefix(f"{part}."): array for name, array in own.items() if name.startswith(f"{part}.")}
+             for part in ("measurement", "states")}
+    return Ticks(own["t"], parts["measurement"], own["command"], parts["states"])
 
 
 def _states(states: dict[str, Any]) -> dict[str, Any]:

@@ -84,6 +84,17 @@ def _motion(path: pathlib.Path, about: dict[str, Any], claims: dict[str, Claim])
             expected[f"states.rotor_momentum_{i}"] = ((reached,), REAL)
     if scene.get("damper") is not None:
         expected["states.damper_momentum"] = ((reached, 3), REAL)
+    for i, controller in enumerate(scene.get("controllers", [])):
+        by_rotors = str(controller["output"]).startswith("rotor")
+        if not by_rotors:
+            expected[f"states.command_{i}"] = ((reached, 3), REAL)
+        for k in range(int(controller["rotors"]) if by_rotors else 0):
+            expected[f"states.rotor_momentum_{k}"] = ((reached,), REAL)
+            if controller["output"] == "rotor_torque":
+                expected[f"states.command_{i}_{k}"] = ((reached,), REAL)
+        ticks = {name: claim.shape for name, claim in claims.items() if name.startswith(f"ticks.{i}.")}
+        rows = ticks[f"ticks.{i}.t"][:1]
+        expected |= {name: ((*rows, *shape[1:]), REAL) for name, shape in ticks.items()}
     for name in [name for name in expected if name.startswith("states.")]:
         for bound in (name.replace("states.", f"states_{side}.", 1) for side in ("lower", "upper")):
             if bound in claims:

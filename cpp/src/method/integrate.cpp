@@ -7,7 +7,6 @@
 
 #include "method/samples.hpp"
 #include "polhode/core/error.hpp"
-#include "polhode/ode/drive.hpp"
 
 namespace polhode {
 namespace {
@@ -128,12 +127,9 @@ std::string explain_underflow(const Scene& scene, const State& state) {
          "smooth it, or end the span there by an event and go on from its state";
 }
 
-struct EndingText {
-  Status status;
-  std::string message;
-};
+}  // namespace
 
-EndingText describe(ode::Ending ending, double t, long max_steps) {
+EndingText describe_ending(ode::Ending ending, double t, long max_steps) {
   const std::string at = polhode::to_text(t) + " s", when = " at t = " + at;
   using ode::Ending;
   switch (ending) {
@@ -161,8 +157,6 @@ EndingText describe(ode::Ending ending, double t, long max_steps) {
   }
   return {Status::finished, ""};
 }
-
-}  // namespace
 
 Trajectory integrate(const Scene& scene, const RunOptions& options, const double* y0, const Unpack& unpack,
                      const MakeStepper& make_stepper, const ExtraStates& extra) {
@@ -196,7 +190,7 @@ Trajectory integrate(const Scene& scene, const RunOptions& options, const double
     trajectory.stats += stepper->counts();
     trajectory.t_reached = result.t;
     if (result.ending == ode::Ending::finished) return true;
-    EndingText text = describe(result.ending, result.t, options.max_steps);
+    EndingText text = describe_ending(result.ending, result.t, options.max_steps);
     trajectory.status = text.status, trajectory.message = std::move(text.message);
     if (result.ending == ode::Ending::underflow || result.ending == ode::Ending::not_finite)
       trajectory.message += explain_singular(scene, to_state(unpack, extra, result.t, stepper->y()));

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "polhode/method/run_options.hpp"
 #include "polhode/method/trajectory.hpp"
+#include "polhode/ode/drive.hpp"
 #include "polhode/ode/stepper.hpp"
 #include "polhode/scene/scene.hpp"
 
@@ -19,6 +21,13 @@ Unpack by_rows(UnpackOne unpack_one) {
 
 /// Makes a stepper from the start state towards t_end.
 using MakeStepper = std::function<std::unique_ptr<ode::Stepper>(const double* y0, double t_end)>;
+
+/// How a run ended, in words.
+struct EndingText {
+  Status status;
+  std::string message;
+};
+EndingText describe_ending(ode::Ending ending, double t, long max_steps);
 
 /// Integrates a scene in both directions of time and collects samples, events and dense output. It works for any method
 /// and any variables.

@@ -115,7 +115,13 @@ Rotor::Rotor(RotorParts parts) : parts_(std::move(parts)) {
   parts_.windows = torques::arrange(std::move(*parts_.windows), "Rotor.during");
 }
 
-bool Rotor::is_driven() const { return has_drive(parts_); }
+bool Rotor::is_driven() const { return has_drive(parts_) || !command_.empty(); }
+
+Rotor Rotor::with_command(std::string name) const {
+  Rotor other = *this;
+  other.command_ = std::move(name);
+  return other;
+}
 
 Rotor Rotor::with_state(std::string name) const {
   Rotor other = *this;
@@ -136,7 +142,7 @@ double Rotor::compute_start_momentum(const Vector3d& w_B) const {
 
 double Rotor::compute_speed(double momentum, const Vector3d& w_B) const {
   if (!parts_.inertia) return std::numeric_limits<double>::quiet_NaN();
-  if (!parts_.free && parts_.speed) return *parts_.speed;
+  if (!parts_.free && parts_.speed && command_.empty()) return *parts_.speed;
   const double total = momentum / *parts_.inertia;
   return parts_.free ? total - parts_.axis.dot(w_B) : total;
 }

@@ -53,7 +53,13 @@ torques::Formula make_torque(const Rotor& rotor, double momentum) {
   const Vector3d& a = rotor.axis();
   Text text;
   text.states = {{h, {momentum}}};
-  text.parameters = {{"axis", {a[0], a[1], a[2]}}, {"inertia", {*rotor.inertia()}}};
+  text.parameters = {{"axis", {a[0], a[1], a[2]}}};
+  if (!rotor.free()) {
+    text.torque = "-cross(omega, " + h + " * axis)";
+    text.rates = {"0"};
+    return torques::Formula(text, false);
+  }
+  text.parameters.push_back({"inertia", {*rotor.inertia()}});
   text.let = {{"speed", h + " / inertia - dot(axis, omega)"}};
   std::string effort;
   const auto add = [&](const char* name, double value, const std::string& term) {
@@ -68,6 +74,10 @@ torques::Formula make_torque(const Rotor& rotor, double momentum) {
   } else if (parts.torque != 0.0) {
     add("torque", parts.torque, "torque");
   }
+  if (!rotor.command().empty()) {
+    text.states.push_back({rotor.command(), {0.0}});
+    effort += (effort.empty() ? "" : " + ") + rotor.command();
+  }
   if (parts.max_torque) {
     effort = "clip(" + effort + ", -max_torque, max_torque)";
     add("max_torque", *parts.max_torque, "");
@@ -77,7 +87,7 @@ torques::Formula make_torque(const Rotor& rotor, double momentum) {
     // load (B + u)/2 does. Below the limit that is (B + u)/2, and the other limit's -(B - u)/2.
     text.let.emplace_back("wanted", effort);
     text.parameters.push_back({"max_speed", {*parts.max_speed}});
-    const std::string most = parts.max_torque ? "max_torque" : "abs(torque)";
+    const std::string most = parts.max_torque ? "max_torque" : rotor.command().empty() ? "abs(torque)" : "abs(wanted)";
     effort = "friction(0.5 * (" + most + " + wanted), speed - max_speed) + friction(0.5 * (" + most +
              " - wanted), speed + max_speed)";
   }
@@ -90,6 +100,7 @@ torques::Formula make_torque(const Rotor& rotor, double momentum) {
   text.let.emplace_back("effort", effort);
   text.torque = "-cross(omega, " + h + " * axis) - effort * axis";
   text.rates = {"effort"};
+  if (!rotor.command().empty()) text.rates.push_back("0");
   return torques::Formula(text, false);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string_view>
 
 #include "polhode/core/error.hpp"
@@ -95,6 +96,61 @@ void require_free_name(const SceneParts& parts, const std::string& name) {
 
 constexpr const char* damper_state = "damper_momentum";
 
+/// Gives the commands of controllers states, and adds their torques, unless they have them.
+void add_controllers(SceneParts& parts) {
+  for (std::size_t i = 0; i < parts.controllers.size(); ++i) {
+    Controller& controller = parts.controllers[i];
+    if (!controller.held().empty()) continue;
+    const std::string where = "scene.controllers[" + std::to_string(i) + "]", name = "command_" + std::to_string(i);
+    const Output output = controller.parts().output;
+    double latest = std::abs(parts.t0);
+    for (const double t : parts.times) latest = std::max(latest, std::abs(t));
+    latest = std::max(latest, std::abs(controller.parts().start));
+    constexpr double eps = std::numeric_limits<double>::epsilon();
+    if (!(controller.parts().period > 16 * eps * latest))
+      throw InvalidInput(where + ".period", "above the spacing of the times, " + to_text(16 * eps * latest),
+                         to_text(controller.parts().period));
+    if (controller.parts().rotors > 0 && static_cast<std::size_t>(controller.parts().rotors) != parts.rotors.size())
+      throw InvalidInput(where + ".rotors", "as many as the scene has, " + std::to_string(parts.rotors.size()),
+                         std::to_string(controller.parts().rotors));
+    if (output == Output::torque || output == Output::dipole) {
+      require_free_name(parts, name);
+      parts.torques.emplace_back(make_held_torque(controller, name));
+      controller = controller.with_held({name});
+      continue;
+    }
+    const bool by_torque = output == Output::rotor_torque;
+    std::vector<std::string> held;
+    for (std::size_t k = 0; k < parts.rotors.size(); ++k) {
+      Rotor& rotor = parts.rotors[k];
+      const std::string own = "scene.rotors[" + std::to_string(k) + "]";
+      if (rotor.free() != by_torque)
+        throw InvalidInput(own + ".free", by_torque ? "True for output 'rotor_torque'" : "False for output 'rotor_momentum'",
+                           by_torque ? "False" : "True");
+      if (rotor.has_windows()) throw InvalidInput(own + ".during", "left out for a rotor that a controller drives", "windows");
+      if (by_torque && !rotor.inertia())
+        throw InvalidInput(own + ".inertia", "given for a rotor that a controller drives", "none");
+      if (!rotor.command().empty())
+        throw InvalidInput(where + ".output", "that of one controller alone", std::string(to_text(output)),
+                           "another controller drives the same rotors");
+      if (controller.parts().law.initial[k] != 0.0)
+        throw InvalidInput(where + ".initial", "left out for rotors", to_text(controller.parts().law.initial[k]),
+                           "they start from their own momentum, without a torque");
+      rotor = rotor.with_command(name + "_" + std::to_string(k));
+      held.push_back(by_torque ? rotor.command() : "rotor_momentum_" + std::to_string(k));
+    }
+    controller = controller.with_held(std::move(held));
+  }
+}
+
+/// The state of a command that a controller holds on the body or on its dipole.
+bool is_command(const Scene& scene, std::string_view name) {
+  return std::any_of(scene.controllers().begin(), scene.controllers().end(), [&](const Controller& controller) {
+    return (controller.parts().output == Output::torque || controller.parts().output == Output::dipole) &&
+           !controller.held().empty() && controller.held()[0] == name;
+  });
+}
+
 /// Gives driven rotors and the damper a state, and adds their torques, unless they have them.
 void add_driven(SceneParts& parts) {
   for (std::size_t i = 0; i < parts.rotors.size(); ++i) {
@@ -122,6 +178,12 @@ bool is_driven_state(const Scene& scene, std::string_view name) {
 bool is_drive(const Scene& scene, const AnyTorque& torque) {
   const torques::Formula* formula = find_formula(torque);
   return formula != nullptr && !formula->states().empty() && is_driven_state(scene, formula->states()[0].name);
+}
+
+/// The torque of a command that a controller holds.
+bool is_held(const Scene& scene, const AnyTorque& torque) {
+  const torques::Formula* formula = find_formula(torque);
+  return formula != nullptr && !formula->states().empty() && is_command(scene, formula->states()[0].name);
 }
 
 Vector3d find_damper_momentum(const Scene& scene, const double* states) {
@@ -162,6 +224,11 @@ Scene::Scene(SceneParts parts) {
     throw InvalidInput("scene.want", "omega, attitude or both", "neither");
   }
   require_changes(parts);
+  if ((parts.changing || parts.momentum) && !parts.controllers.empty()) {
+    throw InvalidInput("scene.controllers", "none where the inertia or the momentum changes",
+                       std::to_string(parts.controllers.size()));
+  }
+  add_controllers(parts);
   add_driven(parts);
   torque_sum_ = summarize(parts.torques);
   if (parts.changing || parts.momentum) torque_sum_.keeps_energy = torque_sum_.keeps_jacobi = false;
@@ -228,7 +295,7 @@ SceneParts Scene::parts() const {
     if (!rotor.free() || rotor.momentum()) continue;
     RotorParts known = rotor.parts();
     known.momentum = rotor.compute_start_momentum(parts_->omega), known.speed.reset();
-    rotor = Rotor(std::move(known)).with_state(rotor.state());
+    rotor = Rotor(std::move(known)).with_state(rotor.state()).with_command(rotor.command());
   }
   return copy;
 }
@@ -242,13 +309,13 @@ Scene Scene::with_torques(std::vector<AnyTorque> torques) const {
 std::vector<AnyTorque> Scene::given_torques() const {
   std::vector<AnyTorque> given;
   for (const AnyTorque& torque : torques())
-    if (!is_drive(*this, torque)) given.push_back(torque);
+    if (!is_drive(*this, torque) && !is_held(*this, torque)) given.push_back(torque);
   return given;
 }
 
 std::vector<Rotor> Scene::given_rotors() const {
   std::vector<Rotor> given;
-  for (const Rotor& rotor : rotors()) given.push_back(rotor.with_state(""));
+  for (const Rotor& rotor : rotors()) given.push_back(rotor.as_given());
   return given;
 }
 
@@ -301,7 +368,7 @@ Vector3d sum_momenta(const Scene& scene, double t, const double* states) {
 double sum_energies(const Scene& scene, const double* states) {
   double sum = 0.0;
   for (const Rotor& rotor : scene.rotors()) {
-    if (!rotor.is_driven()) continue;
+    if (!rotor.is_driven() || !rotor.inertia()) continue;
     const double h = find_momentum(scene, rotor, states);
     sum += 0.5 * h * (h / *rotor.inertia());
   }

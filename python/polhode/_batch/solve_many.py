@@ -14,7 +14,7 @@ from .. import _core, _export
 from .._attitude.arrays import require_bool, require_text, to_items
 from .._keywords import checked
 from .._scene.plain import to_plain
-from .._scene.scene import Scene
+from .._scene.scene import Scene, refuse_controllers
 from .._sensitivity.driven import check_groups, split_states
 from .._sensitivity.sensitivity import Sensitivity
 from .._solve.motion import Floats
@@ -208,6 +208,8 @@ def solve_many(
                 raise _core.InvalidInput(f"scenes[{i}]: must be a polhode.Scene, got {type(scene).__name__}")
             if scene.times.size != listed[0].times.size or scene.want != listed[0].want:
                 raise _core.InvalidInput(f"scenes[{i}]: must have as many times as scenes[0] and the same want")
+    for scene in listed:
+        refuse_controllers(scene, "solve_many")
     require_text(method, "method")
     groups = None if sensitivity is None else check_groups(sensitivity, side)
     for name, number in (("rtol", rtol), ("atol", atol), ("step", step)):

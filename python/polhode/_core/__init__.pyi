@@ -1095,6 +1095,15 @@ class HeavyTop(exact._ClosedForm):
         """
         Signed along the symmetry axis [N m].
         """
+class Controller:
+    def __init__(self, parts: dict[str, typing.Any]) -> None:
+        ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
+    def _call(self, arg0: typing.SupportsFloat | typing.SupportsIndex, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        ...
 class Rotor:
     """
     Rotor(axis, *, momentum=None, inertia=None, speed=None, free=False, during=None, torque=0.0, viscous=0.0, coulomb=0.0, max_torque=None, max_speed=None, let=..., parameters=...)
@@ -1607,6 +1616,9 @@ class Answer:
         ...
     @property
     def t(self) -> typing.Any:
+        ...
+    @property
+    def ticks(self) -> list[typing.Any]:
         ...
 class _FoundSensitivity:
     """

@@ -15,6 +15,7 @@ from .. import _files, torques
 from .._core import Damper, InvalidInput, Rotor
 from .._orbit.orbit import Orbit
 from .bodies import attitude_of, body_inertia, body_model, changing_of, place_meshes
+from .controllers import controller_model, make_controllers
 from .orbits import make_orbits, orbit_model
 from .scene import Scene, scene_folder
 from .validation import euler_model, kinds, model, one_of, validate
@@ -57,10 +58,11 @@ def scene_model() -> Any:
                        parameters=(dict[str, values] | None, None))
     damper: Any = model("Damper", inertia=(kind.number, ...), viscous=(kind.number, ...),
                         rates=(kind.vector, (0.0, 0.0, 0.0)))
+    controllers: Any = list[controller_model()]   # type: ignore[misc]
     return model("SceneFile", name=(str, ""), title=(str, ""), about=(str, ""),
                   want=(list[Literal["omega", "attitude"]], ["omega", "attitude"]),
                   body=(body_model(), ...), start=(start, ...), torques=(list[torque], []), rotors=(list[rotor], []),
-                 orbits=(orbits, {}), damper=(damper | None, None), times=(times, ...))
+                 orbits=(orbits, {}), damper=(damper | None, None), controllers=(controllers, []), times=(times, ...))
 
 
 def _torque_models() -> list[Any]:
@@ -214,6 +216,7 @@ def make_scene(data: dict[str, Any], where: str = "scene") -> Scene:
             damper=None if entry.damper is None else Damper(**entry.damper.model_dump()),
             momentum=changing_of(entry.body, "momentum"),
             leaving=entry.body.leaving,
+            controllers=make_controllers(entry.controllers, orbits),
         )
     except InvalidInput as error:
         raise InvalidInput(f"{where}: {error}") from None

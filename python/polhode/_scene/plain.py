@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Any
 
 import numpy as np
 
 from .. import torques
+from .._clock.controller import Controller, Measure, _keywords
 from .._core import Changing, Damper, InertiaTensor, InvalidInput, Rotor
+from .._orbit.field import MagneticField
+from .orbits import make_orbits
 from .scene import Scene, _restore
 
 
 def _plain(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         return value.tolist()
+    if isinstance(value, dict):
+        return {name: _plain(item) for name, item in value.items()}
     return [_plain(item) for item in value] if isinstance(value, (tuple, list)) else value
 
 
@@ -77,6 +83,35 @@ def _from_torque(data: dict[str, Any]) -> Any:
     return torques.During(torque, data["during"]) if "during" in data else torque
 
 
+def _controller(controller: Any, i: int) -> dict[str, Any]:
+    if controller.function is not None:
+        raise InvalidInput(f"scene.controllers[{i}]: must be one that a file can hold, got trace=False")
+    parts = _keywords(controller._given) | {"measure": dataclasses.asdict(controller.measure)}
+    if (field := controller.field) is not None:
+        parts["field"] = {**field._given, "kind": field._kind, "orbit": dict(field.orbit._given)}
+    return {name: _plain(value) for name, value in parts.items()}
+
+
+def _from_controller(data: dict[str, Any]) -> Controller:
+    parts: dict[str, Any] = {**data, "measure": Measure(**data["measure"])}
+    if "field" in parts:
+        orbit = make_orbits({"main": _Entry(parts["field"]["orbit"])})["main"]
+        given = {name: value for name, value in parts["field"].items() if name not in ("kind", "orbit")}
+        make = MagneticField.gauss if parts["field"]["kind"] == "gauss" else MagneticField.dipole
+        parts["field"] = make(orbit, **given)
+    return Controller(**parts)
+
+
+class _Entry:
+    """Keys as a validated table gives them."""
+
+    def __init__(self, given: dict[str, Any]) -> None:
+        self.given = given
+
+    def model_dump(self) -> dict[str, Any]:
+        return self.given
+
+
 def to_plain(scene: Scene) -> dict[str, Any]:
     """Return a scene as lists, numbers and text. Of a torque that is a function, its name stands there."""
     matrix, physical = _state(scene.inertia)
@@ -89,6 +124,8 @@ def to_plain(scene: Scene) -> dict[str, Any]:
             "torques": [_torque(torque) for torque in scene.torques],
             "rotors": [_state(rotor) for rotor in scene.rotors],
             **({} if scene.damper is None else {"damper": _state(scene.damper)}),
+            **({"controllers": [_controller(one, i) for i, one in enumerate(scene.controllers)]}
+               if scene.controllers else {}),
             "times": scene.times.tolist(), "want": list(scene.want), "t0": scene.t0, "name": scene.name}
 
 
@@ -109,5 +146,6 @@ def from_plain(data: dict[str, Any]) -> Scene:
         "torques": [_from_torque(torque) for torque in data["torques"]],
         "rotors": [_made(Rotor, rotor) for rotor in data["rotors"]],
         "damper": _made(Damper, data["damper"]) if "damper" in data else None,
+        "controllers": [_from_controller(one) for one in data.get("controllers", [])],
         "times": np.asarray(data["times"], dtype=float), "want": tuple(data["want"]), "t0": float(data["t0"]),
         "name": str(data["name"])})

@@ -48,6 +48,8 @@ class Scene(_core.Scene):
     leaving : bool
         Of an inertia that changes: matter leaves at rest relative to the body, and takes its momentum along. Else parts
         of the body move, and its angular momentum stays.
+    controllers : iterable of Controller, optional
+        Programs that sample the motion and command torques. See `Controller`.
 
     Raises
     ------
@@ -55,8 +57,9 @@ class Scene(_core.Scene):
         For bad input, with the parameter and the requirement.
     """
 
-    __slots__ = ("_torques",)
+    __slots__ = ("_controllers", "_torques")
     _torques: tuple[Any, ...]
+    _controllers: tuple[Any, ...]
 
     @checked
     def __init__(
@@ -74,19 +77,29 @@ class Scene(_core.Scene):
         damper: _core.Damper | None = None,
         momentum: _core.Changing | None = None,
         leaving: bool = False,
+        controllers: Iterable[Any] = (),
     ) -> None:
         kept = to_items(torques, "scene.torques", "torques") if isinstance(torques, Iterable) else (torques,)
         if not isinstance(rotors, Iterable):
             rotors = (rotors,)
         rotors = to_items(rotors, "scene.rotors", "rotors")
+        if not isinstance(controllers, Iterable):
+            controllers = (controllers,)
+        clocks = to_items(controllers, "scene.controllers", "controllers")
         super().__init__(inertia, omega, attitude, kept, times, want, t0, name, rotors, damper, momentum,
-                         bool(leaving))
+                         bool(leaving), clocks)
         self._torques = kept   # the compiled scene holds plain pointers to their functions
+        self._controllers = clocks
 
     @property
     def torques(self) -> tuple[Any, ...]:
         """The torques, as they were given."""
         return self._torques
+
+    @property
+    def controllers(self) -> tuple[Any, ...]:
+        """The controllers, as they were given."""
+        return self._controllers
 
     @classmethod
     def load(cls, source: str | os.PathLike[str]) -> Scene:
@@ -127,6 +140,7 @@ class Scene(_core.Scene):
             "damper": self.damper,
             "momentum": self.momentum,
             "leaving": self.leaving,
+            "controllers": self.controllers,
         }
 
     def replace(self, **changes: Any) -> Scene:
@@ -158,6 +172,13 @@ class Scene(_core.Scene):
         rotors = f", {len(self.rotors)} rotor{'s' * (len(self.rotors) > 1)}" if self.rotors else ""
         return (f"Scene({self.name or 'unnamed'}: moments ({moments}), torques {names}{rotors}, "
                 f"{times.size} times from {times.min():g} to {times.max():g} s)")
+
+
+def refuse_controllers(scene: Scene, what: str) -> None:
+    """Refuse a scene with controllers where ticks are not carried yet."""
+    if count := len(scene.controllers):
+        raise _core.InvalidInput(f"{what}: must be of a scene without controllers, got {count}; it does not go through "
+                                 "ticks yet")
 
 
 class _Attitude:

@@ -11,6 +11,8 @@ import numpy as np
 from .. import _core, _files, torques
 from .._core import InvalidInput
 from .._orbit.orbit import Orbit
+from .controllers import Whole
+from .controllers import to_entry as to_entry_of_controller
 from .orbits import Names, to_entry
 
 if TYPE_CHECKING:
@@ -27,6 +29,8 @@ def _value(value: Any) -> str:
         return "{ " + ", ".join(f"{_key(name)} = {_value(item)}" for name, item in value.items()) + " }"
     if isinstance(value, (list, tuple, np.ndarray)):
         return "[" + ", ".join(_value(item) for item in value) + "]"
+    if isinstance(value, Whole):
+        return str(value)
     text = repr(float(value))
     return text if any(c in text for c in ".en") else text + ".0"
 
@@ -93,6 +97,9 @@ def to_toml(scene: Scene) -> str:
     _table(lines, "[times]", {"values": scene.times})
     orbits = Names()
     entries = [_torque(torque, i, orbits) for i, torque in enumerate(scene.torques)]
+    for controller in scene.controllers:
+        if controller.field is not None:
+            orbits.find(controller.field.orbit)
     for name, orbit in orbits.orbits.items():
         _table(lines, f"[orbits.{_key(name)}]", to_entry(orbit))
     for entry in entries:
@@ -101,6 +108,8 @@ def to_toml(scene: Scene) -> str:
         _table(lines, "[[rotors]]", list_keywords(rotor))
     if scene.damper is not None:
         _table(lines, "[damper]", {name: getattr(scene.damper, name) for name in ("inertia", "viscous", "rates")})
+    for i, controller in enumerate(scene.controllers):
+        _table(lines, "[[controllers]]", to_entry_of_controller(controller, i, orbits))
     return "\n".join(lines) + "\n"
 
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from .. import _core
 from .._attitude.arrays import is_one_of
 from .._core import InvalidInput
-from .._scene.scene import Scene
+from .._scene.scene import Scene, refuse_controllers
 from .sensitivity import Sensitivity, to_names
 
 
@@ -20,6 +20,7 @@ def differentiate(scene: Scene, names: str | Sequence[str], accuracy: float, sid
 
     A free body has closed forms. Any other body has its variational equations integrated.
     """
+    refuse_controllers(scene, "sensitivity")
     made = _core.sensitivity(scene, check_groups(names, side), accuracy, certify, side, max_steps)
     return Sensitivity(made.omega, made.attitude, made.d_omega, made.d_attitude, tuple(made.columns), side, made.error,
                        split_states(scene, made.d_states))

@@ -10,7 +10,7 @@ import numpy as np
 from .. import _core
 from .._attitude.arrays import to_number
 from .._core import InvalidInput
-from .._scene.scene import Scene
+from .._scene.scene import Scene, refuse_controllers
 from .driven import differentiate
 from .sensitivity import Array
 
@@ -84,6 +84,7 @@ def lyapunov(scene: Scene, span: float | None = None, *, accuracy: float = 1e-9)
     """
     if not isinstance(scene, Scene):
         raise InvalidInput(f"scene: must be a polhode.Scene, got {type(scene).__name__}")
+    refuse_controllers(scene, "lyapunov")
     length = float(np.max(scene.times)) - scene.t0 if span is None else to_number(span, "span")
     if not (length > 0 and math.isfinite(length)):
         raise InvalidInput(f"span: must be positive and finite, got {length}")

@@ -7,7 +7,7 @@ from typing import Literal, NamedTuple
 from .. import _core
 from .._attitude.arrays import is_whole
 from .._keywords import checked
-from .._scene.scene import Scene
+from .._scene.scene import Scene, refuse_controllers
 
 
 class Effect(NamedTuple):
@@ -50,6 +50,7 @@ def effect(scene: Scene, torque: int = 0) -> Effect:
     """
     if not isinstance(scene, Scene):
         raise _core.InvalidInput(f"scene: must be a polhode.Scene, got {type(scene).__name__}")
+    refuse_controllers(scene, "effect")
     if not is_whole(torque):
         raise _core.InvalidInput(f"torque: must be a whole number, got {torque!r}")
     if not 0 <= torque < len(scene.torques):

@@ -15,6 +15,7 @@ from .._attitude.rotation import Rotation
 from .._scene.plain import to_plain
 from .._scene.scene import Scene
 from .plan import Plan
+from .ticks import Ticks, list_arrays
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -41,6 +42,7 @@ _PARTS: dict[str, Callable[[Any], Any]] = {
     **dict.fromkeys(("t", "omega", "attitude", "status", "stats", "error", "error_kind", "asked", "omega_lower",
                      "omega_upper", "attitude_lower", "attitude_upper", "states_lower", "states_upper", "proved_span",
                      "states"), lambda part: part),
+    "ticks": lambda part: tuple(Ticks(**one) for one in part),
     "plan": lambda part: part, "events": lambda part: tuple(EventHit(**hit) for hit in part),
 }
 
@@ -69,6 +71,8 @@ class Motion:
         error was certified), and "seconds" (wall time in the compiled core). Counts are sums over all runs.
     events : tuple of EventHit
         All zeros of the events, in the order of the integration.
+    ticks : tuple of Ticks
+        Of each controller: t (n,), measurement and states (dicts of what is measured and kept), command (n, k).
     plan : Plan
     error : float
         The error of all samples, as `accuracy` is defined in `solve`; NaN if not estimated. Errors of the times of
@@ -111,6 +115,7 @@ class Motion:
     states_upper: dict[str, Floats] | None
     proved_span: tuple[float, float] | None
     events: tuple[EventHit, ...]
+    ticks: tuple[Ticks, ...]
     sensitivity: Sensitivity | None = None
 
     def __init__(self, scene: Scene, answer: _core.Answer, wishes: dict[str, Any] | None = None,
@@ -336,8 +341,9 @@ class Motion:
         return _export.to_pandas({"t": self.t}, self._arrays())
 
     def to_xarray(self) -> Any:
-        """Return the samples as an xarray.Dataset with units; omega (time, axis) and attitude (time, component)."""
-        return _export.to_xarray(("time",), {"time": self.t}, self._arrays(), self._about())
+        """Return the samples as an xarray.Dataset with units; ticks of controller i have the dimension ticks_i."""
+        made = _export.to_xarray(("time",), {"time": self.t}, self._arrays(), self._about())
+        return _export.add_ticks(made, [(one.t, one._arrays()) for one in self.ticks])
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the motion with all that repeats it to a .npz file or a .zarr folder, for `polhode.load`.
@@ -352,7 +358,8 @@ class Motion:
         Of a `Custom` torque the name is stored. The loaded motion has its samples, but its scene cannot be solved again
         before ``scene.replace(torques=...)``.
         """
-        _export.save(_export.check_path(path), self._about(), {"t": self.t, **self._arrays()})
+        _export.save(_export.check_path(path), self._about(), {"t": self.t, **self._arrays(),
+                                                               **list_arrays(self.ticks)})
 
     def animate(self, *, body: Any = "box", axis: npt.ArrayLike | None = None) -> Film:
         """Make a film of the motion: the body turns, beside the polhode on the ellipsoid of its energy.

@@ -156,6 +156,15 @@ def smoke_changing():
     assert boom.at(0.5).tolist() == [1.5, 2.5, 3.0] and scene(inertia=boom).changing == boom
 
 
+def smoke_controller():
+    law = ph.Controller(0.5, lambda t, m, s, p: -m.omega)
+    assert len(ph.solve(scene(controllers=[law], times=[0.0, 1.0])).ticks[0].t) == 2
+
+
+def smoke_measure():
+    assert ph.Measure(seed=3).seed == 3 and ph.Measure() == ph.Measure()
+
+
 def smoke_scene():
     assert pickle.loads(pickle.dumps(scene())) == scene() and scene(t0=1.0) != scene()
 
@@ -283,6 +292,8 @@ SMOKE = {
     "PrincipalAxes": smoke_principal_axes,
     "Rotation": smoke_rotation,
     "Changing": smoke_changing,
+    "Controller": smoke_controller,
+    "Measure": smoke_measure,
     "Damper": smoke_damper,
     "Rotor": smoke_rotor,
     "Scene": smoke_scene,

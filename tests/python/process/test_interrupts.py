@@ -302,6 +302,7 @@ OUT = {
         "DampedFree", "FreeMotion", "Gyrostat", "HeavyTop", "Pendulum", "DampedFree.slowed_time", "Event", "Rotor",
         "Changing", "Changing.at", "Changing.ramp", "Changing.table", "Damper", "Orbit", "Orbit.from_elements",
         "Orbit.table", "MagneticField", "MagneticField.at", "Plate",
+        "Controller", "Controller.replace", "Measure",
         "InertiaTensor", "MassProperties", "PrincipalAxes", "shapes.", "torques.", "formula.", "generalised_forces",
         "effect",
         "inertia.check", "inertia.diagnose", "inertia.equivalent_box", "inertia.equivalent_ellipsoid",

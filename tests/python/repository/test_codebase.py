@@ -13,8 +13,8 @@ import pytest
 import polhode
 
 ROOT = pathlib.Path(__file__).parents[3]
-ORDER = ["core", "math", "attitude", "inertia", "formula", "torque", "exact", "ode", "scene", "method", "solve",
-         "derivative", "reference", "batch", "spectrum", "orbit"]
+ORDER = ["core", "math", "attitude", "inertia", "formula", "torque", "exact", "ode", "clock", "scene", "method",
+         "solve", "derivative", "reference", "batch", "spectrum", "orbit"]
 MAY_USE = {
     "core": [],
     "math": ["core"],
@@ -24,12 +24,13 @@ MAY_USE = {
     "exact": ["core", "math", "attitude", "inertia"],
     "ode": ["core", "math"],
     "formula": ["core", "math"],
-    "scene": ["core", "math", "attitude", "inertia", "torque"],
-    "method": ORDER[:9],
-    "solve": ORDER[:10],
-    "derivative": ORDER[:11],
-    "reference": ORDER[:11],
-    "batch": ORDER[:12],
+    "clock": ["core", "formula", "torque"],
+    "scene": ["core", "math", "attitude", "inertia", "torque", "clock"],
+    "method": ORDER[:10],
+    "solve": ORDER[:11],
+    "derivative": ORDER[:12],
+    "reference": ORDER[:12],
+    "batch": ORDER[:13],
     "spectrum": ["core", "math"],
     "orbit": ["core", "math", "formula"],
 }

@@ -32,6 +32,14 @@ struct ExtraStates {
   std::vector<double> of(const double* y) const { return {y + first, y + first + count}; }
 };
 
+/// What a controller did at its ticks, row by row.
+struct Ticks {
+  std::vector<double> t;
+  std::vector<double> measurement;   ///< omega, attitude, and the field and the speeds if they are measured
+  std::vector<double> command;       ///< of the tick, which acts after the delay
+  std::vector<double> states;        ///< new numbers of the controller's states
+};
+
 /// The result of one run: the samples, in the order of the scene's times, and how the run ended. Times that were not
 /// reached are left out. `omega` is (n, 3) and `attitude` (n, 4), row by row; they are empty if not requested.
 struct Trajectory {
@@ -49,6 +57,7 @@ struct Trajectory {
   Unpack unpack;                         ///< for the states of dense output
   State start;
   double t_reached = 0.0;
+  std::vector<Ticks> ticks = {};         ///< of the scene's controllers
 };
 
 }  // namespace polhode

@@ -153,24 +153,27 @@ class Taylor::Stepper : public ode::Stepper {
     }
     std::copy_n(y_, W, y_old_);
     std::copy_n(carry_, W, carry_old_);
-    alignas(64) double increment[most_numbers];
-    evaluate_series(rows_, order_, W, zero, carry_, &s, 1, increment);
-    for (int i = 0; i < W; ++i) {
-      const math::DD sum = math::two_sum(y_[i], increment[i]);
-      y_[i] = sum.hi, carry_[i] = sum.lo;
-    }
     time_old_ = time_;
     unit_old_ = unit_;
-    time_ = last ? math::DD(t_end) : time_ + h;
-    std::copy_n(y_, W, arrived_);
-    problem_.correct(time_, counts_.steps, y_, carry_);
+    usable_ = fraction;
+    arrive(s, last ? math::DD(t_end) : time_ + h);
     t_old_ = time_old_.hi;
-    t_ = time_.hi;
     // A step shortened by t_end says little about the next one.
     unit_ = power_of_two(SwitchedProblem<P> ? std::min(fraction * unit_, std::abs(rest)) : fraction * unit_);
     ++counts_.steps;
     counts_.derivatives += order_;
     return StepResult::accepted;
+  }
+
+  /// Takes the last step again by the same series, to a later time. The state was not changed since.
+  /// @return false if the tolerance does not allow so long a step
+  bool extend(double t_end) {
+    const double s = ((t_end - time_old_.hi) - time_old_.lo) / unit_old_;
+    if (SwitchedProblem<P> || counts_.steps == 0 || !(std::abs(s) <= usable_)) return false;
+    --counts_.steps;   // it is the same one
+    arrive(s, math::DD(t_end));
+    ++counts_.steps;
+    return true;
   }
 
   void interpolate(double t, double* out) override { interpolate_many(&t, 1, out); }
@@ -219,6 +222,10 @@ class Taylor::Stepper : public ode::Stepper {
 
   int width() const { return get_width(problem_); }
 
+  /// The state and its rounding errors, which may be changed between two steps.
+  double* state() { return y_; }
+  double* carry() { return carry_; }
+
  protected:
   /// Takes the mode behind a surface that the last step has reached.
   StepResult switch_mode(double direction) {
@@ -234,6 +241,21 @@ class Taylor::Stepper : public ode::Stepper {
   static constexpr double zero[most_numbers] = {};
 
  private:
+  /// The end of a step from y_old_, in the unit of time unit_old_.
+  void arrive(double s, math::DD time) {
+    const int W = width();
+    alignas(64) double increment[most_numbers];
+    evaluate_series(rows_, order_, W, zero, carry_old_, &s, 1, increment);
+    for (int i = 0; i < W; ++i) {
+      const math::DD sum = math::two_sum(y_old_[i], increment[i]);
+      y_[i] = sum.hi, carry_[i] = sum.lo;
+    }
+    time_ = time;
+    std::copy_n(y_, W, arrived_);
+    problem_.correct(time_, counts_.steps, y_, carry_);
+    t_ = time_.hi;
+  }
+
   static constexpr int most_idle = 8, most_switches = 100;
 
   /// Changes the mode until the series stays in it for a while.
@@ -327,6 +349,7 @@ class Taylor::Stepper : public ode::Stepper {
   double part_, inverse_[4];   ///< 1 / (order - 3), ..., 1 / order
   math::DD time_, time_old_;
   double unit_ = 1.0, unit_old_ = 1.0;
+  double usable_ = 0.0;   ///< of the series of the last step, in its unit of time
   alignas(64) double y_[most_numbers] = {}, carry_[most_numbers] = {}, y_old_[most_numbers] = {}, carry_old_[most_numbers] = {};
   int further_ = 0;                      ///< rows after those of the order, which no step uses
   alignas(64) double arrived_[most_numbers] = {};   ///< the end of the last step, not corrected

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -47,6 +48,7 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   static constexpr double rounding = 0x1p-53;   // of y in a step, whose sums are compensated
   static constexpr double kick = 0x1p-51;       // of y in a step, in any direction
   static constexpr double sample_kick = 0x1p-52;   // the same for the other sample
+  static constexpr double certain = 4.0;   // times the error of a guard: beyond it, its side is certain
   // Relative, of the vectors. Invariants hold to their second order, which a vector made smaller has no more. The next
   // correction takes that part for an error of the first order, and near-singular bodies amplify it by thousands.
   static constexpr double most_enlarged = 1e-5;
@@ -86,6 +88,9 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     t_end_ = t_end;
     const StepResult result = Base::advance(t_end);
     if (result != StepResult::accepted) return result;
+    restarted_ = false, again_ = false;
+    for (int k = 0; k < 3; ++k) std::copy_n(errors()[static_cast<std::size_t>(k)], this->width(), started_[k]);
+    scale_ = trace_.scale;
     propagate_errors();
     if constexpr (SwitchedProblem<P>) pass_surfaces();
     if (find_largest_now() > trace_.most * trace_.asked) {
@@ -94,6 +99,31 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     }
     return result;
   }
+
+  /// As Taylor::Stepper does, with the errors of the last step's start.
+  bool extend(double t_end) {
+    if (scale_ != trace_.scale || !Base::extend(t_end)) return false;
+    for (int k = 0; k < 3; ++k) std::copy_n(started_[k], this->width(), errors()[static_cast<std::size_t>(k)]);
+    again_ = true;
+    propagate_errors();
+    return find_largest_now() <= trace_.most * trace_.asked;
+  }
+
+  /// The errors, scaled by trace.scale, which may be changed with the state between two steps: the loss, the spread and
+  /// the sample. restart() follows.
+  std::array<double*, 3> errors() { return {loss_, spread_, sample_}; }
+  /// Goes on from a state and errors that were changed.
+  void restart() {
+    const int W = this->width();
+    now_[0] = now_[1] = now_[2] = 0.0;
+    measure(this->y_);
+    std::copy_n(loss_, W, trace_.loss);
+    std::copy_n(spread_, W, trace_.spread);
+    std::copy_n(sample_, W, trace_.sample);
+    restarted_ = true;
+  }
+  /// Counts the state itself as a sample.
+  void add_sample() { trace_.add(now_[0], now_[1], trace_.before + std::abs(this->t_ - t0_), now_[2]); }
 
   void interpolate_many(const double* times, std::size_t n, double* out) override {
     Base::interpolate_many(times, n, out);
@@ -110,9 +140,9 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
     double start[4], middle[3] = {};
     this->problem_.measure_error(this->y_old_, loss_, start);
     double* between = start[0] * std::abs(s * this->unit_old_) < least_angle ? middle : nullptr;
-    propagate(lost_, signed_terms, s, loss_, between);
-    propagate(perturbed_, error_terms, s, spread_, between);
-    if (separate_) propagate(sampled_, error_terms, s, sample_, between);
+    propagate(lost_, 0, signed_terms, s, loss_, between);
+    propagate(perturbed_, 1, error_terms, s, spread_, between);
+    if (separate_) propagate(sampled_, 2, error_terms, s, sample_, between);
     alignas(64) double loss[most_numbers];
     double sizes[4];
     compute_loss(s, loss);
@@ -153,21 +183,26 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   }
 
   /// A small error over the step, by the difference of two series.
+  /// @param which    the vector's number
   /// @param between  gets the sizes in the middle of the step added, or null
-  void propagate(const P& problem, int most_terms, double s, double* error, double* between) {
+  void propagate(const P& problem, int which, int most_terms, double s, double* error, double* between) {
     const int W = this->width(), terms = trace_.all_terms ? this->order_ : std::min(this->order_, most_terms);
-    alignas(64) double perturbed[most_numbers] = {}, propagated[most_numbers];
-    for (int i = 0; i < W; ++i) perturbed[i] = this->y_old_[i] + error[i];
-    problem.compute_series(this->time_old_, this->unit_old_, perturbed, perturbed, terms, perturbed_rows_);
-    for (int k = W; k < W * (terms + 1); ++k) perturbed_rows_[k] -= this->rows_[k];
+    alignas(64) double propagated[most_numbers];
+    double* const perturbed_rows = perturbed_rows_[which];
+    if (!again_) {
+      alignas(64) double perturbed[most_numbers] = {};
+      for (int i = 0; i < W; ++i) perturbed[i] = this->y_old_[i] + error[i];
+      problem.compute_series(this->time_old_, this->unit_old_, perturbed, perturbed, terms, perturbed_rows);
+      for (int k = W; k < W * (terms + 1); ++k) perturbed_rows[k] -= this->rows_[k];
+    }
     if (between != nullptr) {
       const double half = 0.5 * s;
       double sizes[4];
-      evaluate_series(perturbed_rows_, terms, W, Base::zero, error, &half, 1, propagated);
+      evaluate_series(perturbed_rows, terms, W, Base::zero, error, &half, 1, propagated);
       this->problem_.measure_error(this->arrived_, propagated, sizes);
       for (int k = 0; k < 3; ++k) between[k] += sizes[k + 1];
     }
-    evaluate_series(perturbed_rows_, terms, W, Base::zero, error, &s, 1, propagated);
+    evaluate_series(perturbed_rows, terms, W, Base::zero, error, &s, 1, propagated);
     std::copy_n(propagated, W, error);
   }
 
@@ -306,6 +341,8 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
       alignas(64) double jump[most_numbers], parts[3];
       const double slope = crossing.slope, scale = trace_.scale;
       const double apart = compare_guards(crossing, this->time_, this->y_, parts);
+      // A changed state lies behind the surface, and no motion has crossed it.
+      if (restarted_ && std::abs(crossing.value) > certain * (apart + crossing.rounding)) return;
       parts[0] += scale * crossing.value;
       const double D = apart + crossing.rounding, first = D / std::abs(slope);
       // Next to another crossing their order is in doubt, and the sides between them.
@@ -329,12 +366,16 @@ class TrackedTaylor final : public Taylor::Stepper<P> {
   const P &lost_, &perturbed_, &sampled_;
   ErrorTrace& trace_;
   const bool separate_;
+  bool restarted_ = false;   ///< without a step since
   double t0_, t_end_ = 0.0;
   double late_ = 0.0;   ///< the doubt in the time of the last crossing
   double now_[3] = {}, old_[3] = {};
   math::Coin coin_;
   alignas(64) double loss_[most_numbers], spread_[most_numbers], sample_[most_numbers];
-  alignas(64) double perturbed_rows_[most_numbers * (most_series_order + 1)] = {};
+  bool again_ = false;           ///< the series of the last step are used once more
+  double scale_ = 1.0;           ///< of the errors at its start
+  double started_[3][most_numbers] = {};   ///< those errors
+  alignas(64) double perturbed_rows_[3][most_numbers * (most_series_order + 1)] = {};
 };
 
 }  // namespace polhode::ode

@@ -64,6 +64,12 @@ class Rotor {
   /// A driven rotor's momentum is a state of this name in a scene; "" before the rotor is in one.
   const std::string& state() const { return state_; }
   Rotor with_state(std::string name) const;
+  /// Of a rotor that a controller drives: the name of the state that holds its torque if it is free, else any name. The
+  /// momentum is then a state.
+  const std::string& command() const { return command_; }
+  Rotor with_command(std::string name) const;
+  /// Without what a scene adds.
+  Rotor as_given() const { return with_state("").with_command(""); }
   Rotor without_windows() const;
 
   /// Its momentum about the axis at the start [N m s]: relative to the body, or absolute if it is free.
@@ -81,10 +87,11 @@ class Rotor {
  private:
   RotorParts parts_;
   bool axis_was_scaled_ = false;
-  std::string state_;
+  std::string state_, command_;
 };
 
-/// The torque on the carrier by a driven rotor with its momentum h as a state: -w x (h a) - e a, and h' = e.
+/// The torque on the carrier by a driven rotor with its momentum h as a state: -w x (h a) - e a, and h' = e. A held rotor
+/// has e = 0: its controller changes h at once.
 torques::Formula make_torque(const Rotor& rotor, double momentum);
 
 /// What a motor's function is as text: `[](const auto& in) { return in.s("speed") * -in.p("k"); }`, where `in` is a

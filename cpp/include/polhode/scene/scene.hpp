@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "polhode/clock/controller.hpp"
 #include "polhode/core/state.hpp"
 #include "polhode/inertia/inertia_tensor.hpp"
 #include "polhode/scene/changing.hpp"
@@ -38,6 +39,7 @@ struct SceneParts {
   std::optional<Changing> changing = {};         ///< the inertia, where it changes
   std::optional<Changing> momentum = {};         ///< h_B of parts that move within the body [N m s]
   bool leaving = false;                          ///< matter that leaves takes its momentum along
+  std::vector<Controller> controllers = {};      ///< in the order of what they do at one instant
 };
 
 /// The inertia and the momentum of parts inside, in one piece of time of a body that changes.
@@ -81,7 +83,7 @@ class Scene {
   BodyPiece find_body_piece(double t, bool before = false) const;
   const Vector3d& omega() const { return parts_->omega; }
   const Quat& attitude() const { return parts_->attitude; }
-  /// The torques as given, and behind them those of driven rotors on the carrier.
+  /// The torques as given, and behind them those of driven rotors on the carrier and of controllers.
   const std::vector<AnyTorque>& torques() const { return parts_->torques; }
   std::vector<AnyTorque> given_torques() const;
   std::vector<Rotor> given_rotors() const;
@@ -91,6 +93,7 @@ class Scene {
   /// Rotors or a damper have momenta that are states.
   bool has_inner_states() const;
   const std::optional<Damper>& damper() const { return parts_->damper; }
+  const std::vector<Controller>& controllers() const { return parts_->controllers; }
   const std::vector<double>& times() const { return parts_->times; }
   const Wanted& want() const { return parts_->want; }
   const std::vector<Rotor>& rotors() const { return parts_->rotors; }

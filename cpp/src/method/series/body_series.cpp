@@ -61,8 +61,9 @@ BodySeries::BodySeries(const Scene& scene, bool attitude) {
     q_WP = multiply_exactly(q_WB, q_BP);
     omega_P = R_BP_.transpose() * scene.omega();
   }
-  // The separatrix of a body with rotors lies elsewhere.
-  if (triaxial && scene.rotor_momentum().isZero(0.0)) choose_variables(omega_P);
+  // The separatrix of a body with rotors lies elsewhere. A controller may branch where a rate is exactly 0, which is a
+  // difference of separatrix variables.
+  if (triaxial && scene.rotor_momentum().isZero(0.0) && scene.controllers().empty()) choose_variables(omega_P);
   if (terms_.variables == RateVariables::plain) {
     for (int i = 0; i < 3; ++i) {
       const DD product = math::two_diff(I_[(i + 1) % 3], I_[(i + 2) % 3]) / DD(I_[i]);

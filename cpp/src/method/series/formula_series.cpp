@@ -33,6 +33,14 @@ std::shared_ptr<const formula::Table> find_table(const Scene& scene, const BodyS
       &is_small);
 }
 
+/// Whether a state is what a controller commands.
+bool holds_command(const Scene& scene, const std::string& name) {
+  return std::any_of(scene.controllers().begin(), scene.controllers().end(), [&](const Controller& controller) {
+    return controller.parts().output != Output::rotor_momentum &&
+           std::find(controller.held().begin(), controller.held().end(), name) != controller.held().end();
+  });
+}
+
 }  // namespace
 
 Scene drop_torques(const Scene& scene) {
@@ -60,7 +68,10 @@ FormulaSeries::FormulaSeries(const Scene& scene, std::shared_ptr<const formula::
   if (starts.size() > most_width - ode::series_width)
     throw InvalidInput("torques", "formulas with at most 56 numbers of states", std::to_string(starts.size()));
   int end = ode::series_width;
-  for (const formula::Input& state : states_) ends_.push_back(end += static_cast<int>(state.values.size()));
+  for (const formula::Input& state : states_) {
+    ends_.push_back(end += static_cast<int>(state.values.size()));
+    counted_.push_back(!holds_command(scene, state.name));
+  }
   if (!table_) table_ = find_table(scene, frame_, states_);
   start_.assign(static_cast<std::size_t>(width()), 0.0);
   std::copy_n(frame_.start(), ode::series_width, start_.begin());
@@ -151,6 +162,7 @@ void FormulaSeries::measure_error(const double* y, const double* error, double* 
   frame_.measure_error(y, error, out);
   int begin = ode::series_width;
   for (std::size_t i = 0; i < ends_.size(); begin = ends_[i++]) {
+    if (!counted_[i]) continue;
     double apart = 0.0;
     for (int k = begin; k < ends_[i]; ++k) {
       apart = std::max(apart, std::abs(error[k]));

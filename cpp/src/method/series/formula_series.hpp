@@ -85,6 +85,7 @@ class FormulaSeries {
   BodySeries frame_;
   std::vector<formula::Input> states_;
   std::vector<int> ends_;          ///< columns behind each of them
+  std::vector<bool> counted_;      ///< whether its error is one of the samples: not that of a command
   mutable std::vector<double> largest_;   ///< size of each of them so far
   std::vector<double> start_;
   std::shared_ptr<const formula::Table> table_;

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "method/clock/clock_run.hpp"
 #include "method/method.hpp"
 #include "method/series/body_series.hpp"
 #include "method/series/formula_series.hpp"
@@ -42,7 +43,12 @@ Trajectory integrate_series(const Scene& scene, const RunOptions& options) {
   };
   ExtraStates extra;
   if constexpr (ode::WideProblem<Series>) extra = {series->count_states(), ode::series_width, series->width()};
-  Trajectory trajectory = integrate(scene, options, series->start(), unpack, make, extra);
+  Trajectory trajectory;
+  if (scene.controllers().empty()) {
+    trajectory = integrate(scene, options, series->start(), unpack, make, extra);
+  } else if constexpr (ode::WideProblem<Series>) {
+    trajectory = ClockRun<Series>(scene, options, *series, extra).run(unpack, make);
+  }
   if (trace != nullptr)
     for (double* error : {trace->loss, trace->spread, trace->sample}) series->unpack_error(error);
   trajectory.model = "euler", trajectory.state = series->describe_state();

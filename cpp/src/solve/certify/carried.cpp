@@ -19,7 +19,8 @@ Attempt run_carried(CountedRuns& runs, double rtol, double safety, bool all_term
   Motion& motion = attempt.motion;
   motion.rtol_used = rtol;
   given_up = trace.given_up;
-  if (!attempt.finished() || motion.t.empty()) return attempt;
+  const bool lost = trace.given_up > 0.0 && !runs.decision().scene.controllers().empty();
+  if ((!attempt.finished() && !lost) || motion.t.empty()) return attempt;
   const double rates =
       motion.omega.empty() || trace.rate_error == 0.0 ? 0.0 : trace.rate_error / motion.omega_scale();
   const double error = std::max({rates, motion.attitude.empty() ? 0.0 : trace.attitude_error, trace.state_error});
@@ -27,6 +28,7 @@ Attempt run_carried(CountedRuns& runs, double rtol, double safety, bool all_term
   constexpr double floor = 8 * std::numeric_limits<double>::epsilon();   // of samples, for all steps
   attempt.error = safety * std::min(error, std::numbers::pi) + floor;
   attempt.holds_until = attempt.error <= accuracy ? unknown_error : trace.holds_until;
+  if (lost) attempt.holds_until = std::min(trace.holds_until, trace.given_up);
   return attempt;
 }
 

@@ -126,8 +126,15 @@ class Certifier {
     for (bool first = true;; first = false) {
       const bool finest = rtol <= least, last = finest && (all_terms || !first);
       double given_up = 0.0;
-      const double most = last ? unknown_error : finest ? unstable_factor : give_up_factor;
+      const bool looped = !decision_.scene.controllers().empty();   // an unstable loop may turn ever faster
+      const double most = last ? (looped ? unstable_factor : unknown_error) : finest ? unstable_factor : give_up_factor;
       Attempt attempt = run_carried(runs_, rtol, safety_, all_terms, most, given_up);
+      if (given_up > 0 && last && attempt.error < unknown_error) {
+        best_ = std::move(attempt);
+        best_.motion.message.clear();
+        lost_ = true;
+        return conclude();
+      }
       if (given_up > 0) {
         // The error may grow by the same factor in each further part of the span.
         const double parts = std::min(decision_.facts.span() / given_up, 4.0);
@@ -186,7 +193,7 @@ class Certifier {
       if (underflow_ > 1e-17) best_.error = std::min(best_.error + underflow_, std::numeric_limits<double>::max());
     }
     motion.error = best_.error;
-    if (!best_.finished() || motion.t.empty() || !(best_.error < unknown_error)) {
+    if ((!best_.finished() && !lost_) || motion.t.empty() || !(best_.error < unknown_error)) {
       motion.error = std::numeric_limits<double>::quiet_NaN();
       if (motion.t.empty()) {
         note("no sample was reached, so no error could be bounded");
@@ -196,7 +203,7 @@ class Certifier {
       }
       return finish();
     }
-    if (best_.error <= accuracy_) {
+    if (best_.error <= accuracy_ && !lost_) {
       motion.error_kind = jumps_within_steps() ? "estimated" : "bounded";
       if (motion.error_kind == "estimated") {
         note(describe_jump());
@@ -218,10 +225,18 @@ class Certifier {
   }
 
   bool jumps_within_steps() const {
-    return decision_.crosses_switches || !std::isnan(probes_.state_jump) || probes_.too_many || !probes_.breaks.empty();
+    return decision_.crosses_switches || calls_functions() || !std::isnan(probes_.state_jump) || probes_.too_many || !probes_.breaks.empty();
+  }
+
+  /// A controller's law is a function of the user's own, whose derivative and branches are not known.
+  bool calls_functions() const {
+    const auto& controllers = decision_.scene.controllers();
+    return std::any_of(controllers.begin(), controllers.end(), [](const Controller& one) { return !one.is_traced(); });
   }
 
   std::string describe_jump() const {
+    if (calls_functions())
+      return "the error is estimated: the derivative and the branches of a controller's function are not known";
     if (decision_.crosses_switches)
       return "a coarser run estimates the error, because " + decision_.plan.method + " steps over the switches of your "
              "formula; taylor ends its steps there and bounds it";
@@ -255,7 +270,21 @@ class Certifier {
       std::snprintf(text + n, sizeof text - static_cast<std::size_t>(n), "; it holds for the first %.4g s",
                     best_.holds_until);
     }
-    return text;
+    return text + describe_lost_tick();
+  }
+
+  /// The first tick after the last sample that has the accuracy.
+  std::string describe_lost_tick() const {
+    const double from = decision_.scene.t0() + (best_.holds_until < unknown_error ? best_.holds_until : 0.0);
+    std::size_t lost = 0, tick = 0;
+    double t = unknown_error;
+    for (std::size_t i = 0; i < best_.motion.ticks.size(); ++i) {
+      const std::vector<double>& times = best_.motion.ticks[i].t;
+      const auto at = std::lower_bound(times.begin(), times.end(), from);
+      if (at != times.end() && *at < t) lost = i, tick = static_cast<std::size_t>(at - times.begin()), t = *at;
+    }
+    if (!(t < unknown_error)) return "";
+    return "; lost by tick " + std::to_string(tick) + " of controller " + std::to_string(lost) + ", t = " + to_text(t) + " s";
   }
 
   void note(const std::string& text) {
@@ -278,6 +307,7 @@ class Certifier {
   const double accuracy_;
   double safety_ = 1.5, ratio_ = pair_ratio;
   double underflow_ = 0.0;   ///< a part of the error
+  bool lost_ = false;        ///< the run was given up at the least tolerance; its samples are those before
   Attempt best_;
   Probes probes_;
 };

@@ -36,7 +36,7 @@ double relative(double difference, double scale) {
 
 /// Only the friction of rotors acts: the energy never rises.
 bool only_loses_energy(const Scene& scene) {
-  return scene.is_closed() && scene.has_inner_states() &&
+  return scene.is_closed() && scene.has_inner_states() && scene.controllers().empty() &&
          !scene.changes() && std::all_of(scene.rotors().begin(), scene.rotors().end(), [](const Rotor& rotor) {
            return !rotor.parts().law && rotor.parts().torque == 0.0 && !rotor.has_windows();
          });

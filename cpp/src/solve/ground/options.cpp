@@ -7,6 +7,7 @@
 #include "polhode/core/error.hpp"
 #include "polhode/core/float_state.hpp"
 #include "polhode/solve/plan.hpp"
+#include "solve/ground/pieces.hpp"
 
 namespace polhode {
 namespace {
@@ -85,6 +86,26 @@ void require_provable(const Scene& scene, const SolveOptions& options) {
   }
 }
 
+/// Refuses what a run from tick to tick does not do.
+void require_clocked(const Scene& scene, const SolveOptions& options) {
+  if (scene.controllers().empty()) return;
+  const auto refuse = [](const std::string& where, const std::string& found, const std::string& cause) {
+    throw InvalidInput(where, "left out with controllers", found, cause);
+  };
+  if (options.proof) refuse("certify='proof'", "a proof", "proofs do not go through ticks yet");
+  if (options.method && *options.method != "taylor")
+    refuse("method", "'" + *options.method + "'", "taylor steps from tick to tick");
+  if (options.formulation != Formulation::euler) refuse("formulation", "'lagrangian'", "taylor integrates Euler's equations");
+  if (!options.events.empty())
+    refuse("events", std::to_string(options.events.size()), "zeros of functions are not sought between ticks yet");
+  if (has_windows(scene))
+    refuse("scene.torques", "windows", "torques and rotors in windows are not joined with ticks yet");
+  if (calls_custom(scene)) refuse("scene.torques", "a Custom torque", "it has no Taylor series; write it as a Formula");
+  for (const double t : scene.times())
+    if (t < scene.t0())
+      throw InvalidInput("scene.times", "at or after t0 with controllers", to_text(t), "a controller acts forward in time");
+}
+
 }  // namespace
 
 bool calls_custom(const Scene& scene) {
@@ -139,6 +160,7 @@ void check_options(const Scene& scene, const SolveOptions& options) {
     throw InvalidInput("atol", "0 or positive, and finite", to_text(*options.atol));
   }
   if (options.max_steps < 1) throw InvalidInput("max_steps", "at least 1", std::to_string(options.max_steps));
+  require_clocked(scene, options);
   require_provable(scene, options);
   for (const SceneEvent& event : options.events) {
     if (event.direction < -1 || event.direction > 1) {

@@ -42,6 +42,12 @@ Decision decide(const Scene& scene, const SolveOptions& options) {
     decision.facts = compute_facts(scene);
     return decision;
   }
+  if (!scene.controllers().empty()) {
+    decision.facts = compute_facts(scene);
+    if (is_by_tolerance(options)) decision.plan.model = "euler", decision.plan.method = "taylor";
+    else decision.plan = make_method_plan(scene, decision.facts, options);
+    return decision;
+  }
   if (std::optional<Negligible> negligible = find_negligible(scene, options)) {
     SolveOptions rest = options;
     rest.leave_out = false;

@@ -154,6 +154,18 @@ void explain_rotors(const Scene& scene, PlanReport& report) {
   }
 }
 
+void explain_controllers(const Scene& scene, PlanReport& report) {
+  for (std::size_t i = 0; i < scene.controllers().size(); ++i) {
+    const Controller& controller = scene.controllers()[i];
+    const int number = static_cast<int>(i);
+    report.reasons.push_back(format("Controller %d samples the motion every %.6g s. Steps end at its ticks, and where its "
+                                    "commands begin and end.", number, controller.parts().period));
+    if (!controller.is_traced())
+      report.reasons.push_back(format("Controller %d calls Python at each tick, which is slower. The error is estimated, "
+                                      "because derivative and branches of its function are not known.", number));
+  }
+}
+
 /// What is not computed, and why that is safe.
 void explain_savings(const Scene& scene, const Facts& facts, const SolveOptions& options, PlanReport& report) {
   auto& left = report.reasons;
@@ -210,6 +222,7 @@ PlanReport explain_decision(const Decision& decision, const SolveOptions& option
     explain_steps(scene, facts, options, form != nullptr, report);
   }
   explain_rotors(scene, report);
+  explain_controllers(scene, report);
   if (facts.only_at_end) report.reasons.push_back("Only one sample time is given, so nothing is interpolated.");
   explain_savings(scene, facts, options, report);
   return report;

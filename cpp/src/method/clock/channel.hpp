@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <limits>
+#include <vector>
+
+#include "method/clock/update.hpp"
+#include "polhode/math/draw.hpp"
+#include "polhode/method/trajectory.hpp"
+#include "polhode/scene/scene.hpp"
+
+namespace polhode {
+
+/// Times within four units of rounding of each other are one instant.
+bool is_same_instant(double a, double b);
+
+/// One controller in a run: its ticks, its memory, and the commands that are on their way. A state of the run is
+/// omega and attitude in body axes, and the states of the scene.
+class Channel {
+ public:
+  Channel(const Scene& scene, std::size_t number, bool with_errors);
+
+  /// The next time at which it measures, or a command begins or ends.
+  double next() const;
+  /// What happens at an instant, in this order.
+  void end_pulse(double t, Carried& state);
+  void measure(double t, const Carried& state);
+  void begin_commands(double t, Carried& state);
+  /// Once and for all: ticks from this time on are not called.
+  void stop_at(double t) { end_ = t; }
+
+  const Ticks& ticks() const { return ticks_; }
+  std::uint64_t tick() const { return tick_; }
+
+ private:
+  struct Pending {
+    double t;
+    Carried command;
+  };
+
+  void fill_inputs(double t, const Carried& state, Carried& in) const;
+  void add_noise(Carried& in) const;
+  void round(Carried& in) const;
+  void clip(Carried& command) const;
+  void hold(const Carried& command, Carried& state);
+  void call(double t, const Carried& in, Carried& out);
+  double next_tick() const { return controller_.tick(tick_); }
+  std::size_t place(std::string_view name) const;   ///< among the numbers of the inputs, behind omega and attitude
+
+  const Scene& scene_;
+  const Controller& controller_;
+  std::size_t number_;
+  bool with_errors_;
+  Update update_;
+  std::uint64_t tick_ = 0;
+  double off_ = std::numeric_limits<double>::infinity(), end_ = std::numeric_limits<double>::infinity();
+  std::deque<Pending> pending_;
+  Carried memory_;                       ///< the numbers of the inputs
+  std::vector<std::size_t> held_;        ///< where a command's numbers are in a state of the run
+  std::size_t states_;                   ///< numbers of the controller's own
+  std::vector<Carried> spare_;           ///< commands that have begun
+  Carried in_, out_, zero_;
+  Ticks ticks_;
+};
+
+}  // namespace polhode

@@ -1,0 +1,1 @@
+"""Controllers: programs that sample a motion, compute and hold."""
