@@ -1,3 +1,5 @@
+#include <vector>
+
 #include "c/call.hpp"
 #include "polhode/exact/free_motion.hpp"
 #include "polhode/exact/gyrostat.hpp"
@@ -22,7 +24,8 @@ extern "C" {
 polhode_status polhode_free_motion_create(const double* inertia, const double* omega, const double* attitude,
                                           polhode_free_motion** made) {
   return c::call(__func__, [&] {
-    c::need(made, "made") = new polhode_free_motion{
+    polhode_free_motion*& out = c::need(made, "made");
+    out = new polhode_free_motion{
         FreeMotion(c::inertia(inertia), c::vector(omega, "omega"), c::attitude(attitude))};
   });
 }
@@ -56,7 +59,8 @@ polhode_status polhode_free_motion_flip_times(const polhode_free_motion* motion,
 polhode_status polhode_gyrostat_create(const double* inertia, const double* momentum, const double* omega,
                                        const double* attitude, polhode_gyrostat** made) {
   return c::call(__func__, [&] {
-    c::need(made, "made") = new polhode_gyrostat{Gyrostat(c::inertia(inertia), c::vector(momentum, "momentum"),
+    polhode_gyrostat*& out = c::need(made, "made");
+    out = new polhode_gyrostat{Gyrostat(c::inertia(inertia), c::vector(momentum, "momentum"),
                                                           c::vector(omega, "omega"), c::attitude(attitude))};
   });
 }
@@ -79,7 +83,8 @@ polhode_status polhode_gyrostat_get_facts(const polhode_gyrostat* motion, polhod
 polhode_status polhode_heavy_top_create(const double* inertia, double weight_arm, const double* omega,
                                         const double* attitude, double rotor, polhode_heavy_top** made) {
   return c::call(__func__, [&] {
-    c::need(made, "made") = new polhode_heavy_top{
+    polhode_heavy_top*& out = c::need(made, "made");
+    out = new polhode_heavy_top{
         HeavyTop(c::inertia(inertia), weight_arm, c::vector(omega, "omega"), c::attitude(attitude), rotor)};
   });
 }

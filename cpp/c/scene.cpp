@@ -38,7 +38,8 @@ extern "C" {
 polhode_status polhode_scene_create(const double* inertia, const double* omega, const double* attitude,
                                     polhode_scene** made) {
   return c::call(__func__, [&] {
-    c::need(made, "made") = new polhode_scene{
+    polhode_scene*& out = c::need(made, "made");
+    out = new polhode_scene{
         {.inertia_B = c::inertia(inertia), .omega = c::vector(omega, "omega"), .attitude = c::attitude(attitude)}};
   });
 }

@@ -1,6 +1,7 @@
 """The C interface: by programs in C and Rust, and by ctypes. Its answers have the bits of the Python module."""
 
 import ctypes
+import os
 import pathlib
 import re
 import shutil
@@ -88,6 +89,17 @@ def test_the_c_program_finds_bits_sizes_refusals_and_errors_of_threads(library, 
     assert nan.startswith("polhode_free_motion_create: omega: must be finite, got (1, 2, nan)")
     assert inertia == "polhode_free_motion_create: inertia: must not be NULL"
     assert motion == "polhode_free_motion_at: motion: must not be NULL"
+
+
+def test_no_call_loses_memory_or_reads_beyond_its_own(library, tmp_path):
+    if not shutil.which("valgrind"):
+        pytest.skip("needs valgrind")
+    known = os.environ | {"POLHODE_SIMD": "avx2"}   # of valgrind
+    for source in ("tests/c/interface.c", "examples/c/tumble.c"):
+        compile_c(library, ROOT / source, tmp_path / "program")
+        done = subprocess.run(["valgrind", "-q", "--leak-check=full", "--error-exitcode=9", tmp_path / "program"],
+                              capture_output=True, text=True, env=known)
+        assert done.returncode == 0, done.stderr
 
 
 def test_the_c_example_prints_what_python_finds(library, tmp_path):
