@@ -88,6 +88,31 @@ def test_limits_cut_each_component():
     assert ticks.command[0, 0] == -0.01 and ticks.command[0, 1] == 0.02 and ticks.command[0, 2] == -0.05
 
 
+def point(t, m, s, p):
+    return p.kp * m.attitude[:3] * m.attitude[3] + p.kd * m.omega
+
+
+def wheels(limit=None, **motor):
+    rotors = [ph.Rotor(axis, inertia=0.02, speed=3.0, free=True, **motor) for axis in np.eye(3)]
+    law = ph.Controller(0.2, point, output="rotor_torque", parameters={"kp": 0.5, "kd": 1.5}, limit=limit)
+    return ph.solve(scene(law, rotors=rotors, times=np.linspace(0, 6, 61)), 1e-9)
+
+
+def test_a_motor_gives_no_more_than_its_largest_torque():
+    by_motor, by_limit = wheels(torque="0", max_torque=0.05), wheels(limit=0.05)
+    assert by_motor.success and np.abs(by_limit.ticks[0].command).max() == 0.05
+    assert np.abs(by_motor.ticks[0].command).max() > 0.1
+    np.testing.assert_allclose(by_motor.omega, by_limit.omega, rtol=0, atol=1e-11)
+
+
+def test_wheels_stay_at_their_top_speed():
+    motion = wheels(torque="0", max_torque=0.3, max_speed=12.0, coulomb=0.02, viscous=1e-3)
+    speed = np.abs(motion.rotor_speed)
+    assert motion.success and speed.max() == pytest.approx(12, abs=1e-12)
+    assert (np.isclose(speed, 12, rtol=0, atol=1e-12).sum(axis=0) > 10).any()
+    assert motion.drift["angular_momentum"] < 1e-13
+
+
 # ---- what is measured
 
 
