@@ -96,7 +96,7 @@ def _epochs(data: Sequence[Measurement], count: int) -> Array:
 def costs_of(data: Sequence[Measurement], omega: Array, moments: Array, until: float, rng: np.random.Generator,
              ) -> tuple[Array, Array]:
     """Return the cost of each body's motion on the first samples, and the best start attitude."""
-    from ..measured import Attitudes, Axis, Direction
+    from ..measured import Attitudes, Axis, Brightness, Direction, Scalar
 
     pairs: list[tuple[Array, Array, float]] = []
     others = []
@@ -125,6 +125,9 @@ def costs_of(data: Sequence[Measurement], omega: Array, moments: Array, until: f
         costs = np.zeros(len(omega))
     for part in others:
         w, q = free_motion(moments[:, None], omega[:, None], attitude[:, None], part.t)
+        if isinstance(part, (Brightness, Scalar)):
+            costs += part.costs(q)
+            continue
         for k in range(len(omega)):
             r = part.whiten(part.residual(w[k], q[k], np.zeros(part.bias)))
             costs[k] += 0.5 * float((r * r).sum())

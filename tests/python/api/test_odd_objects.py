@@ -169,6 +169,9 @@ DOORS = {
     "elliptic.K": (ph.elliptic.K, dict(m=0.5)), "elliptic.nome": (ph.elliptic.nome, dict(m=0.5)),
     "elliptic.jacobi": (ph.elliptic.jacobi, dict(u=0.5, m=0.5)),
     "measured.Rates": (ph.measured.Rates, dict(t=T30, y=FREE.at(T30)[0], sigma=0.01)),
+    "measured.Brightness": (ph.measured.Brightness, dict(
+        t=T30, y=np.ones(T30.size), sigma=0.01, body=(1, 2, 3), sun=(0, 0, 1), observer=(0, 1, 0), law="lambert",
+        night=np.zeros(T30.size), scale=True, offset=False)),
     "torques.During": (T.During, dict(torque=T.Constant(W), windows=[(0, 1)])),
     "torques.Constant": (T.Constant, dict(torque=W, frame="body")),
     "torques.Gravity": (T.Gravity, dict(weight=1.0, arm=W)), "torques.Custom": (T.Custom, dict(function=len)),
