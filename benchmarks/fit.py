@@ -84,6 +84,38 @@ def trial(kind, noise, seed):
     return bool(found.success and near < 6), spent
 
 
+SPARSE = {"50 attitudes": (50, None), "20 attitudes": (20, None), "one body axis, 80 samples": (80, (0, 0, 1.0))}
+
+
+def sparse_trial(name, seed):
+    """(found, wrong, CPU seconds) over 60 to 300 turns: found means a success with the truth among its candidates."""
+    rng = np.random.default_rng([91, seed])
+    inertia, omega, q = random_body(rng)
+    omega *= 2 / np.linalg.norm(omega)
+    count, axis = SPARSE[name]
+    t = np.sort(rng.uniform(0, 1, count)) * rng.uniform(60, 300) * np.pi
+    R, noise = ph.Rotation.from_quat(ph.FreeMotion(inertia, omega, q).at(t)[1]), 0.01 * rng.normal(size=(count, 3))
+    if axis is None:
+        data, twins = ph.measured.Attitudes(t, R * ph.Rotation.from_rotvec(noise), 0.01), [[0, 1, 2]]
+    else:
+        data, twins = ph.measured.Axis(t, R.apply(np.array(axis)) + noise, 0.01, axis), [[0, 1, 2], [1, 0, 2]]
+    start = time.thread_time()
+    found = ph.fit(data)
+    spent = time.thread_time() - start
+    near = min(max(np.abs(one.inertia - inertia[p] / inertia.max()).max(),
+                   np.abs(np.abs(one.omega) - np.abs(omega[p])).max() / 2) for one in found.candidates for p in twins)
+    return bool(found.success and near < 0.06), bool(found.success and near >= 0.06), spent
+
+
+def sparse(trials):
+    for name in SPARSE:
+        results = [sparse_trial(name, seed) for seed in range(trials)]
+        good, wrong, spent = (list(part) for part in zip(*results, strict=True))
+        print(f"{name} over 60 to 300 turns: {sum(good)} of {trials} found, {sum(wrong)} wrong with success, "
+              f"{np.median(spent):.2f} s in the median, {max(spent):.1f} s at most; "
+              f"lost: {[seed for seed in range(trials) if not good[seed]]}", flush=True)
+
+
 def coverage(trials):
     """The share of 95 % intervals that hold the truth, least and most over the parameters."""
     inertia, omega = np.array([0.3, 0.5, 0.62]), np.array([1.0, -2.0, 0.7])
@@ -126,7 +158,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--trials", type=int, default=100)
     parser.add_argument("--speed", action="store_true", help=argparse.SUPPRESS)
+    parser.add_argument("--sparse", action="store_true", help="only data over many turns")
     options = parser.parse_args()
+    if options.sparse:
+        return sparse(options.trials)
     if options.speed:
         return print(json.dumps(speed()))
     print(f"load {os.getloadavg()[0]:.1f}; ns a state with all 36 derivatives")

@@ -11,7 +11,7 @@ from .._attitude.arrays import is_one_of, is_whole, to_items, to_number
 from .._core import IntegrationFailure, InvalidInput
 from .._scene.scene import Scene, refuse_controllers
 from ..measured import Attitudes, Measurement, Rates
-from . import rotations
+from . import robust, rotations
 from .candidates import Pool
 from .driven_problem import DrivenProblem, DrivenState
 from .least_squares import LOSSES, Minimum, minimise
@@ -19,7 +19,7 @@ from .problem import GROUPS, Problem, State, ratios_of
 from .result import FitResult, make_result
 from .rotations import Array
 from .start import fits
-from .starts import SPANS, grown, search_free
+from .starts import SPANS, grown, search_at_random, search_free
 
 
 def _to_data(data: Any) -> list[Measurement]:
@@ -149,7 +149,8 @@ def fit(
         (least, most) of parameters by name, for 'omega_x' and so on, 'log_p1_p3', 'log_p2_p3', 'bias_x', and with
         torques or rotors 'log_p1' to 'log_p3' and 'torques.0.weight' or 'torques.0.arm_x'.
     loss : {'linear', 'soft_l1', 'huber', 'cauchy'}
-        The loss of (residual / (sigma f_scale))^2, as for SciPy's `least_squares`.
+        The loss of (residual / (sigma f_scale))^2, as for SciPy's `least_squares`. Where no motion fits under 'linear',
+        'soft_l1' names the outliers, at most a tenth of the samples, and the others are fitted.
     f_scale : float
         The residual over sigma from which the loss counts it as an outlier.
     seed : int
@@ -162,8 +163,8 @@ def fit(
     -------
     FitResult
         SciPy's names (`x`, `cost`, `fun`, `jac`, `nfev`, `status`, `message`, `success`), `omega`, `attitude`,
-        `inertia`, `cov`, `stderr`, `correlation`, `parameters`, `chi2`, `dof`, `candidates`, `unobservable`,
-        `twins`, `scene`, `problem`, and `predict(t)`.
+        `inertia`, `cov`, `stderr`, `correlation`, `parameters`, `chi2`, `dof`, `candidates`, `outliers`,
+        `unobservable`, `twins`, `scene`, `problem`, and `predict(t)`.
 
     Raises
     ------
@@ -198,12 +199,27 @@ def fit(
     if independent < len(problem.names) or problem.t.size < 2:
         raise InvalidInput(f"data: {independent} numbers cannot give {len(problem.names)} parameters; "
                            f"{sum(m.left_out for m in measurements)} samples were left out as NaN")
-    how, pool = "the scene", Pool(problem)
+    how, pool, others = "the scene", Pool(problem), None
     if start == "search" and driven:
         state, how = _start_driven(problem, state, loss, f_scale), "growing windows from the scene"
     elif start == "search":
-        how = search_free(problem, state, np.random.default_rng(seed), loss, f_scale, pool, fastest)
+        rng = np.random.default_rng(seed)
+        how = search_free(problem, state, rng, loss, f_scale, pool, fastest)
+        others = robust.search(problem, pool) if loss == "linear" and bounds is None and not pool.fits else None
+        if others is None and not robust.fits(problem, pool, loss):
+            how = search_at_random(problem, state, rng, loss, f_scale, pool, how)
         state = state if pool.best is None else pool.best.state
     low, high = _bounds(problem, bounds)
     found = minimise(problem, state, loss=loss, scale=f_scale, low=low, high=high, most=1000)
-    return make_result(problem, found, scene, largest, how, loss, pool)
+    pool.add(found)
+    if loss != "linear":
+        places = robust.find_outliers(problem, found.residuals)
+        return make_result(problem, found, scene, largest, how, pool, problem, places)
+    if not pool.fits and bounds is None:   # some samples may be wrong
+        others = others or robust.search(problem, pool)
+        if others is not None:
+            kept, found, places = others
+            pool = Pool(kept)
+            pool.add(found)
+            return make_result(kept, found, scene, largest, how, pool, problem, places)
+    return make_result(problem, found, scene, largest, how, pool)

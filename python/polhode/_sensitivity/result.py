@@ -11,7 +11,7 @@ from .._attitude.rotation import Rotation
 from .._core import InertiaTensor
 from .._scene.scene import Scene
 from ..measured import Axis, Rates, Scalar
-from . import rotations
+from . import robust, rotations
 from .candidates import Candidate, Pool, aliases
 from .driven_problem import DrivenState
 from .least_squares import Minimum
@@ -74,7 +74,7 @@ class FitResult:
     fun, jac : ndarray
         Residuals over sigma, shape (m,), and their derivatives by steps of the parameters, shape (m, p).
     nfev, status, message, success
-        As for SciPy's `least_squares`. `success` is False where chi2 is above dof + 4 sqrt(2 dof).
+        As for SciPy's `least_squares`. `success` is False where chi2 is above dof + 4 sqrt(2 dof), without outliers.
     omega : ndarray, shape (3,)
         Angular velocity at t = 0, body axes [rad/s].
     attitude : Rotation
@@ -92,6 +92,9 @@ class FitResult:
         In words: what these data cannot tell, and which other bodies fit as well.
     left_out : int
         Samples with a NaN.
+    outliers : tuple of ndarray
+        The places of outliers in the arrays of each measurement, empty where all samples were fitted. Under
+        loss='linear' they were left out, and `fun`, `chi2` and `dof` are without them.
     numbers : dict
         The fitted numbers of torques and rotors, by their names.
     scene : Scene
@@ -121,6 +124,7 @@ class FitResult:
     unobservable: tuple[str, ...]
     twins: tuple[str, ...]
     left_out: int
+    outliers: tuple[npt.NDArray[np.intp], ...]
     bias: Array
     scene: Scene
     problem: Problem
@@ -209,9 +213,9 @@ def _symmetry(problem: Problem, state: State, cov: Array) -> list[str]:
     return found
 
 
-def make_result(problem: Problem, found: Minimum, scene: Scene | None, largest: float, how: str, loss: str,
-                pool: Pool) -> FitResult:
-    """Make the result from a minimum."""
+def make_result(problem: Problem, found: Minimum, scene: Scene | None, largest: float, how: str, pool: Pool,
+                whole: Problem | None = None, places: robust.Places = ()) -> FitResult:
+    """Make the result from a minimum; `places` are outliers of the `whole` problem."""
     state = found.state
     cov, hidden = covariance(found.jacobian, problem.names)
     stderr = np.sqrt(np.diag(cov))
@@ -233,14 +237,20 @@ def make_result(problem: Problem, found: Minimum, scene: Scene | None, largest: 
             x[problem.slices[group]] = value
     chi2 = float(found.residuals @ found.residuals)
     dof = sum(m.independent for m in problem.data) - len(problem.names)
-    good = chi2 <= pool.limit or loss != "linear"
-    pool.add(found)
+    good = chi2 <= pool.limit
+    if whole is problem and not good:   # a loss that bears outliers
+        good = robust.fits_without(problem, found.residuals, places)
     left_out = sum(m.left_out for m in problem.data)
     message = ("converged" if found.status else "the most evaluations were made") + f"; the start was {how}"
     if not good:
         message = f"chi2 is {chi2 / max(dof, 1):.3g} for each degree of freedom: the model does not fit; {message}"
+    if whole is not None and any(out.size for out in places):
+        count = sum(out.size for out in places)
+        if good:
+            message = f"fits without {count} outliers: {robust.in_words(whole, places)}; {message}"
     if left_out:
         message += f"; {left_out} samples were left out as NaN"
+    named = tuple(m.index[out] for m, out in zip(whole.data, places, strict=True)) if whole else ()
     attitude = Rotation.from_quat(state.attitude)
     times = np.unique(problem.t)
     if isinstance(state, DrivenState):
@@ -253,5 +263,5 @@ def make_result(problem: Problem, found: Minimum, scene: Scene | None, largest: 
     return FitResult(x, found.cost, found.residuals, found.jacobian, found.nfev, found.status, message,
                      bool(found.status > 0 and good), state.omega, attitude, inertia, cov, stderr, correlation,
                      problem.names, chi2, dof, pool.candidates(), tuple(unobservable + hidden),
-                     _find_twins(problem, moments) + aliases(problem, pool), left_out, state.bias,
-                     scene_out, problem.with_data(problem.data, state), state, numbers)
+                     _find_twins(problem, moments) + aliases(problem, pool), left_out,
+                     named, state.bias, scene_out, problem.with_data(problem.data, state), state, numbers)

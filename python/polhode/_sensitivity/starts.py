@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..measured import Attitudes, Axis, Direction, Measurement, Rates
-from . import rotations, sparse
+from . import robust, rotations, sparse
 from .candidates import Pool
 from .least_squares import Minimum, minimise
 from .problem import Problem, State, ratios_of
@@ -77,7 +77,7 @@ def _from_rates(problem: Problem, state: State, gyro: Measurement, rng: np.rando
 
 def search_free(problem: Problem, state: State, rng: np.random.Generator, loss: str, scale: float, pool: Pool,
                 fastest: float | None) -> str:
-    """Fill the pool with minima, until one fits, and say in words how the best was found."""
+    """Fill the pool with minima of linear starts and of scans, and say in words how the best was found."""
     how = ""
     rates = [m for m in problem.data if isinstance(m, Rates) and len(m) >= 8]
     if rates:
@@ -92,11 +92,20 @@ def search_free(problem: Problem, state: State, rng: np.random.Generator, loss: 
             return how
     if float(np.abs(problem.t).max()) == 0:
         return how
+    for kind in sparse.SCANS:
+        if any(isinstance(m, kind) for m in problem.data) and {"omega", "attitude"} <= set(problem.slices):
+            sparse.search_lines(problem, state, kind, pool, loss, scale, fastest)
+            if robust.fits(problem, pool, loss):
+                return "the frequencies of nutation and precession"
+    return how
+
+
+def search_at_random(problem: Problem, state: State, rng: np.random.Generator, loss: str, scale: float, pool: Pool,
+                     how: str) -> str:
+    """Fill the pool from motions at random where the scans found none that fits; rates have their own starts."""
+    if float(np.abs(problem.t).max()) == 0 or all(isinstance(m, Rates) for m in problem.data):
+        return how
     before = pool.best
-    if any(isinstance(m, Attitudes) for m in problem.data) and {"omega", "attitude"} <= set(problem.slices):
-        sparse.search_attitudes(problem, state, pool, loss, scale, fastest)
-        if pool.fits:
-            return "the frequencies of nutation and precession"
     search(problem, state, rng, loss, scale, pool)
     if pool.fits or pool.best is not before:
         return "a search through motions at random"

@@ -5,7 +5,7 @@ import pytest
 
 import polhode as ph
 from polhode import measured
-from polhode._spectrum import attitudes, curve, scan
+from polhode._spectrum import attitudes, curve, scan, shapes
 
 SIGMA = 0.01
 
@@ -41,6 +41,41 @@ def test_sparse_attitudes_give_the_body(count, turns, shift):
         assert (found.attitude.inv() * ph.Rotation.from_quat(q)).magnitude() < 0.03
         assert "frequencies of nutation and precession" in found.message
         assert len(found.candidates) == 1 and not found.twins
+
+
+@pytest.mark.parametrize(("axis", "turns"), [((0, 0, 1), 200), ((0, 1, 0), 200), ((0.48, 0.6, 0.64), 150)])
+def test_one_axis_seen_less_than_once_a_turn_gives_the_body(axis, turns):
+    """Moments are found up to the exchange of the two other axes where a principal axis is seen."""
+    for seed in (1, 3):
+        inertia, omega, q, rng = make_body(seed)
+        t = np.sort(rng.uniform(0, 1, 80)) * turns * np.pi
+        R = ph.Rotation.from_quat(ph.FreeMotion(inertia, omega, q).at(t)[1])
+        found = ph.fit(measured.Axis(t, R.apply(np.array(axis)) + SIGMA * rng.normal(size=(80, 3)), SIGMA, axis))
+        assert found.success and "frequencies of nutation" in found.message, found.message
+        labels = [[0, 1, 2]]
+        if np.count_nonzero(axis) == 1:
+            others = [k for k in range(3) if not axis[k]]
+            swapped = [0, 1, 2]
+            swapped[others[0]], swapped[others[1]] = others[1], others[0]
+            labels.append(swapped)
+        near = [max(np.abs(one.inertia - inertia[p] / inertia.max()).max(),
+                    0.5 * np.abs(np.abs(one.omega) - np.abs(omega[p])).max())
+                for one in found.candidates for p in labels]
+        assert min(near) < 0.06
+
+
+def test_the_table_of_shapes_holds_free_motions():
+    """Each curve obeys dm/dt = m x (g m) with its frequency 1, and bodies made from it have the frequencies asked."""
+    table = shapes.table(4, 3)
+    for k in range(len(table.u)):
+        m, g = table.m[k], np.array([table.u[k], table.v[k], 0.0])
+        assert np.linalg.norm(m, axis=1) == pytest.approx(1)
+        rate = curve.derivative(m)
+        assert rate == pytest.approx(np.cross(m, g * m), abs=2e-3 * np.abs(rate).max())
+        moments, omega, _ = table.bodies(np.array([k]), np.array([5]), 0.7, np.array([2.0 + 0.7 * (abs(g).max() + 2)]))
+        if len(moments):
+            motion = ph.FreeMotion(tuple(moments[0]), omega[0])
+            assert 2 * np.pi / abs(motion.period) == pytest.approx(0.7, rel=0.1)
 
 
 def test_a_body_near_the_separatrix_needs_more_harmonics():
