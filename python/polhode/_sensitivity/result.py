@@ -152,13 +152,37 @@ class FitResult:
         return {name: (float(v - level * s), float(v + level * s))
                 for name, v, s in zip(self.parameters, self.x, self.stderr, strict=True)}
 
+    def _moments(self) -> list[str]:
+        """Return the moments over the largest with their standard errors, in words."""
+        if isinstance(self.state, DrivenState) or "inertia" not in self.problem.slices:
+            return []
+        here = self.problem.slices["inertia"]
+        moments, errors = self.state.moments, moment_errors(self.state.ratios, self.cov[here, here])
+        parts = ", ".join(f"{v:.6g} +- {e:.2g}" for v, e in zip(moments / moments.max(), errors, strict=True))
+        return [f"  moments over the largest: {parts}"]
+
     def __repr__(self) -> str:
         lines = [f"FitResult: {self.message}", f"  chi2 {self.chi2:.6g} for {self.dof} degrees of freedom"]
         lines += [f"  {name} = {value:.9g} +- {error:.2g}"
                   for name, value, error in zip(self.parameters, self.x, self.stderr, strict=True)]
+        lines += self._moments()
+        for one in self.candidates[:10] if len(self.candidates) > 1 else ():
+            moments = ", ".join(f"{v:.4g}" for v in one.inertia)
+            lines.append(f"  candidate: moments {moments}, periods {one.nutation:.6g} s and {one.precession:.6g} s, "
+                         f"chi2 {one.chi2:.6g}")
         lines += [f"  not observable: {text}" for text in self.unobservable]
         lines += [f"  twin: {text}" for text in self.twins]
         return "\n".join(lines)
+
+
+def moment_errors(ratios: Array, cov: Array) -> Array:
+    """Return the standard errors of the moments over the largest, from the covariance of log(P1 / P3), log(P2 / P3)."""
+    a, b = np.exp(np.clip(ratios, -80, 80))
+    J, d = np.array([b + 1, a + 1, a + b]), np.array([[0, b], [a, 0], [a, b]])
+    k = int(J.argmax())
+    rows = d / J[k] - np.outer(J, d[k]) / J[k] ** 2
+    out: Array = np.sqrt(np.maximum(np.einsum("ki,ij,kj->k", rows, cov, rows), 0))
+    return out
 
 
 def covariance(jacobian: Array, names: tuple[str, ...]) -> tuple[Array, list[str]]:

@@ -42,12 +42,32 @@ def _number(text: str, file: pathlib.Path, line: int) -> float:
         raise InvalidInput(f"{file}: row {line}: must be numbers, got {_short(text)!r}") from None
 
 
+def _names(header: Sequence[str], columns: str | None, file: pathlib.Path) -> list[str]:
+    """Return the names of the columns: the header, or all names in order, or name=column for some of the header."""
+    own = [name.strip() for name in header]
+    if columns is None:
+        return own
+    given = [part.strip() for part in columns.split(",")]
+    if not any("=" in part for part in given):
+        return given
+    names = [""] * len(own)
+    for part in given:
+        name, _, column = (piece.strip() for piece in part.partition("="))
+        if column not in own:
+            raise InvalidInput(f"--columns: must be name=column with columns of {file}, got {_short(part)!r}")
+        names[own.index(column)] = name
+    return names
+
+
 def read(file: pathlib.Path, columns: str | None, sigma: dict[str, float], *, bias: bool = False,
          degrees: bool = False, axis: Sequence[float] = (0, 0, 1), direction: Sequence[float] | None = None,
-         ) -> list[Measurement]:
-    """Return the measurements of a CSV file. Empty cells are NaN; rows of one sensor need not hold another."""
+         first: float | None = None, last: float | None = None) -> list[Measurement]:
+    """Return the measurements of a CSV file. Empty cells are NaN; rows of one sensor need not hold another.
+
+    With `first` times count from there, and rows before are left out; so are those after `last`.
+    """
     rows = _rows(file)
-    names = [name.strip() for name in (columns.split(",") if columns else rows[0])]
+    names = _names(rows[0], columns, file)
     width = max(map(len, rows[1:]))
     if len(names) != width:
         raise InvalidInput(f"--columns: must name the {width} columns of {file}, got {len(names)} names")
@@ -62,6 +82,10 @@ def read(file: pathlib.Path, columns: str | None, sigma: dict[str, float], *, bi
         table[k] = [numbers[place] if place < len(numbers) else math.nan for place in places]
     names = [names[place] for place in places]
     t = table[:, names.index("t")]
+    inside = (t >= (-math.inf if first is None else first)) & (t <= (math.inf if last is None else last))
+    if first is not None or last is not None:
+        table = table[inside]
+        t = t[inside] - (0.0 if first is None else first)
     data: list[Measurement] = []
     for sensor, parts in SENSORS.items():
         wanted = [f"{sensor}_{part}" for part in parts]

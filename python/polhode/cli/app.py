@@ -140,7 +140,11 @@ def fit(
     sigma: Annotated[str, typer.Option(help="Noise of each sensor, such as omega=0.01,attitude=0.02.")],
     columns: Annotated[str | None, typer.Option(
         help="Names of the columns: t, omega_x to omega_z, attitude_x to attitude_w, axis_x to axis_z, direction_x to "
-             "direction_z. Others are ignored. By default the header.")] = None,
+             "direction_z. All columns in their order, or some as name=column of the header: t=seconds,omega_x=x. "
+             "Others are ignored. By default the header.")] = None,
+    first: Annotated[float | None, typer.Option(
+        "--from", help="Leave out what is earlier; times count from here.")] = None,
+    last: Annotated[float | None, typer.Option("--to", help="Leave out what is later, in times of the file.")] = None,
     parameters: Annotated[str, typer.Option(
         "--fit", help="What to fit, of omega, attitude, inertia and axes.")] = "omega,attitude,inertia",
     axis: Annotated[str, typer.Option(help="The body axis that axis_* see in space.")] = "0,0,1",
@@ -156,14 +160,14 @@ def fit(
     """Fit a free body to measurements.
 
     Finds its start, the ratios of its moments and its principal axes, without start values. Prints the parameters with
-    their standard errors, and what the data cannot tell.
+    their standard errors, the ratios of the moments, what the data cannot tell, and other bodies that fit as well.
     """
     from . import fit as part
 
     if picture is not None:
         need_matplotlib("pictures need")
         files.check(picture, (".png", ".svg", ".pdf"), "plot")
-    found = part.run(data, columns, sigma, parameters, axis, direction, bias, degrees, loss, seed)
+    found = part.run(data, columns, sigma, parameters, axis, direction, bias, degrees, loss, seed, first, last)
     if picture is not None:
         with _files.whole(picture) as draft:
             found.plot().savefig(draft, dpi=160)

@@ -34,10 +34,10 @@ def _sigmas(text: str) -> dict[str, float]:
 
 
 def run(data: pathlib.Path, columns: str | None, sigma: str, parameters: str, axis: str, direction: str | None,
-        bias: bool, degrees: bool, loss: str, seed: int) -> FitResult:
+        bias: bool, degrees: bool, loss: str, seed: int, first: float | None, last: float | None) -> FitResult:
     """Read the table and fit."""
     measured = read(data, columns, _sigmas(sigma), bias=bias, degrees=degrees, axis=_vector(axis, "axis"),
-                    direction=None if direction is None else _vector(direction, "direction"))
+                    direction=None if direction is None else _vector(direction, "direction"), first=first, last=last)
     return fit(measured, fit=[part.strip() for part in parameters.split(",")], loss=loss, seed=seed)
 
 
@@ -49,6 +49,11 @@ def to_json(found: FitResult) -> dict[str, Any]:
         "parameters": {name: {"value": float(value), "stderr": float(error) if math.isfinite(error) else None}
                        for name, value, error in zip(found.parameters, found.x, found.stderr, strict=True)},
         "omega": found.omega.tolist(), "attitude": found.attitude.as_quat().tolist(), "inertia": inertia.tolist(),
+        "candidates": [{"omega": one.omega.tolist(), "inertia": one.inertia.tolist(), "chi2": one.chi2,
+                        "nutation": one.nutation if math.isfinite(one.nutation) else None,
+                        "precession": one.precession if math.isfinite(one.precession) else None}
+                       for one in found.candidates],
+        "outliers": [places.tolist() for places in found.outliers],
         "bias": found.bias.tolist(), "unobservable": list(found.unobservable), "twins": list(found.twins),
         "left_out": found.left_out,
     }

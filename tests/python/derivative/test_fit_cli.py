@@ -7,6 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 import polhode as ph
+from polhode._sensitivity.result import moment_errors
 from polhode.cli import main
 from polhode.cli.app import app
 
@@ -72,3 +73,31 @@ def test_bad_arguments_give_one_line(log, arguments, text, capsys):
         main(["fit", str(log), *arguments])
     err = capsys.readouterr().err
     assert leaving.value.code == 2 and text in err and err.count("\n") == 1
+
+
+def test_a_part_of_a_foreign_file_gives_the_ratios_of_the_moments(log, tmp_path):
+    """Columns of other names and orders, and one that is no number of the fit; times count from --from."""
+    rows = [line.split(",") for line in log.read_text().splitlines()[1:]]
+    lines = ["seconds,z,y,x,volume"]
+    for t, x, y, z in rows:
+        lines.append(f"{float(t) + 7:.9g},{z},{y},{x},3")
+    lines += ["11.5,90,90,90,1", "6.5,90,90,90,1"]     # a hand holds the phone
+    file = tmp_path / "phone.csv"
+    file.write_text("\n".join(lines) + "\n")
+    options = ["--sigma", "omega=0.03", "--fit", "omega,inertia", "--columns",
+               "t=seconds,omega_x=x,omega_y=y,omega_z=z", "--from", "7", "--to", "11.1"]
+    done = call("fit", file, *options, "--json")
+    assert done.exit_code == 0, done.output
+    found = json.loads(done.stdout)
+    assert found["omega"] == pytest.approx([1, -6, 0.7], abs=0.05) and len(found["candidates"]) == 1
+    assert "moments over the largest: 0.48" in call("fit", file, *options).stdout
+    done = call("fit", file, "--sigma", "omega=0.03", "--columns", "t=time,omega_x=x")
+    assert done.exit_code == 2 or "must be name=column with columns of" in str(done.exception) + done.output
+
+
+def test_the_errors_of_the_moments_are_those_of_draws():
+    rng = np.random.default_rng(4)
+    ratios, cov = np.array([0.4, -0.7]), np.array([[4e-6, 1e-6], [1e-6, 9e-6]])
+    P = np.exp(np.column_stack([rng.multivariate_normal(ratios, cov, 40_000), np.zeros(40_000)]))
+    J = P.sum(axis=1, keepdims=True) - P
+    assert moment_errors(ratios, cov) == pytest.approx((J / J[:, [np.argmax(J[0])]]).std(axis=0), rel=0.03, abs=1e-12)
