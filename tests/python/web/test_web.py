@@ -165,7 +165,8 @@ def test_solve_where_sums_of_three_are_grouped_otherwise(solve, name, method, st
 
 
 TORQUES = ["-0.1 * omega", "[0.1 * sin(t), 0, 0]", "-0.002 * omega * norm(omega)",
-           "-attitude.xyz * attitude.w - 0.2 * omega", "0.1 * where(sin(t) > 0, omega, -omega)", "to_body([0, 0, 0.1 * t])"]
+           "-attitude.xyz * attitude.w - 0.2 * omega", "0.1 * where(sin(t) > 0, omega, -omega)",
+           "to_body([0, 0, 0.1 * t])"]
 
 
 @pytest.mark.parametrize("torque", TORQUES)
