@@ -18,7 +18,8 @@ import spoiled
 
 DRESSES = ("as computed", "noise 1e-9", "noise 1e-6", "noise 1e-3", "noise 1e-2", "float32", "nine digits",
            "uneven times", "sign flips")  # fmt: skip
-SCENES = tuple(sorted(path.stem for path in (ROOT / "scenes").glob("*.toml")))
+# The judge takes no body that changes.
+SCENES = tuple(sorted(path.stem for path in (ROOT / "scenes").glob("*.toml") if path.stem != "S14"))
 FORMS = ("free", "symmetric", "sphere", "steady", "Lagrange", "pendulum", "damped", "gyrostat")
 MOST = 120  # samples of one run
 

@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 ROOT = Path(__file__).parents[3]
 SCENES = ROOT / "scenes"
 STORED = SCENES / "reference"
-NAMES = ["N2", "S1", "S10", "S11", "S2", "S3", "S4", "S5", "S5c", "S6", "S7", "S7b", "S9", "Z1"]
+NAMES = ["N2", "S1", "S10", "S11", "S14", "S2", "S3", "S4", "S5", "S5c", "S6", "S7", "S7b", "S9", "Z1"]
 LONG = np.longdouble  # 64 bits of mantissa on x86: what is checked is the rounding of the stored float64
 HALF_ULP = 2.0**-53
 
@@ -41,9 +41,24 @@ def matrix_of(q):
     return np.moveaxis(r, (0, 1), (-2, -1))
 
 
+def moments_of(scene, t):
+    """The principal moments at times and their rates, from the piece that holds from then on."""
+    t = np.asarray(t)[..., None]
+    if "moments" in scene["body"]:
+        return np.array(scene["body"]["moments"]), 0.0
+    value = rate = np.zeros(t.shape[:-1] + (3,), dtype=t.dtype)
+    for piece in scene["body"]["pieces"]:
+        own = (t >= piece["from"]) & (t < piece["to"])
+        since = t - (piece["from"] if np.isfinite(piece["from"]) else 0)
+        terms = [np.array(term) for term in piece["inertia"]]
+        value = np.where(own, sum(term * since**k for k, term in enumerate(terms)), value)
+        rate = np.where(own, sum((k * term * since ** (k - 1) for k, term in enumerate(terms) if k), 0 * since), rate)
+    return value, rate
+
+
 def torque_of(scene, t, omega, r):
     """tau_B as SCENES defines each kind; r is R_WB, gravity points along -z."""
-    moments = np.asarray(scene["body"]["moments"], dtype=np.asarray(omega).dtype)
+    moments = moments_of(scene, t)[0].astype(np.asarray(omega).dtype)
     tau = np.zeros_like(omega)
     for torque in scene.get("torques", []):
         if torque["kind"] == "gravity":
@@ -84,11 +99,12 @@ def test_scene_files_hold_the_agreed_keys(name):
     scene = load(name)
     assert scene["name"] == name
     assert set(scene) <= {"name", "title", "about", "want", "body", "start", "torques", "rotors", "times"}
-    assert len({"moments", "matrix", "shape"} & set(scene["body"])) == 1
+    assert len({"moments", "matrix", "shape", "pieces"} & set(scene["body"])) == 1
     assert len({"omega", "omega_deg"} & set(scene["start"])) == 1
     assert set(scene["times"]) == {"span", "samples"}
-    moments = sorted(scene["body"]["moments"])
-    assert moments[0] > 0 and moments[2] <= moments[0] + moments[1]
+    for t in (0.0, scene["times"]["span"]):
+        moments = sorted(moments_of(scene, t)[0])
+        assert moments[0] > 0 and moments[2] <= moments[0] + moments[1]
 
 
 def test_the_recipe_of_many_bodies_can_be_drawn():
@@ -142,6 +158,13 @@ def test_free_bodies_keep_energy_and_angular_momentum(name):
     assert np.abs(momentum - momentum[0]).max() < 6 * HALF_ULP * size
 
 
+def test_the_deployment_keeps_the_angular_momentum():
+    t, omega, attitude = (a.astype(LONG) for a in truth("S14"))
+    momentum = np.einsum("nij,nj->ni", matrix_of(attitude), moments_of(load("S14"), t)[0] * omega)
+    size = np.linalg.norm(momentum[0].astype(float))
+    assert np.abs(momentum - momentum[0]).max() < 6 * HALF_ULP * size
+
+
 @pytest.mark.parametrize("name", ["S4", "S5", "S5c"])
 def test_tops_keep_energy_and_vertical_momentum(name):
     scene = load(name)
@@ -179,15 +202,15 @@ def test_damped_bodies_only_lose_energy(name):
 def test_truth_obeys_the_equations_of_motion(name):
     """From a sample to the next one with SciPy, at twelve places: a wrong sign or factor anywhere shows."""
     scene = load(name)
-    moments = np.array(scene["body"]["moments"])
     t, omega, attitude = truth(name)
 
     def right_hand_side(time, y):
+        moments, rate = moments_of(scene, time)
         w, (qx, qy, qz, qw) = y[:3], y[3:]
         tau = torque_of(scene, np.asarray(time), w, matrix_of(y[3:]))
         turn = [qw * w[0] + qy * w[2] - qz * w[1], qw * w[1] + qz * w[0] - qx * w[2],
                 qw * w[2] + qx * w[1] - qy * w[0], -qx * w[0] - qy * w[1] - qz * w[2]]  # fmt: skip
-        return np.concatenate([(tau - np.cross(w, moments * w)) / moments, 0.5 * np.array(turn)])
+        return np.concatenate([(tau - rate * w - np.cross(w, moments * w)) / moments, 0.5 * np.array(turn)])
 
     stiff = name == "S7b"
     method, tolerance, bound = ("Radau", 1e-10, 1e-8) if stiff else ("DOP853", 1e-13, 2e-12)
@@ -203,17 +226,17 @@ def test_truth_obeys_the_equations_of_motion(name):
 def test_every_sample_follows_from_the_one_before(name):
     """Classical Runge-Kutta from all samples at once: no single sample may be out of line."""
     scene = load(name)
-    moments = np.array(scene["body"]["moments"])
     t, omega, attitude = truth(name)
     substeps = 128
     h = ((t[1:] - t[:-1]) / substeps)[:, None]
 
     def right_hand_side(time, y):
         w, q = y[:, :3], y[:, 3:]
+        moments, rate = moments_of(scene, time[:, 0])
         tau = torque_of(scene, time[:, 0], w, matrix_of(q))
         vector = q[:, 3:] * w + np.cross(q[:, :3], w)
         scalar = -np.sum(q[:, :3] * w, axis=1, keepdims=True)
-        return np.hstack([(tau - np.cross(w, moments * w)) / moments, 0.5 * vector, 0.5 * scalar])
+        return np.hstack([(tau - rate * w - np.cross(w, moments * w)) / moments, 0.5 * vector, 0.5 * scalar])
 
     y = np.hstack([omega, attitude])
     now, following = y[:-1], y[1:]

@@ -338,3 +338,13 @@ def test_columns_by_a_body_that_changes_are_refused(column):
         ph.solve(make("smooth"), sensitivity=[column])
     with pytest.raises(ph.InvalidInput, match="without rotors and damper"):
         ph.solve(make("smooth", rotors=[ph.Rotor((0, 1, 0), momentum=0.9)]), sensitivity=["omega"])
+
+
+@pytest.mark.parametrize("accuracy", [1e-6, 1e-9, 1e-12])
+def test_the_reference_scene_has_its_stored_truth(accuracy):
+    from polhode._harness.truth import compute_errors, find_truth
+
+    scene = ph.Scene.load("S14")
+    motion, truth = ph.solve(scene, accuracy=accuracy), find_truth(scene)
+    assert truth.kind == "stored" and motion.success
+    assert compute_errors(motion.omega, motion.attitude, truth).largest <= motion.error + truth.uncertainty
