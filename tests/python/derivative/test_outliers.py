@@ -21,7 +21,7 @@ def made(wrong, count=60, seed=3):
 
 
 def test_the_attitudes_of_toutatis_give_its_body_and_both_periods():
-    """Published: 5.41 days about the long axis, 7.35 days for the precession, moments 3.0836, 3.235 and 1."""
+    """Periods of 5.41 and 7.35 days: Hudson and Ostro (1995). Moments 3.0836, 3.235, 1: Takahashi and others (2013)."""
     t, attitude, _ = toutatis.read()
     found = ph.fit(measured.Attitudes(t, attitude, np.radians(5)))
     assert found.success and not found.outliers
