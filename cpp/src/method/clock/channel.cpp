@@ -13,8 +13,6 @@ namespace {
 
 using formula::Vec;
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
-constexpr double certain = 4.0;   // times the error of a number: beyond it, its side of an edge is certain
 constexpr std::size_t omega_at = 0, attitude_at = 3, body_numbers = 7;
 
 Quat get_attitude(const std::vector<double>& values) { return {values[3], values[4], values[5], values[6]}; }
@@ -36,7 +34,7 @@ Vec<double, 3> change_seen(const Vec<double, 4>& q, const double* change, const 
 
 bool is_same_instant(double a, double b) {
   const double apart = std::abs(a - b);   // infinite where one time never comes
-  return apart <= 4 * eps * std::max(std::abs(a), std::abs(b)) && apart < std::numeric_limits<double>::infinity();
+  return apart <= 4 * rounding_unit * std::max(std::abs(a), std::abs(b)) && apart < std::numeric_limits<double>::infinity();
 }
 
 Channel::Channel(const Scene& scene, std::size_t number, bool with_errors)
@@ -100,7 +98,7 @@ void Channel::hold(const Carried& command, Carried& state) {
   for (std::size_t i = 0; i < 3; ++i) {
     state.values[i] += change[static_cast<int>(i)];
     for (std::size_t e = 0; e < 3; ++e) state.errors[e][i] += (inverse * kicks[e])[static_cast<int>(i)];
-    if (with_errors_) state.widen(i, 8 * eps * (inverse.cwiseAbs() * kick.cwiseAbs())[static_cast<int>(i)]);
+    if (with_errors_) state.widen(i, 8 * rounding_unit * (inverse.cwiseAbs() * kick.cwiseAbs())[static_cast<int>(i)]);
   }
 }
 
@@ -129,7 +127,7 @@ void Channel::fill_inputs(double t, const Carried& state, Carried& in) const {
     const double size = norm(B_W);
     for (std::size_t i = 0; i < 3; ++i) {
       in.values[at + i] = B[i];
-      if (with_errors_) in.widen(at + i, 16 * eps * size);
+      if (with_errors_) in.widen(at + i, 16 * rounding_unit * size);
     }
   }
   if (parts.rotors == 0) return;
@@ -150,7 +148,7 @@ void Channel::fill_inputs(double t, const Carried& state, Carried& in) const {
       in.errors[e][at + i] = (own > 0 ? state.errors[e][own] / inertia : 0.0) -
                              (rotor.free() ? rotor.axis().dot(moved) : 0.0);
     }
-    if (with_errors_) in.widen(at + i, 4 * eps * (std::abs(momentum / inertia) + w.norm()));
+    if (with_errors_) in.widen(at + i, 4 * rounding_unit * (std::abs(momentum / inertia) + w.norm()));
   }
 }
 
@@ -191,7 +189,7 @@ void Channel::round(Carried& in) const {
     in.values[i] = whole * quantum;
     for (std::vector<double>& one : in.errors) one[i] = 0.0;
     const double far = std::min(std::abs(above), quantum - std::abs(above));   // the half below, too
-    if (with_errors_ && error > 0.0 && std::min(far, std::abs(above)) <= certain * error) in.widen(i, quantum + error);
+    if (with_errors_ && error > 0.0 && std::min(far, std::abs(above)) <= certain_errors * error) in.widen(i, quantum + error);
   }
 }
 
@@ -201,7 +199,7 @@ void Channel::clip(Carried& command) const {
   for (std::size_t i = 0; i < command.values.size(); ++i) {
     const double limit = limits[limits.size() > 1 ? i : 0], size = std::abs(command.values[i]);
     // A command next to its limit keeps its error: clipping makes no difference larger.
-    if (size - limit > certain * command.find_error(i))
+    if (size - limit > certain_errors * command.find_error(i))
       for (std::vector<double>& error : command.errors) error[i] = 0.0;
     command.values[i] = std::clamp(command.values[i], -limit, limit);
   }
@@ -212,7 +210,7 @@ void Channel::call(double t, const Carried& in, Carried& out) {
   std::copy(in.values.begin() + body_numbers, in.values.end(), out.values.begin());
   update_(t, tick_, in, with_errors_, out);
   const double error = in.find_error(attitude_at + 3);
-  if (!with_errors_ || !(error > 0.0) || std::abs(in.values[attitude_at + 3]) > certain * error) return;
+  if (!with_errors_ || !(error > 0.0) || std::abs(in.values[attitude_at + 3]) > certain_errors * error) return;
   Carried other = in, rotated = out;
   for (std::size_t i = attitude_at; i < attitude_at + 4; ++i) other.values[i] = -in.values[i];
   update_(t, tick_, other, false, rotated);

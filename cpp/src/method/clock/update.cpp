@@ -12,9 +12,7 @@
 namespace polhode {
 namespace {
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
-constexpr double certain = 4.0;      // times the error of a guard: beyond it, its branch is certain
-constexpr double rounding = 4 * eps;   // of an operation's operands in a law
+constexpr double rounding = 4 * rounding_unit;   // of an operation's operands in a law
 
 std::vector<std::size_t> list_used(const formula::Program& program) {
   const std::vector<bool> live = formula::find_live(program.graph, program.outputs);
@@ -102,12 +100,12 @@ void Update::carry_by_slopes(double t, const Carried& in, Carried& out) {
       noise += rounding * std::abs(s * in.values[by_[k]]);
     }
     const double error = std::abs(moved[0]) + std::abs(moved[1]) + std::abs(moved[2]) + noise;
-    if (!(error > 0.0) || std::abs(results_[outputs_ + g]) > certain * error) continue;
+    if (!(error > 0.0) || std::abs(results_[outputs_ + g]) > certain_errors * error) continue;
     unsure.push_back(g);
     towards.emplace_back(inputs_);
     for (std::size_t e = 0; e < 3; ++e)
       for (std::size_t i = 0; i < inputs_; ++i)
-        towards.back()[i] += certain * std::copysign(1.0, moved[e]) * in.errors[e][i];
+        towards.back()[i] += certain_errors * std::copysign(1.0, moved[e]) * in.errors[e][i];
   }
   if (unsure.empty()) return;
   std::vector<bool> all(guards_);

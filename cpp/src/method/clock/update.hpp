@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -8,6 +9,10 @@
 #include "polhode/clock/controller.hpp"
 
 namespace polhode {
+
+inline constexpr double rounding_unit = std::numeric_limits<double>::epsilon();
+/// Times the error of a number: beyond it, its side of an edge is certain, and so is the branch of a guard.
+inline constexpr double certain_errors = 4.0;
 
 /// Numbers with the three errors that a run carries: what its steps have lost, and two samples of rounding.
 struct Carried {
