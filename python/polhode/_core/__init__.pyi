@@ -1434,7 +1434,7 @@ class Changing:
         tuple of (begin, end, terms), with the constant ones before and after.
         """
 class Scene:
-    def __init__(self, inertia: typing.Any, omega: typing.Any, attitude: typing.Any, torques: collections.abc.Iterable[typing.Any], times: typing.Any, want: typing.Any, t0: typing.Any, name: typing.Any, rotors: collections.abc.Iterable[typing.Any], damper: typing.Any, momentum: typing.Any, leaving: bool) -> None:
+    def __init__(self, inertia: typing.Any, omega: typing.Any, attitude: typing.Any, torques: collections.abc.Iterable[typing.Any], times: typing.Any, want: typing.Any, t0: typing.Any, name: typing.Any, rotors: collections.abc.Iterable[typing.Any], damper: typing.Any, momentum: typing.Any, leaving: bool, controllers: collections.abc.Iterable[typing.Any] = ()) -> None:
         ...
     def __reduce__(self) -> tuple[typing.Any, ...]:
         """
