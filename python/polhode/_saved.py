@@ -9,7 +9,8 @@ from . import _files, _folders, _saved_files, _wings
 from ._batch.solve_many import Motions
 from ._core import InvalidInput
 from ._scene.plain import from_plain
-from ._solve.motion import EventHit, Motion
+from ._solve.event_hit import EventHit
+from ._solve.motion import Motion
 from ._solve.plan import Plan
 from ._solve.ticks import Ticks
 

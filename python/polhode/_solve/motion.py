@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +14,7 @@ from .. import _core, _export
 from .._attitude.rotation import Rotation
 from .._scene.plain import to_plain
 from .._scene.scene import Scene
+from .event_hit import EventHit
 from .plan import Plan
 from .ticks import Ticks, list_arrays
 
@@ -25,16 +26,6 @@ if TYPE_CHECKING:
     from .._wings import Film
 
 Floats = npt.NDArray[np.float64]
-
-
-class EventHit(NamedTuple):
-    """A zero of the function of an event."""
-
-    event: int
-    t: float
-    omega: Floats
-    attitude: Floats
-    states: dict[str, Any] = {}
 
 
 # How each part of the core's answer is converted.

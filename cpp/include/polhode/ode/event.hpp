@@ -37,7 +37,7 @@ class EventTracker {
     const double start = t_;
     t_ = t;
     const int before = side_;
-    side_ = side;   // 0 at an exact zero: it is found once, whatever follows, a touch or a rest at zero too
+    side_ = side;   // 0 at an exact zero: it is found once, and a touch or a rest at zero is no other
     if (before == 0 || side == before) return false;
     root = side == 0 ? t : bisect(start, t, before, evaluate, count);
     const bool repeated = found_ && root == last_root_;
