@@ -62,6 +62,7 @@ if _TYPE_CHECKING:
     from . import recipe as recipe
     from . import schema as schema
     from ._saved import load as load
+    from ._wings import AttitudeEphemeris as AttitudeEphemeris
     from ._wings import Ensemble as Ensemble
     from ._wings import Judgement as Judgement
     from ._wings import atlas as atlas

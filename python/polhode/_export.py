@@ -118,11 +118,12 @@ def add_ticks(dataset: Any, ticks: list[tuple[Any, dict[str, Any]]]) -> Any:
     return dataset
 
 
-def check_path(path: str | os.PathLike[str]) -> pathlib.Path:
-    """Return the path of a file to save; refuse other suffixes."""
+def check_path(path: str | os.PathLike[str], more: tuple[str, ...] = ()) -> pathlib.Path:
+    """Return the path of a file to save; refuse other suffixes than .npz, .zarr and `more`."""
     found = _files.to_path(path, "path")
-    if found.suffix not in SUFFIXES:
-        raise InvalidInput(f"path: must end in .npz or .zarr, got {str(path)!r}")
+    if found.suffix not in SUFFIXES + more:
+        *some, last = SUFFIXES + more
+        raise InvalidInput(f"path: must end in {', '.join(some)} or {last}, got {str(path)!r}")
     return found
 
 

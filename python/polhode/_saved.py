@@ -15,20 +15,21 @@ from ._solve.plan import Plan
 from ._solve.ticks import Ticks
 
 if TYPE_CHECKING:
-    from ._wings import Ensemble
+    from ._wings import AttitudeEphemeris, Ensemble
 
 
-def load(path: str | os.PathLike[str]) -> Motion | Motions | Ensemble:
+def load(path: str | os.PathLike[str]) -> Motion | Motions | Ensemble | AttitudeEphemeris:
     """Read what `save` wrote, or the store of an ensemble.
 
     Parameters
     ----------
     path : path
-        A .npz file, or a folder of Zarr. The store of an ensemble may be opened while its run goes on.
+        A .npz file, or a folder of Zarr. The store of an ensemble may be opened while its run goes on. Files of
+        attitudes for other programs are read by their suffixes: .aem, .a, and the .bc files that polhode wrote.
 
     Returns
     -------
-    Motion, Motions or Ensemble
+    Motion, Motions, Ensemble or AttitudeEphemeris
         Dense output is not saved.
 
     Raises
@@ -40,6 +41,9 @@ def load(path: str | os.PathLike[str]) -> Motion | Motions | Ensemble:
     found = _files.to_path(path, "path")
     if not found.exists():
         raise InvalidInput(f"{found}: cannot be read: no such file")
+    if module := _wings.find_suffix(found.suffix):
+        ephemeris: AttitudeEphemeris = _wings.load(module).load(found)
+        return ephemeris
     if found.is_dir() and "polhode" not in _folders.attributes(found):
         store: Ensemble = _ensembles().open_run(str(found))
         return store

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from . import report as report
     from ._ensemble.ensemble import Ensemble as Ensemble
     from ._ensemble.run import ensemble as ensemble
+    from ._exchange.ephemeris import AttitudeEphemeris as AttitudeEphemeris
     from ._judge.judgement import Judgement as Judgement
     from ._judge.run import judge as judge
     from ._plot.film.film import Film as Film
@@ -29,7 +30,8 @@ class Wing(NamedTuple):
 
     `files` are folders and files below this package, `outside` those below the repository's root. Its tests are the
     folder of its name in tests/python. `names` are names of `polhode`, each with the module that holds it or that it
-    is. `commands` are those of the command line, each with its module. `exceptions` are private names that the wing
+    is. `commands` are those of the command line, each with its module. `suffixes` are those of files that its modules
+    write and read, for `Motion.save` and `load`. `exceptions` are private names that the wing
     imports against its contract; none is added.
     """
 
@@ -38,6 +40,7 @@ class Wing(NamedTuple):
     names: Mapping[str, str] = {}
     commands: Mapping[str, str] = {}
     outside: tuple[str, ...] = ()
+    suffixes: Mapping[str, str] = {}
     exceptions: Mapping[str, str] = {}
 
 
@@ -74,6 +77,9 @@ WINGS = (
     Wing("judge", ("_judge", "cli/judge.py"),
          names={"Judgement": "_judge.judgement", "judge": "_judge.run"},
          commands={"judge": "cli.judge"}),
+    Wing("exchange", ("_exchange",),
+         names={"AttitudeEphemeris": "_exchange.ephemeris"},
+         suffixes=dict.fromkeys((".aem", ".a", ".bc"), "_exchange.files")),
     Wing("web", (), outside=("web",)),
 )
 HOME = pathlib.Path(__file__).parent
@@ -107,6 +113,16 @@ def load(module: str) -> Any:
     if wing is not None and not is_there(wing.name):
         raise MissingWing(say_missing(wing))
     return importlib.import_module(f"{__package__}.{module}")
+
+
+def find_suffix(suffix: str) -> str | None:
+    """Return the module that writes and reads files with a suffix, by its dotted name without `polhode.`."""
+    return next((wing.suffixes[suffix] for wing in WINGS if suffix in wing.suffixes), None)
+
+
+def list_suffixes() -> tuple[str, ...]:
+    """Return the suffixes of all wings' files."""
+    return tuple(suffix for wing in WINGS for suffix in wing.suffixes)
 
 
 def say_missing(wing: Wing) -> str:

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from .. import _core, _export
+from .. import _core, _export, _wings
 from .._attitude.rotation import Rotation
-from .._scene.plain import to_plain
 from .._scene.scene import Scene
 from .event_hit import EventHit
 from .plan import Plan
+from .record import describe, list_samples
 from .ticks import Ticks, list_arrays
 
 if TYPE_CHECKING:
@@ -308,49 +308,51 @@ class Motion:
 
         return plot(self, *parts, ax=ax, marks=marks, dark=dark)
 
-    def _arrays(self) -> dict[str, Floats]:
-        names = ("omega", "attitude", "omega_lower", "omega_upper", "attitude_lower", "attitude_upper")
-        arrays = {name: array for name in names if (array := getattr(self, name)) is not None}
-        for part in ("states", "states_lower", "states_upper"):
-            arrays |= {f"{part}.{name}": array for name, array in (getattr(self, part) or {}).items()}
-        return arrays
-
-    def _about(self) -> dict[str, Any]:
-        """Everything but the arrays, for JSON."""
-        plan = {key: value for key, value in vars(self.plan).items() if key not in ("scene", "_report", "_made")}
-        plan["pieces"] = [piece._asdict() for piece in self.plan.pieces]
-        hits = [[hit.event, hit.t, list(hit.omega), list(hit.attitude),
-                 *([{name: np.asarray(value).tolist() for name, value in hit.states.items()}] if hit.states else [])]
-                for hit in self.events]
-        # The drift of the energy needs the potential of an own torque, which no file holds.
-        return {"kind": "motion", "scene": to_plain(self.scene), "drift": self.drift, "options": self.options,
-                "plan": plan, "status": self.status, "message": self.message, "stats": self.stats, "error": self.error,
-                "error_kind": self.error_kind, "asked": self.asked, "proved_span": self.proved_span, "events": hits}
-
     def to_pandas(self) -> Any:
         """Return the samples as a pandas.DataFrame with the columns t, omega_x to omega_z, attitude_x to attitude_w."""
-        return _export.to_pandas({"t": self.t}, self._arrays())
+        return _export.to_pandas({"t": self.t}, list_samples(self))
 
     def to_xarray(self) -> Any:
         """Return the samples as an xarray.Dataset with units; ticks of controller i have the dimension ticks_i."""
-        made = _export.to_xarray(("time",), {"time": self.t}, self._arrays(), self._about())
+        made = _export.to_xarray(("time",), {"time": self.t}, list_samples(self), describe(self))
         return _export.add_ticks(made, [(one.t, one._arrays()) for one in self.ticks])
 
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the motion with all that repeats it to a .npz file or a .zarr folder, for `polhode.load`.
+    def save(self, path: str | os.PathLike[str], *, accuracy: float | None = None, epoch: str | None = None,
+             **options: Any) -> None:
+        """Write the motion with all that repeats it, for `polhode.load`, or its attitudes for other programs.
+
+        Parameters
+        ----------
+        path : path
+            A .npz file or a .zarr folder has the whole motion. Files of attitudes for other programs are .aem (CCSDS),
+            .a (STK) and .bc (SPICE). Their knots are chosen so that the reader's interpolation keeps `accuracy`.
+        accuracy : float, optional
+            For files of attitudes: the largest angle between the file, as its reader interpolates it, and the true
+            motion [rad].
+        epoch : str, optional
+            For files of attitudes: the instant of t = 0, such as "2026-03-01T06:00:00".
+        **options
+            For files of attitudes: `frame` ("EME2000"), `name` ("BODY"), `time_system` ("UTC"), `method` ("lagrange" or
+            "linear") and the odd `degree` (7). See docs/exchange.md.
 
         Raises
         ------
         InvalidInput
-            For another suffix.
+            For another suffix, and for a motion whose attitudes cannot be bounded between knots.
 
         Notes
         -----
         Of a `Custom` torque the name is stored. The loaded motion has its samples, but its scene cannot be solved again
         before ``scene.replace(torques=...)``.
         """
-        _export.save(_export.check_path(path), self._about(), {"t": self.t, **self._arrays(),
-                                                               **list_arrays(self.ticks)})
+        found = _export.check_path(path, _wings.list_suffixes())
+        if module := _wings.find_suffix(found.suffix):
+            _wings.load(module).save(self, found, accuracy=accuracy, epoch=epoch, **options)
+            return
+        if accuracy is not None or epoch is not None or options:
+            first = next(iter({"accuracy": accuracy, "epoch": epoch, **options}))
+            raise _core.InvalidInput(f"{first}: belongs to files of attitudes: {', '.join(_wings.list_suffixes())}")
+        _export.save(found, describe(self), {"t": self.t, **list_samples(self), **list_arrays(self.ticks)})
 
     def animate(self, *, body: Any = "box", axis: npt.ArrayLike | None = None) -> Film:
         """Make a film of the motion: the body turns, beside the polhode on the ellipsoid of its energy.

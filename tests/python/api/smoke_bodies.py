@@ -1,5 +1,7 @@
 """Smoke tests of what a body carries, and the scene of all smoke tests."""
 
+import datetime
+
 import numpy as np
 
 import polhode as ph
@@ -35,3 +37,9 @@ def smoke_controller():
 
 def smoke_measure():
     assert ph.Measure(seed=3).seed == 3 and ph.Measure() == ph.Measure()
+
+
+def smoke_attitude_ephemeris():
+    body, t = ph.FreeMotion(BLOCK, OMEGA), np.linspace(0, 5, 100)
+    found = ph.AttitudeEphemeris(t, body.at(t)[1], 1e-6, datetime.datetime(2026, 3, 1))
+    assert np.allclose(np.abs(np.sum(found(t[:50] + 0.02) * body.at(t[:50] + 0.02)[1], axis=1)), 1, rtol=0, atol=1e-12)

@@ -16,6 +16,7 @@ from smoke_bodies import (
     OMEGA,
     TIMES,
     scene,
+    smoke_attitude_ephemeris,
     smoke_changing,
     smoke_controller,
     smoke_damper,
@@ -298,7 +299,8 @@ SMOKE = {
     "solve": smoke_solve,
     "solve_many": smoke_solve_many,
 } | {name: smoke_ensemble for name in ("Ensemble", "ensemble") if _wings.is_there("ensemble")} | {
-    name: smoke_judge for name in ("Judgement", "judge") if _wings.is_there("judge")}
+    name: smoke_judge for name in ("Judgement", "judge") if _wings.is_there("judge")} | {
+    name: smoke_attitude_ephemeris for name in ("AttitudeEphemeris",) if _wings.is_there("exchange")}
 
 
 @pytest.mark.parametrize("name", [n for n in ph.__all__ if not isinstance(getattr(ph, n), types.ModuleType)])

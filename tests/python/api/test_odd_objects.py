@@ -198,7 +198,7 @@ DOORS = {
     "torques.Damping": (T.Damping, dict(matrix=np.eye(3))), "load": (ph.load, dict(path="x.npz")),
 }
 # What takes nothing but self, a file, or the user's own data is left out; the rest must stand above.
-OUT = ("Judgement", "line", "to_dict",
+OUT = ("AttitudeEphemeris", "Judgement", "line", "to_dict",
        "Ensemble", "FitResult", "Lyapunov", "Motion", "Motions", "Plan", "Sensitivity", "PrincipalAxes",
        "MassProperties",
        "InertiaTensor", "IntegrationFailure", "InvalidInput", "animate", "plot", "inv", "magnitude", "as_matrix",

@@ -308,15 +308,15 @@ OUT = {
         "inertia.check", "inertia.diagnose", "inertia.equivalent_box", "inertia.equivalent_ellipsoid",
         "inertia.Diagnosis", "inertia.Finding", "inertia.Flaw"),
     "holds a result, or is an exception": (
-        "FitResult", "Ensemble", "IntegrationFailure", "InvalidInput", "Judgement", "Lyapunov", "Motion",
-        "Motions", "Plan", "Sensitivity", "charts.Entrant", "recipe.Draw", "recipe.Recipe", "build_info",
+        "AttitudeEphemeris", "FitResult", "Ensemble", "IntegrationFailure", "InvalidInput", "Judgement", "Lyapunov",
+        "Motion", "Motions", "Plan", "Sensitivity", "charts.Entrant", "recipe.Draw", "recipe.Recipe", "build_info",
         "cmake_prefix", "methods"),
     "copies arrays, or is a few passes of NumPy's, which has no place for an interrupt": (
         "Scene", "Rotation.", "measured.", "MassProperties.from_points"),
     "plans: its pilots have at most some hundred steps": ("plan",),
     "is a loop of Python's, which hears signals between its lines": (
-        "atlas.", "charts.", "report.", "recipe.", "schema.", "load", "mesh.read", "MassProperties.from_file",
-        "animate", "plot", "save", "to_pandas", "to_xarray", "Ensemble."),
+        "AttitudeEphemeris.__call__", "atlas.", "charts.", "report.", "recipe.", "schema.", "load", "mesh.read",
+        "MassProperties.from_file", "animate", "plot", "save", "to_pandas", "to_xarray", "Ensemble."),
     "does what mesh.report does": ("MassProperties.from_mesh",),
 }
 LAST = ("animate", "plot", "save", "to_pandas", "to_xarray")

@@ -1,0 +1,1 @@
+"""Attitudes as files that other programs read and interpolate, with knots that keep a stated error."""
