@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "polhode/math/detail/functions.hpp"
+
 #ifndef POLHODE_WITHOUT_ORBITS
 #include "polhode/orbit/orbit.hpp"
 #endif
@@ -40,7 +42,7 @@ OrbitRange find_range(const formula::Ephemeris& ephemeris, [[maybe_unused]] doub
   const auto measure = [&](double t) { return orbit->at(t).r.norm(); };
   if (orbit->kind() == OrbitKind::radial) {   // it rises, and may fall again
     const double least = std::min(measure(first), measure(last)) / room;
-    const double top = std::isfinite(orbit->period()) ? std::cbrt(mu * orbit->period() * orbit->period() / 9.8) : 0.0;
+    const double top = std::isfinite(orbit->period()) ? math::cbrt(mu * orbit->period() * orbit->period() / 9.8) : 0.0;
     return {least, std::max({top * room, measure(first) * room, measure(last) * room}), std::sqrt(2 * mu / least) * room};
   }
   const bool closed = e < 1.0 && std::isfinite(orbit->period());
