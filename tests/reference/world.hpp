@@ -142,9 +142,8 @@ class Walk {
         if (h < longest_ * Real(1e-9L)) std::exit((std::fputs("no step is accepted\n", stderr), 1));
         continue;
       }
-      if (is_back()) {   // a guard left its new side within the step
+      if (is_back() && h > longest_ * Real(1e-8L)) {   // a guard left its new side within the step
         h /= 2;
-        if (h < longest_ * Real(1e-9L)) std::exit((std::fputs("a guard comes back at once\n", stderr), 1));
         continue;
       }
       if (const Real dip = find_dip(taken, next); dip < taken) {
@@ -215,10 +214,13 @@ class Walk {
   /// Shortens the step to the first crossing, if there is one.
   std::size_t find_crossing(Real& h, State& to) {
     const std::vector<Real> end = sides_.guards;
+    route_.rate(t_, y_, sides_);
+    const std::vector<Real> begin = sides_.guards;
     std::size_t crossed = end.size();
     const Real whole = h;
     for (std::size_t i = 0; i < end.size(); ++i) {
-      if (end[i] * sides_.sides[i] > 0) continue;
+      // One that begins on the wrong side was crossed just now, and rounding left it there.
+      if (end[i] * sides_.sides[i] > 0 || !(begin[i] * sides_.sides[i] > 0)) continue;
       const Real root = find_root(i, whole);
       if (root <= h) h = root, crossed = i;
     }
