@@ -1,8 +1,8 @@
 """Basilisk's spacecraft on an orbit with its gravity gradient, for worlds.py: prints one line of JSON.
 
-The numbers are those of Basilisk's test of GravityGradientEffector (a = 7000 km, e = 1e-4, i = 33.3 degrees, moments 500,
-800 and 350, released at rest), for 3600 s. Each step and integrator runs three times; the least CPU time is told, of
-ExecuteSimulation alone, with ten recorded states.
+The numbers are those of Basilisk's test of GravityGradientEffector (a = 7000 km, e = 1e-4, i = 33.3 degrees, moments
+500, 800 and 350, released at rest), for 3600 s. Each step and integrator runs three times. The least CPU time is told,
+of ExecuteSimulation alone, with ten recorded states.
 """
 
 import json

@@ -2,11 +2,11 @@
 
     python benchmarks/worlds.py [-o results.json] [--repeats 7] [--bodies 1000000] [--basilisk PYTHON]
 
-Six scenes: gravity gradient on orbits of e = 0.1, 0.73 and 0.97, on a hyperbola, of two bodies, and a magnet whose orbit
-crosses the pole of a dipole. heyoka has position and velocity as states beside the rates and the attitude, in units in
-which the periapsis, the speed there and the first rate are 1, so that its one norm weighs all alike. Each side runs at
-its cheapest setting whose true error is at most 1e-9, with 501 samples. Times are the thread's CPU time of a call from
-Python: the median of interleaved repeats, without heyoka's compilation. The truth is heyoka in long double at 1e-18.
+Six scenes: gravity gradient on orbits of e = 0.1, 0.73 and 0.97, on a hyperbola, of two bodies, and a magnet whose
+orbit crosses the pole of a dipole. heyoka has position and velocity as states beside the rates and the attitude, in
+units in which the periapsis, the speed there and the first rate are 1, so that its one norm weighs all alike. Each side
+runs at its cheapest setting whose true error is at most 1e-9, with 501 samples. Times are the thread's CPU time of a
+call from Python: the median of interleaved repeats, without heyoka's compilation. The truth is heyoka in long double.
 
 `--basilisk` names an interpreter that has Basilisk (`pip install bsk`): basilisk_orbit.py runs there.
 """
@@ -17,6 +17,7 @@ import pathlib
 import resource
 import subprocess
 import sys
+import tempfile
 import time
 
 import formula
@@ -28,13 +29,14 @@ from measures import error  # noqa: E402
 import polhode as ph  # noqa: E402
 
 LEVEL, SAMPLES = 1e-9, 501
-SETTINGS = 10.0 ** -np.arange(6, 16.5, 0.5)
+SETTINGS = 10.0 ** -np.arange(8, 15, 0.5)
 EARTH = 3.986004418e14
 BOX = (20.0, 40.0, 52.0)
 
 
 def orbit(e, periapsis=7e6, mu=EARTH, **more):
-    return ph.Orbit.from_elements(mu, periapsis_distance=periapsis, e=e, inclination=0.9, node=0.3, periapsis=0.8, **more)
+    return ph.Orbit.from_elements(mu, periapsis_distance=periapsis, e=e, inclination=0.9, node=0.3, periapsis=0.8,
+                                  **more)
 
 
 def scenes():
@@ -85,14 +87,14 @@ def make_heyoka(orbits, omega, span, moment, real):
         if moment and k == 0:   # m = -z: B = k / r^3 (3 (m.u) u - m)
             field = real(7.9e15) * unit**2 / far**3
             B = [field * (-3 * own_r[2] * a * d2**real(-2.5) - (-pull if i == 2 else 0)) for i, a in enumerate(own_r)]
-            tau = [old + part for old, part in zip(tau, formula.cross([real(m) for m in moment], formula.to_body(q, B)))]
+            turned = formula.cross([real(m) for m in moment], formula.to_body(q, B))
+            tau = [old + part for old, part in zip(tau, turned)]
     turned = [s * w[0] + y * w[2] - z * w[1], s * w[1] + z * w[0] - x * w[2], s * w[2] + x * w[1] - y * w[0],
               -(x * w[0] + y * w[1] + z * w[2])]
     rates = [((I[(i + 1) % 3] - I[(i + 2) % 3]) * w[(i + 1) % 3] * w[(i + 2) % 3] + tau[i]) / I[i] for i in range(3)]
     system = [*zip([*w, *q], [*rates, *(real(0.5) * part for part in turned)]), *rows]
-    start = np.array([*(real(part) * unit for part in omega), real(0.1), real(-0.1), real(0.7), real(0.7), *start], real)
-    size = np.sqrt(np.sum(start[3:7] ** 2))
-    start[3:7] /= size
+    start = np.array([*(real(part) * unit for part in omega), 0.1, -0.1, 0.7, 0.7, *start], real)
+    start[3:7] /= np.sqrt(np.sum(start[3:7] ** 2))
     times = np.linspace(0, span, SAMPLES).astype(real) / unit
 
     def make(tolerance):
@@ -116,7 +118,8 @@ def measure(name, orbits, omega, span, moment, repeats):
     points = {"polhode": [], "heyoka": []}
     for setting in SETTINGS:
         integrator = make(max(setting, 2.3e-16))
-        calls = {"polhode": lambda s=setting: ph.solve(scene, method="taylor", rtol=s), "heyoka": lambda: run(integrator)}
+        calls = {"polhode": lambda s=setting: ph.solve(scene, method="taylor", rtol=s),
+                 "heyoka": lambda: run(integrator)}
         times, results = {side: [] for side in calls}, {}
         for _ in range(repeats):
             for side, call in calls.items():
@@ -172,7 +175,8 @@ def run_many(count, folder):
     rows = done.states(range(8))
     worst = max(np.abs(rows.omega[i] - ph.solve(done.scene(i), accuracy=1e-12).omega).max() for i in range(8))
     print(f"{count} bodies through one orbit: {found['seconds']:.0f} s, {found['cpu']:.0f} s of CPU, "
-          f"{found['memory'] / 1e6:.0f} MB, {found['failed']} failed; eight bodies off by {worst:.0e} rad/s", flush=True)
+          f"{found['memory'] / 1e6:.0f} MB, {found['failed']} failed; eight bodies off by {worst:.0e} rad/s",
+          flush=True)
     return found
 
 
@@ -187,20 +191,23 @@ def run_basilisk(python):
                      attitude=ph.Rotation.from_mrp((0.1, 0.2, -0.3)),
                      torques=[ph.torques.GravityGradient(orbit=ph.Orbit(theirs["mu"], theirs["r"], theirs["v"]))])
     exact = ph.solve(scene, accuracy=1e-13)
-    points = [{"setting": s, "median": float(np.median([formula.timed(lambda: ph.solve(scene, method="taylor", rtol=s))[0]
-                                                        for _ in range(5)])),
-               "error": error((m := ph.solve(scene, method="taylor", rtol=s)).omega, m.attitude,
-                              {"omega": exact.omega, "attitude": exact.attitude}, exact.omega[-1])} for s in SETTINGS]
-    rows = []
+    truth = {"omega": exact.omega, "attitude": exact.attitude}
+
+    def point(setting):
+        found = [formula.timed(lambda: ph.solve(scene, method="taylor", rtol=setting)) for _ in range(5)]
+        motion = found[0][1]
+        return {"setting": setting, "median": float(np.median([one[0] for one in found])),
+                "error": error(motion.omega, motion.attitude, truth, exact.omega[-1])}
+
+    points, rows = [point(setting) for setting in SETTINGS], []
     for run in theirs["runs"]:
         turns = ph.Rotation.from_mrp(run["sigma"])
-        off = error(np.array(run["omega"]), turns.as_quat(), {"omega": exact.omega, "attitude": exact.attitude},
-                    exact.omega[-1])
+        off = error(np.array(run["omega"]), turns.as_quat(), truth, exact.omega[-1])
         own = formula.find_cheapest(points, max(off, 1e-12))
-        rows.append({"step": run["step"], "integrator": run["integrator"], "seconds": run["seconds"], "error": off,
-                     "own": own})
-        print(f"Basilisk {theirs['version']} {run['integrator']} step {run['step']} s: {run['seconds']:.3f} s, error {off:.0e}; "
-              f"polhode {own['median']:.1e} s, error {own['error']:.0e}: {run['seconds'] / own['median']:.0f} times")
+        rows.append({key: run[key] for key in ("step", "integrator", "seconds")} | {"error": off, "own": own})
+        print(f"Basilisk {theirs['version']} {run['integrator']} step {run['step']} s: {run['seconds']:.3f} s, error "
+              f"{off:.0e}; polhode {own['median']:.1e} s, error {own['error']:.0e}: "
+              f"{run['seconds'] / own['median']:.0f} times")
     return rows
 
 
@@ -214,16 +221,17 @@ def main():
     import heyoka
 
     print(f"polhode {ph.build_info()['version']}, heyoka {heyoka.__version__}: cheapest setting within {LEVEL:g}")
-    found = [measure(*one, options.repeats) for one in scenes() if print(end="", flush=True) is None]
-    ratios = [ratio for one in found if (ratio := show(one)) is not None]
+    found, ratios = [], []
+    for one in scenes():
+        found.append(measure(*one, options.repeats))
+        ratios += [ratio for ratio in [show(found[-1])] if ratio is not None]
     print(f"median ratio {np.median(ratios):.2f} of {len(ratios)} scenes")
-    import tempfile
-
     with tempfile.TemporaryDirectory() as folder:
         many = run_many(options.bodies, folder) if options.bodies else None
     theirs = run_basilisk(options.basilisk) if options.basilisk else None
     if options.output:
-        pathlib.Path(options.output).write_text(json.dumps({"scenes": found, "many": many, "basilisk": theirs}, indent=1))
+        content = {"scenes": found, "many": many, "basilisk": theirs}
+        pathlib.Path(options.output).write_text(json.dumps(content, indent=1))
 
 
 if __name__ == "__main__":

@@ -175,7 +175,7 @@ def make(folder, name, floors):
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         jobs = [pool.submit(run, f"{folder}/{program}", numbers, options, times)
                 for program, options in (("world_momentum", [first, tolerance]), ("world_rates", tableau),
-                                         ("world_momentum", [first / 2, tolerance]))]
+                                         ("world_momentum", [first / 1.5, tolerance]))]
         rows, other, fine = (job.result() for job in jobs)
     other = [quaternion_of(row[:12]) for row in other]
     short = [row[:7] for row in rows]
