@@ -29,7 +29,7 @@ from measures import error  # noqa: E402
 import polhode as ph  # noqa: E402
 
 LEVEL, SAMPLES = 1e-9, 501
-SETTINGS = 10.0 ** -np.arange(8, 15, 0.5)
+SETTINGS = 10.0 ** -np.arange(5, 15)
 EARTH = 3.986004418e14
 BOX = (20.0, 40.0, 52.0)
 

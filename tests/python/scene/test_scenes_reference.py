@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 
 ROOT = Path(__file__).parents[3]
 sys.path.insert(0, str(ROOT / "tests/support"))
-import worlds  # noqa: E402
+import orbit_laws  # noqa: E402
 
 SCENES = ROOT / "scenes"
 STORED = SCENES / "reference"
@@ -69,7 +69,7 @@ def torque_of(scene, t, omega, r):
         if torque["kind"] == "gravity":
             tau = tau + np.cross(torque["arm"], -torque["weight"] * r[..., 2, :])
         elif "orbits" in scene:
-            tau = tau + worlds.torque(torque, scene["orbits"]["main"], t, r, moments)
+            tau = tau + orbit_laws.torque(torque, scene["orbits"]["main"], t, r, moments)
         elif torque["kind"] == "gravity_gradient":
             n = torque["mean_motion"]
             u = np.cos(n * t)[..., None] * r[..., 0, :] + np.sin(n * t)[..., None] * r[..., 1, :]
