@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from .._orbit.sunlight import rewrap
 from .._scene.scene import Scene
 from ..torques import Custom, During
 
@@ -22,7 +23,7 @@ def to_formulas(scene: Scene) -> Scene:
     """Return the scene with each torque as a formula of its own law, which `solve` does not replace."""
     def write(torque: Torque) -> Torque:
         if isinstance(torque, During):
-            return During(write(torque.torque), torque.windows)
+            return rewrap(torque, write(torque.torque))
         lasting: Any = torque
         return lasting.as_formula(scene.inertia)
 

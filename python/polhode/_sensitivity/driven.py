@@ -10,6 +10,7 @@ import numpy.typing as npt
 from .. import _core
 from .._attitude.arrays import is_one_of
 from .._core import InvalidInput
+from .._orbit.sunlight import Sunlit
 from .._scene.scene import Scene, refuse_controllers
 from .sensitivity import Sensitivity, to_names
 
@@ -21,9 +22,19 @@ def differentiate(scene: Scene, names: str | Sequence[str], accuracy: float, sid
     A free body has closed forms. Any other body has its variational equations integrated.
     """
     refuse_controllers(scene, "sensitivity")
-    made = _core.sensitivity(scene, check_groups(names, side), accuracy, certify, side, max_steps)
+    groups = check_groups(names, side)
+    refuse_light(scene, groups)
+    made = _core.sensitivity(scene, groups, accuracy, certify, side, max_steps)
     return Sensitivity(made.omega, made.attitude, made.d_omega, made.d_attitude, tuple(made.columns), side, made.error,
                        split_states(scene, made.d_states))
+
+
+def refuse_light(scene: Scene, groups: list[str]) -> None:
+    """Refuse columns by windows that follow from an orbit."""
+    for i, torque in enumerate(scene.torques):
+        if isinstance(torque, Sunlit) and f"torques.{i}.windows" in groups:
+            raise InvalidInput(f"sensitivity: must not be by 'torques.{i}.windows': the windows of torques.{i} follow "
+                               "from its orbit")
 
 
 def check_groups(names: str | Sequence[str], side: str) -> list[str]:
