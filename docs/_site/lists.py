@@ -11,6 +11,7 @@ from typing import Any
 
 import polhode as ph
 
+from .extras import playground
 from .links import ROOT, rewrite
 
 MARK = re.compile(r"^<!-- (list|include|page): ([\w./-]+)(?: to \"([^\"]+)\")? -->$", flags=re.MULTILINE)
@@ -187,6 +188,7 @@ LISTS: dict[str, Callable[[], str]] = {
     "methods": methods, "models": models, "torques": torques, "shapes": ph.shapes.table, "commands": commands,
     "scene-keys": scene_keys, "recipe-keys": recipe_keys, "exceptions": classes, "findings": findings,
     "headers": headers, "citation": works, "limits": limits,
+    "playground": playground,
 }
 
 

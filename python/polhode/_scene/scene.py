@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -12,12 +12,16 @@ import numpy.typing as npt
 from .. import _core
 from .._attitude.arrays import to_items
 from .._keywords import checked, wrong
+from .wanted import At, AttitudeAlone, Om, OmegaAlone, Parts, Wanted
 
 if TYPE_CHECKING:
     import pathlib
+    from typing import Self, Unpack
+
+    from .wanted import Floats
 
 
-class Scene(_core.Scene):
+class Scene(_core.Scene, Wanted[Om, At]):
     """A body with its rotors, its start, its torques, and the sample times.
 
     Parameters
@@ -61,6 +65,15 @@ class Scene(_core.Scene):
     _torques: tuple[Any, ...]
     _controllers: tuple[Any, ...]
 
+    @overload
+    def __init__(self: Scene[Floats, None], *, want: OmegaAlone, **parts: Unpack[Parts]) -> None: ...
+
+    @overload
+    def __init__(self: Scene[None, Floats], *, want: AttitudeAlone, **parts: Unpack[Parts]) -> None: ...
+
+    @overload
+    def __init__(self: Scene[Floats, Floats], *, want: Iterable[str] = ..., **parts: Unpack[Parts]) -> None: ...
+
     @checked
     def __init__(
         self,
@@ -68,16 +81,16 @@ class Scene(_core.Scene):
         inertia: Any,
         omega: npt.ArrayLike,
         attitude: Any = (0.0, 0.0, 0.0, 1.0),
-        torques: Iterable[Any] = (),
+        torques: Iterable[Any] | Any = (),
         times: npt.ArrayLike,
         want: Iterable[str] = ("omega", "attitude"),
         t0: float = 0.0,
         name: str = "",
-        rotors: Iterable[_core.Rotor] = (),
+        rotors: Iterable[_core.Rotor] | _core.Rotor = (),
         damper: _core.Damper | None = None,
         momentum: _core.Changing | None = None,
         leaving: bool = False,
-        controllers: Iterable[Any] = (),
+        controllers: Iterable[Any] | Any = (),
     ) -> None:
         kept = to_items(torques, "scene.torques", "torques") if isinstance(torques, Iterable) else (torques,)
         if not isinstance(rotors, Iterable):
@@ -102,7 +115,7 @@ class Scene(_core.Scene):
         return self._controllers
 
     @classmethod
-    def load(cls, source: str | os.PathLike[str]) -> Scene:
+    def load(cls, source: str | os.PathLike[str]) -> Scene[Floats, Floats]:
         """Read a scene from a TOML file, or a scene of polhode by its name, such as "S1".
 
         Raises
@@ -143,7 +156,19 @@ class Scene(_core.Scene):
             "controllers": self.controllers,
         }
 
-    def replace(self, **changes: Any) -> Scene:
+    @overload
+    def replace(self, *, want: OmegaAlone, **changes: Any) -> Scene[Floats, None]: ...
+
+    @overload
+    def replace(self, *, want: AttitudeAlone, **changes: Any) -> Scene[None, Floats]: ...
+
+    @overload
+    def replace(self, *, want: Iterable[str], **changes: Any) -> Scene[Floats, Floats]: ...
+
+    @overload
+    def replace(self, **changes: Any) -> Self: ...
+
+    def replace(self, **changes: Any) -> Scene[Any, Any]:
         """Return a scene with some parts changed, by the names of the constructor."""
         parts = self._parts()
         for key in changes:
@@ -164,6 +189,11 @@ class Scene(_core.Scene):
     def __hash__(self) -> int:
         arrays = self.omega.tobytes(), self.attitude.tobytes(), self.times.tobytes()
         return hash((self.name, self.t0, self.want, *arrays))
+
+    def _repr_html_(self) -> str:
+        from .._plot.tables import of_scene
+
+        return of_scene(self)
 
     def __repr__(self) -> str:
         moments = ", ".join(f"{m:.6g}" for m in self.inertia.moments)
