@@ -3,7 +3,7 @@
 import os
 from typing import Any
 
-from . import extras, links, lists, style
+from . import answers, extras, links, lists, style
 from .formulas import katex_at_hand as katex_at_hand
 
 
@@ -24,6 +24,7 @@ def read(app: Any, docname: str, source: list[str]) -> None:
 def setup(app: Any) -> dict[str, Any]:
     """Connect all of it to Sphinx."""
     style.register()
+    answers.setup(app)
     app.connect("source-read", read)
     app.connect("env-get-outdated", extras.changed)
     app.connect("build-finished", extras.write)
