@@ -184,11 +184,18 @@ def works() -> str:
             f"  version = {{{version}}},\n}}\n```")
 
 
+def against() -> str:
+    """Return the comparisons of the charts that are worst for polhode."""
+    from polhode.report import tables
+
+    return tables.markdown(tables.against(json.loads((ROOT / "docs/results/charts.json").read_text())))
+
+
 LISTS: dict[str, Callable[[], str]] = {
     "methods": methods, "models": models, "torques": torques, "shapes": ph.shapes.table, "commands": commands,
     "scene-keys": scene_keys, "recipe-keys": recipe_keys, "exceptions": classes, "findings": findings,
     "headers": headers, "citation": works, "limits": limits,
-    "playground": playground,
+    "playground": playground, "against": against,
 }
 
 

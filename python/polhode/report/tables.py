@@ -70,6 +70,29 @@ def best(content: dict[str, Any]) -> tuple[Row, list[Row]]:
     return ["smallest error", *(scene["name"] for scene in content["scenes"])], rows
 
 
+def against(content: dict[str, Any], count: int = 5) -> tuple[Row, list[Row]]:
+    """Return the comparisons that are worst for polhode's integrators: at an error, the time over another program's.
+
+    Closed forms stand in a column of their own, and do not count. An error that polhode's integrators do not reach and
+    another program does comes first.
+    """
+    found: list[tuple[float, Row]] = []
+    for scene in content["scenes"]:
+        for level in LEVELS:
+            peer = fastest(scene, level, ("peer",))
+            if peer is None:
+                continue
+            own, exact = fastest(scene, level, ("method", "cheap")), fastest(scene, level, ("exact",))
+            ratio = math.inf if own is None else float(own["seconds"]) / float(peer["seconds"])
+            found.append((ratio, [
+                f"{scene['name']} {scene['title']}", to_error(level), f"{peer['candidate']} {to_time(peer['seconds'])}",
+                "not reached" if own is None else f"{own['candidate']} {to_time(own['seconds'])}",
+                "-" if own is None else f"{ratio:.2g}", "-" if exact is None else to_time(exact["seconds"])]))
+    found.sort(key=lambda item: -item[0])
+    return (["scene", "error", "other program", "polhode's integrators", "times as long", "closed form"],
+            [row for _, row in found[:count]])
+
+
 def failures(content: dict[str, Any]) -> tuple[Row, list[Row]]:
     """Return every run that failed and every one that was left out, with the reason."""
     found: dict[tuple[str, str, str], list[str]] = {}
