@@ -1,6 +1,6 @@
 """Draws the pictures of the theory: docs/pictures/theory_*.svg, each from the functions that the chapter names.
 
-    python benchmarks/theory_pictures.py            # all of them, or those named: polhodes cone jacobi zero cubic saddle
+    python benchmarks/theory_pictures.py      # all of them, or those named: polhodes cone jacobi zero cubic saddle
 """
 
 import pathlib
@@ -109,7 +109,8 @@ def zero(plt):
     ax.plot(0, 3 - delta / other, "o", color="white", markeredgecolor="black", markersize=9)
     ax.annotate("m₃ = -L, and α = 0", (0, 3 - delta / other), (0.18, 3 - delta / other), color="white", va="center")
     ax.plot(0, 1 + delta / other, "x", color="white", markersize=9, markeredgewidth=2)
-    ax.annotate("m₃ = -L, and α is finite", (0, 1 + delta / other), (0.12, 1 + delta / other), color="white", va="center")
+    ax.annotate("m₃ = -L, and α is finite", (0, 1 + delta / other), (0.12, 1 + delta / other), color="white",
+                va="center")
     for at in (1, 3):
         ax.plot(0, at, "s", color="black", markersize=5)
         ax.annotate("pole of dn", (0, at), (-0.12, at), color="black", ha="right", va="center",

@@ -1,4 +1,4 @@
-"""What the site needs beside its pages: citations from plain links, lists made from the code, KaTeX, pictures, films."""
+"""What the site needs beside its pages: citations from plain links, lists made from the code, KaTeX, films."""
 
 import os
 from typing import Any

@@ -20,11 +20,16 @@ def make_film() -> Any:
 
 def playground() -> str:
     """Return the frame of the playground and a link to it, or how to build it."""
+    shown = ""
+    if (ROOT / "docs/pictures/playground.png").exists():   # by tests/support/film_stills.py
+        shown = ("\n\n![The playground: a turning body beside its ellipsoid, and a chart of errors]"
+                 "(pictures/playground.png)")
     if not PLAYGROUND.exists():
-        return "This copy of the site was built without the playground. `make web` builds it."
+        return f"This copy of the site was built without the playground. `make web` builds it.{shown}"
     return ('<p><a class="reference external" href="_static/playground.html"><strong>Open the playground</strong></a>, '
             "alone on its page.</p>\n\n"
-            '<iframe class="playground" src="_static/playground.html" title="The playground" loading="lazy"></iframe>')
+            '<iframe class="playground" src="_static/playground.html" title="The playground" loading="lazy"></iframe>'
+            + shown)
 
 
 def write(app: Any, exception: Exception | None) -> None:

@@ -69,7 +69,7 @@ class Motions(Wanted[MotionOm, MotionAt]):
     refused: npt.NDArray[np.bool_]
     scenes: Scene | list[Scene] = field(default_factory=list)
     options: dict[str, Any] = field(default_factory=dict)
-    sensitivity: Sensitivity = None   # type: ignore[assignment]   # typed as what was asked for
+    sensitivity: Sensitivity = None   # type: ignore[assignment]   # of sensitivity=
 
     def _states(self) -> dict[str, Floats]:
         return {name: array for name, array in (("omega", self.omega), ("attitude", self.attitude))

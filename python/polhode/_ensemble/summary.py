@@ -131,7 +131,8 @@ class AttitudeSummary:
 class Summaries(Mapping[str, "QuantitySummary"]):
     """The summaries of an ensemble by their names.
 
-    Each is a `QuantitySummary`, or an `AttitudeSummary` of an attitude. For type checkers that is the one named "attitude".
+    Each is a `QuantitySummary`, or an `AttitudeSummary` of an attitude. For type checkers only the one named "attitude"
+    is of the latter.
     """
 
     def __init__(self, parts: dict[str, QuantitySummary | AttitudeSummary]) -> None:

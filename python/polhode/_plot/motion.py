@@ -46,7 +46,8 @@ def _find_marks(marks: Any, track: Track) -> Floats:
     return to_times(marks, "marks")
 
 
-def plot(motion: Motion[Any, Any], *parts: str, ax: Axes | None = None, marks: Any = None, dark: bool = False) -> Figure:
+def plot(motion: Motion[Any, Any], *parts: str, ax: Axes | None = None, marks: Any = None,
+         dark: bool = False) -> Figure:
     """Draw a motion; see `Motion.plot`."""
     style.need_matplotlib("plot")
     return draw(of_motion(motion), parts, ax, marks, dark)

@@ -19,7 +19,8 @@ def of_scene(scene: Any) -> str:
             ["attitude (x, y, z, w)", _number(scene.attitude)]]
     rows += [["torque", escape(repr(torque))] for torque in scene.torques]
     rows += [["rotor", escape(repr(rotor))] for rotor in scene.rotors]
-    rows += [[name, escape(repr(part))] for name in ("damper", "momentum") if (part := getattr(scene, name)) is not None]
+    rows += [[name, escape(repr(part))] for name in ("damper", "momentum")
+             if (part := getattr(scene, name)) is not None]
     rows += [["controller", escape(repr(controller))] for controller in scene.controllers]
     times = scene.times
     rows += [["times [s]", f"{times.size} from {times.min():g} to {times.max():g}, start at {scene.t0:g}"],

@@ -139,6 +139,23 @@ class Scene(_core.Scene, Wanted[Om, At]):
 
         save_scene(self, path)
 
+    def show_url(self, page: str = "playground.html") -> str:
+        """Return the address of the scene on the playground, to be opened in a browser.
+
+        Parameters
+        ----------
+        page : str
+            Where the page is: a file, or the address of a copy of the site with the page's name.
+
+        Raises
+        ------
+        InvalidInput
+            For a scene that the page has no fields for, with the reason. See docs/playground.md.
+        """
+        from .playground import show_url
+
+        return show_url(self, page)
+
     def _parts(self) -> dict[str, Any]:
         return {
             "inertia": self.inertia if self.changing is None else self.changing,

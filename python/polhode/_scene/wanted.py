@@ -1,4 +1,4 @@
-"""Types of what `want` leaves in or out, for type checkers alone: `motion.omega` is an array unless `want` is without it."""
+"""Types of what `want` asks, for type checkers alone: `motion.omega` is an array unless `want` is without it."""
 
 from __future__ import annotations
 

@@ -110,7 +110,7 @@ class Motion(Wanted[MotionOm, MotionAt]):
     proved_span: tuple[float, float] | None
     events: tuple[EventHit, ...]
     ticks: tuple[Ticks, ...]
-    sensitivity: Sensitivity = None   # type: ignore[assignment]   # typed as what was asked for
+    sensitivity: Sensitivity = None   # type: ignore[assignment]   # of solve(sensitivity=)
 
     def __init__(self, scene: Scene[MotionOm, MotionAt], answer: _core.Answer, wishes: dict[str, Any] | None = None,
                  options: dict[str, Any] | None = None) -> None:

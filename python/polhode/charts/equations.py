@@ -109,11 +109,12 @@ def refuses(scene: Scene, implicit: bool = False) -> str:
     return unwritten(scene) or refuses_times(scene)
 
 
-def _turning(w: Numbers, q: Numbers) -> list[Any]:
+def _rotating(w: Numbers, q: Numbers) -> list[Any]:
     """The derivative of the quaternion."""
     x, y_, z, s = q
     a, b, c = (0.5 * v for v in w)
-    return [s * a + y_ * c - z * b, s * b + z * a - x * c, s * c + x * b - y_ * a, -1.0 * (x * a + y_ * b + z * c)]
+    return [s * a + y_ * c - z * b, s * b + z * a - x * c, s * c + x * b - y_ * a,
+            -1.0 * (x * a + y_ * b + z * c)]
 
 
 class Separatrix:
@@ -168,7 +169,7 @@ class Separatrix:
             push = _dot([self.scale], [one])
             change = [_dot([1.0, 1.0], pair)
                       for pair in zip(change, (_difference(three, push), two, _dot([1.0, 1.0], [three, push])))]
-        return [*change, *_turning(w, y[3:])]
+        return [*change, *_rotating(w, y[3:])]
 
 
 def derivatives(scene: Scene, t: Any, y: Numbers, cos: Function = math.cos, sin: Function = math.sin) -> list[Any]:
@@ -187,7 +188,7 @@ def derivatives(scene: Scene, t: Any, y: Numbers, cos: Function = math.cos, sin:
         tau = [_dot([1.0, 1.0], pair) for pair in zip(tau, more)]
     if scene.rotor_momentum.any():
         tau = [_dot([1.0, 1.0], pair) for pair in zip(tau, _cross(scene.rotor_momentum.tolist(), w))]
-    return [*(_dot(row, tau) for row in inverse), *_turning(w, q)]
+    return [*(_dot(row, tau) for row in inverse), *_rotating(w, q)]
 
 
 class Symbol:

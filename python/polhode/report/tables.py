@@ -136,6 +136,20 @@ def machine(content: dict[str, Any]) -> list[Row]:
     return rows
 
 
+def how_they_ran(content: dict[str, Any]) -> str:
+    """Return the variables and the right-hand side of each candidate; of older results what is known of them."""
+    about: dict[str, set[tuple[str, str]]] = {}
+    for scene in content["scenes"]:
+        for name, one in scene.get("candidates", {}).items():
+            about.setdefault(name, set()).add((one["variables"], one["right_hand_side"]))
+    if not about:
+        return ("taylor, radau and symplectic stepped u, v on triaxial bodies in this run. All other methods and "
+                "programs stepped Euler's rates. SciPy and SUNDIALS called a right-hand side in Python.")
+    rows = [[name, " or ".join(sorted({v for v, _ in found})), " or ".join(sorted({w for _, w in found}))]
+            for name, found in about.items()]
+    return markdown((["candidate", "variables", "right-hand side"], rows))
+
+
 def startups(content: dict[str, Any]) -> tuple[Row, list[Row]]:
     """Return the longest start of each candidate that takes more than a hundredth of a second."""
     longest: dict[str, float] = {}

@@ -41,7 +41,8 @@ def made(tmp_path_factory):
     result = measure(SCENE, "words", taking_part, 4.0, lambda text: None)
     folder = tmp_path_factory.mktemp("words")
     (svg,) = [path for path in pictures.work_precision(result, folder) if path.suffix == ".svg"]
-    texts = [html.unescape(re.sub("<[^>]+>", "", part)) for part in re.findall(r"<text.*?</text>", svg.read_text(), re.S)]
+    found = re.findall(r"<text.*?</text>", svg.read_text(), re.S)
+    texts = [html.unescape(re.sub("<[^>]+>", "", part)) for part in found]
     return json.loads(json.dumps(document([result], 4.0, [], False)))["scenes"][0], " ".join(" ".join(texts).split())
 
 

@@ -68,6 +68,6 @@ def render(film: Film, start: float | None = None) -> str:
     moments = ", ".join(f"{m:.4g}" for m in film.scene.inertia.moments)
     fixed = ", and L" if film.keeps_momentum else ""
     parts = {"title": escape(film.title), "under": escape(f"moments {moments} kg m²; {under}"),
-             "css": _text("page.css"), "licence": _text("three.LICENSE").replace("--", "- -"), "data": data, "fixed": fixed,
-             "three": _text("three.min.js"), "script": _text("page.js")}
+             "css": _text("page.css"), "licence": _text("three.LICENSE").replace("--", "- -"), "data": data,
+             "fixed": fixed, "three": _text("three.min.js"), "script": _text("page.js")}
     return re.sub(r"\{\{ (\w+) \}\}", lambda found: parts[found[1]], _text("page.html"))

@@ -98,7 +98,7 @@ def _start(scene: Scene, method: str, in_u_v: bool = False) -> Run:
 
 
 def candidates() -> list[Candidate]:
-    """Dormand and Prince's pair with its dense output, and Fehlberg's 7(8), stepping onto the samples; that in u, v too."""
+    """Dormand and Prince's pair with its dense output, and Fehlberg's 7(8), stepping onto samples, in u, v too."""
     def make(method: str, in_u_v: bool = False) -> Candidate:
         return Candidate(f"Odeint {method}{' u v' * in_u_v}", "peer",
                          f"boost::numeric::odeint::runge_kutta_{method}, g++ {' '.join(FLAGS[:2])}",
