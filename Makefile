@@ -123,7 +123,10 @@ forge: $(VENV)/.demo ## linters of workflows, forms and CITATION.cff
 wings: install ## deletes each wing in a copy, and imports and tests the rest: a minute
 	@$(PYTHON) .ci/wings
 
-docs: install ## the site, with its notebooks and gallery run: two minutes, build/site/index.html
+ZIG := ziglang==0.17.1
+docs: install ## the site, with its notebooks and gallery run, and the playground: some minutes, build/site/index.html
+	@$(PYTHON) -m pip install -qq --disable-pip-version-check "$(ZIG)"
+	@JOBS=$(JOBS) $(PYTHON) web/build.py
 	@$(PYTHON) -m sphinx -W --keep-going -n -q docs build/site 2> >(grep -v IPKernelApp >&2)
 
 docs-pictures: docs ## screenshots of the site, light and dark, wide and narrow, by a headless Chromium
@@ -133,7 +136,7 @@ docs-pictures: docs ## screenshots of the site, light and dark, wide and narrow,
 # The check skips nothing: POLHODE_WEB makes a test that lacks what it needs a failure.
 web-check: web ## `make web`, as .ci/run calls it: two minutes on two cores
 web: install ## the core as WebAssembly, its numbers tested by wasmtime, and the playground as one file
-	@$(PYTHON) -m pip install -qq --disable-pip-version-check "ziglang==0.17.1" wasmtime
+	@$(PYTHON) -m pip install -qq --disable-pip-version-check "$(ZIG)" wasmtime
 	@JOBS=$(JOBS) $(PYTHON) web/build.py
 	@POLHODE_WEB=required POLHODE_SIMD=baseline $(PYTHON) -m pytest -q tests/python/web/test_web.py
 

@@ -15,22 +15,24 @@ from .._attitude.arrays import require_bool, require_text, to_items
 from .._keywords import checked
 from .._scene.plain import to_plain
 from .._scene.scene import Scene, refuse_controllers
+from .._scene.wanted import At, MotionAt, MotionOm, Om, Wanted
 from .._sensitivity.driven import check_groups, split_states
 from .._sensitivity.sensitivity import Sensitivity
 from .._solve.motion import Floats
+from .._solve.record import same_record
 from .._solve.solve import check_max_steps
 from .broadcast import WIDTHS, check_errors, check_threads, to_attitudes, to_rows
 
 
 @dataclass(frozen=True, eq=False)
-class Motions:
+class Motions(Wanted[MotionOm, MotionAt]):
     """The result of `solve_many`, body by body.
 
     Attributes
     ----------
-    omega : ndarray, shape (bodies, samples, 3), or None
+    omega : ndarray, shape (bodies, samples, 3), or None without it in `want`
         Angular velocity in body axes [rad/s]; NaN at times that a body did not reach.
-    attitude : ndarray, shape (bodies, samples, 4), or None
+    attitude : ndarray, shape (bodies, samples, 4), or None without it in `want`
         Unit quaternions (x, y, z, w), body to space; NaN at times that a body did not reach.
     status, message, method : tuple of str
         As in `Motion`, for each body.
@@ -54,8 +56,8 @@ class Motions:
         The other keywords: ``solve_many(motions.scenes, **motions.options)`` repeats the motions.
     """
 
-    omega: Floats | None
-    attitude: Floats | None
+    omega: MotionOm
+    attitude: MotionAt
     status: tuple[str, ...]
     message: tuple[str, ...]
     method: tuple[str, ...]
@@ -67,7 +69,7 @@ class Motions:
     refused: npt.NDArray[np.bool_]
     scenes: Scene | list[Scene] = field(default_factory=list)
     options: dict[str, Any] = field(default_factory=dict)
-    sensitivity: Sensitivity | None = None
+    sensitivity: Sensitivity = None   # type: ignore[assignment]   # of sensitivity=
 
     def _states(self) -> dict[str, Floats]:
         return {name: array for name, array in (("omega", self.omega), ("attitude", self.attitude))
@@ -99,17 +101,36 @@ class Motions:
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the motions with all that repeats them to a .npz file or a .zarr folder, for `polhode.load`.
 
+        The loaded motions are equal to these. Derivatives are not saved.
+
         Raises
         ------
         InvalidInput
             For another suffix.
         """
+        _export.save(_export.check_path(path), *self._record())
+
+    def _record(self) -> tuple[dict[str, Any], dict[str, Any]]:
+        """What a file keeps."""
         scenes = to_plain(self.scenes) if isinstance(self.scenes, Scene) else [to_plain(scene) for scene in self.scenes]
         starts = {f"start_{name}": value for name, value in self.options.items() if isinstance(value, np.ndarray)}
         options = {name: value for name, value in self.options.items() if not isinstance(value, np.ndarray)}
         about = {"kind": "motions", "scenes": scenes, "options": options, "status": self.status,
                  "message": self.message, "method": self.method}
-        _export.save(_export.check_path(path), about, {**self._states(), **self._outcomes(), **starts})
+        return about, {**self._states(), **self._outcomes(), **starts}
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Motions):
+            return NotImplemented
+        return same_record(self._record(), other._record())
+
+    def __hash__(self) -> int:
+        return hash((self.status, self.t_reached.tobytes()))
+
+    def _repr_html_(self) -> str:
+        from .._plot.tables import of_motions
+
+        return of_motions(self)
 
     def __repr__(self) -> str:
         return (f"Motions({len(self.status)} bodies, {int(self.success.sum())} with success, "
@@ -125,7 +146,7 @@ def _rows(value: Any, width: int, name: str) -> Floats:
 
 @checked
 def solve_many(
-    scenes: Scene | Iterable[Scene],
+    scenes: Scene[Om, At] | Iterable[Scene[Om, At]],
     *,
     inertia: npt.ArrayLike | None = None,
     omega: npt.ArrayLike | None = None,
@@ -141,7 +162,7 @@ def solve_many(
     errors: str = "raise",
     sensitivity: str | Sequence[str] | None = None,
     side: str = "space",
-) -> Motions:
+) -> Motions[Om, At]:
     """Solve many scenes, or one scene from many starts.
 
     With ``rtol`` or ``atol``, the methods ``"rk45"`` (the default then) and ``"taylor"`` integrate eight bodies at once
@@ -219,7 +240,8 @@ def solve_many(
     workers, refuse = check_threads(threads), check_errors(errors)
     times = listed[0].times.size if listed else 0
     want = listed[0].want if listed else ("omega", "attitude")
-    out = {name: np.empty((bodies, times, width)) if name in want else None for name, width in WIDTHS.items()}
+    out: dict[str, Any] = {name: np.empty((bodies, times, width)) if name in want else None
+                           for name, width in WIDTHS.items()}
     options = {"accuracy": accuracy, "method": method, "rtol": rtol, "atol": atol, "step": step,
                "max_steps": check_max_steps(max_steps), "leave_out": require_bool(leave_out, "leave_out")}
     found = _core._solve_many(listed, *starts, bodies, times, out["omega"], out["attitude"], options, workers,

@@ -46,20 +46,21 @@ def _find_marks(marks: Any, track: Track) -> Floats:
     return to_times(marks, "marks")
 
 
-def plot(motion: Motion, *parts: str, ax: Axes | None = None, marks: Any = None, dark: bool = False) -> Figure:
+def plot(motion: Motion[Any, Any], *parts: str, ax: Axes | None = None, marks: Any = None,
+         dark: bool = False) -> Figure:
     """Draw a motion; see `Motion.plot`."""
     style.need_matplotlib("plot")
     return draw(of_motion(motion), parts, ax, marks, dark)
 
 
-def animate(motion: Motion, body: Any, axis: Any) -> Film:
+def animate(motion: Motion[Any, Any], body: Any, axis: Any, title: str | None) -> Film:
     """Make a film of a motion; see `Motion.animate`."""
-    return make_film(of_motion(motion), body, axis)
+    return make_film(of_motion(motion), body, axis, title)
 
 
-def make_film(track: Track, body: Any, axis: Any) -> Film:
+def make_film(track: Track, body: Any, axis: Any, title: str | None = None) -> Film:
     """Make a film of what was taken of a motion."""
-    film: Film = _wings.load("_plot.film.film").Film(track, body, axis)
+    film: Film = _wings.load("_plot.film.film").Film(track, body, axis, title)
     return film
 
 

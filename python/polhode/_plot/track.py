@@ -62,7 +62,7 @@ def count_points(rate: float, span: float) -> int:
     return min(MOST, int(rate * span / FINE) + 2)
 
 
-def find_curve(motion: Motion) -> Curve:
+def find_curve(motion: Motion[Any, Any]) -> Curve:
     """Return the motion itself where its samples are close enough for a line, else the start of it, solved again."""
     motion._need("omega")
     assert motion.omega is not None
@@ -92,7 +92,7 @@ def find_curve(motion: Motion) -> Curve:
     return Curve(times, again.omega, again.attitude, drawn == span, again._state_rows())
 
 
-def of_motion(motion: Motion) -> Track:
+def of_motion(motion: Motion[Any, Any]) -> Track:
     """Return what is drawn of a result of `solve`."""
     motion._need("omega")
     if len(motion) == 0:

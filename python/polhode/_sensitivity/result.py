@@ -20,6 +20,7 @@ from .rotations import Array
 
 if TYPE_CHECKING:
     import numpy.typing as npt
+    from matplotlib.figure import Figure
 
 HIDDEN = 1e-10     # a singular value below this part of the largest is not observable
 
@@ -81,6 +82,8 @@ class FitResult:
         Attitude at t = 0, body to space.
     inertia : ndarray, shape (3,), or InertiaTensor
         As :class:`FreeMotion` takes it; the largest moment is 1, or that of the scene. A tensor where axes were fitted.
+    moments : ndarray, shape (3,)
+        The moments of `inertia`: about the body axes in their order, or of a tensor the principal ones, ascending.
     cov, stderr, correlation
         Of the parameters; small rotations stand for attitude and axes. NaN where not observable.
     chi2, dof : float, int
@@ -113,7 +116,7 @@ class FitResult:
     success: bool
     omega: Array
     attitude: Rotation
-    inertia: Any
+    inertia: Array | InertiaTensor
     cov: Array
     stderr: Array
     correlation: Array
@@ -131,6 +134,11 @@ class FitResult:
     state: State
     numbers: dict[str, Array]
 
+    @property
+    def moments(self) -> Array:
+        """The moments of `inertia`."""
+        return np.asarray(self.inertia.moments if isinstance(self.inertia, InertiaTensor) else self.inertia)
+
     def predict(self, t: npt.ArrayLike) -> Prediction:
         """Return the fitted motion with its covariance at times t, shape (n,)."""
         times = np.atleast_1d(np.asarray(t, dtype=float))
@@ -141,11 +149,16 @@ class FitResult:
         return Prediction(times, omega, attitude, d_omega @ cov @ d_omega.transpose(0, 2, 1),
                           d_attitude @ cov @ d_attitude.transpose(0, 2, 1))
 
-    def plot(self) -> Any:
+    def plot(self) -> Figure:
         """Draw the motion over the data, the residuals, the correlations and the spread of the prediction."""
         from .._plot.fit import draw
 
         return draw(self)
+
+    def _repr_html_(self) -> str:
+        from .._plot.tables import of_fit
+
+        return of_fit(self)
 
     def interval(self, level: float = 1.96) -> dict[str, tuple[float, float]]:
         """Return value - level stderr and value + level stderr of each parameter."""

@@ -14,6 +14,7 @@ from .. import _core
 from .._attitude.arrays import is_whole, require_bool, require_text, to_items
 from .._keywords import checked
 from .._scene.scene import Scene
+from .._scene.wanted import At, Om
 from .._sensitivity.driven import differentiate
 from .costs import factors
 from .motion import Floats, Motion
@@ -113,7 +114,7 @@ def check_max_steps(max_steps: int) -> int:
 
 @checked
 def solve(
-    scene: Scene,
+    scene: Scene[Om, At],
     accuracy: float | None = None,
     *,
     plan: Plan | None = None,
@@ -126,11 +127,11 @@ def solve(
     dense: bool = False,
     formulation: str = "euler",
     leave_out: bool = True,
-    events: Iterable[Any] = (),
+    events: Iterable[Event | Callable[..., float]] | Event | Callable[..., float] = (),
     progress: Callable[[float, float], object] | bool | None = None,
     sensitivity: str | Sequence[str] | None = None,
     side: str = "space",
-) -> Motion:
+) -> Motion[Om, At]:
     """Compute the rotational motion of a scene at its sample times.
 
     Parameters
