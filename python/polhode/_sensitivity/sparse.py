@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from .._spectrum import attitudes, axis, rates
-from ..measured import Attitudes, Axis, Measurement, Rates
+from .._spectrum import attitudes, axis, direction, rates
+from ..measured import Attitudes, Axis, Direction, Measurement, Rates
 from . import robust
 from .candidates import WITHIN, Pool, lattice
 from .least_squares import minimise
@@ -77,6 +77,7 @@ def _fit(problem: Problem, state: State, moments: Array, omega: Array, pool: Poo
 SCANS: dict[type[Measurement], tuple[Callable[..., Iterator[tuple[float, Array, Array]]], int, float]] = {
     Attitudes: (attitudes.candidates, 8, 96.0),
     Axis: (axis.candidates, 16, 12.0),
+    Direction: (direction.candidates, 16, 12.0),
 }
 
 
@@ -92,7 +93,7 @@ def search_lines(problem: Problem, state: State, kind: type[Measurement], pool: 
     low = 0.3 / float(np.ptp(data.t))
     # bodies of one frequency are all near; vectors at random differ by sqrt(2) from the data, about
     far = 0.0
-    if isinstance(data, Axis):
+    if isinstance(data, (Axis, Direction)):
         far = 0.7 * float((data.whitener[:, 0, 0] ** 2).sum()) * float(data.known @ data.known)
     for high in _scans(data.t, highest):
         for top in attitudes.HARMONICS:

@@ -1,0 +1,154 @@
+"""Bodies from one space vector seen in the body: the nutation's frequency by lines, then shapes of a table by sums.
+
+In the frame of the angular momentum the attitude is a turn by 2 kappa t and a periodic part. So the component of the
+vector along the encircled axis has the lines j nu with j even and 2 kappa + j nu with j odd, the two others have j odd
+and j even. The harmonics alone show nu where the vector has a part along the momentum; lines beside the highest one
+show it where it has a part across. For a body of the table the best vector is a sum over the samples. Fourier series of
+the table give these sums for all phases at once.
+"""
+
+from __future__ import annotations
+
+import functools
+import itertools
+from collections.abc import Iterator
+from functools import partial
+
+import numpy as np
+
+from .._sensitivity import rotations
+from ..measured import Direction
+from .curve import PHASES, carried, orders
+from .scan import BLOCK, Array, grid, peaks, periodogram, project, refine
+from .shapes import attitudes_of, relabelled, table, variants
+
+NUTATIONS = 5      # maxima of each kind that are followed
+EACH = 3           # maxima beside each line
+HIGHEST = 2        # lines of each component
+GRID = (12, 8)     # angles and moduli of the shapes
+TOP = 8            # harmonics of the table's curves
+BODIES = 24        # of a nutation
+
+
+@functools.cache
+def _series(c: int) -> tuple[list[tuple[int, tuple[int, ...], Array]], Array]:
+    """Return (shape, order, rotation to the table's axes) of bodies that encircle axis c, and their Fourier series.
+
+    The series are those of the body axes in the frame of the momentum, (bodies, 2 TOP + 1, 3 of space, 3 of the body).
+    """
+    shapes = table(*GRID)
+    q = attitudes_of(shapes, slice(None), slice(None))
+    owners, series = [], []
+    for order, flip in variants():
+        if order[2] != c:
+            continue
+        back = relabelled(order, flip)
+        R = rotations.to_matrix(rotations.product(q, back))
+        series.append(np.fft.fft(R, axis=1)[:, np.arange(-TOP, TOP + 1)] / PHASES)
+        owners += [(k, order, back) for k in range(len(q))]
+    return owners, np.concatenate(series)
+
+
+def _from_harmonics(t: Array, X: Array, weight: Array, trials: Array, top: int) -> list[tuple[float, float, int]]:
+    """Return (what is taken, nu, encircled axis) by the harmonics of nu alone."""
+    kinds, zero = orders(top), np.zeros(1)
+
+    def taken(nu: Array) -> Array:
+        even, odd = (project(t, X, weight, [(0, k) for k in kind], zero, nu)[0, :, :, 0, 0] for kind in kinds)
+        return np.asarray(odd.sum(axis=1, keepdims=True) + even - odd)
+
+    power = np.concatenate([taken(trials[first : first + BLOCK]) for first in range(0, trials.size, BLOCK)])
+    step, found = float(trials[1] - trials[0]), []
+    for c in range(3):
+        for k in peaks(power[:, c], NUTATIONS):
+            nu = refine(lambda f, c=c: taken(f)[:, c], float(trials[k]), step)   # type: ignore[misc]
+            found.append((float(taken(np.array([nu]))[0, c]), nu, c))
+    return sorted(found, reverse=True)[:NUTATIONS]
+
+
+def highest(t: Array, X: Array, high: float) -> list[tuple[float, int]]:
+    """Return (frequency, component) of the highest lines of each component, without its mean."""
+    trials = grid(t, 0.3 / float(np.ptp(t)), high)
+    step, found = float(trials[1] - trials[0]), []
+    for i in range(3):
+        z = np.ascontiguousarray((X[:, i] - X[:, i].mean())[:, None].astype(complex))
+        found += [(refine(partial(periodogram, t, z), float(trials[k]), step), i)
+                  for k in peaks(periodogram(t, z, trials), HIGHEST)]
+    return found
+
+
+def _beside(t: Array, X: Array, weight: Array, lines: list[tuple[float, int]], trials: Array,
+            ) -> list[tuple[float, float, int]]:
+    """Return (what is taken, nu, encircled axis) by lines beside the highest ones and low harmonics."""
+    step, found = float(trials[1] - trials[0]), []
+    same, next_to = [(1, 0), (1, 2), (1, -2)], [(1, 1), (1, -1)]
+    for (f, i), c in itertools.product(lines, range(3)):
+        others = [k for k in range(3) if k != c]
+        parts = [([c], [(0, 0), (0, 2), *(same if i == c else next_to)]),
+                 (others, [(0, 1), (0, 3), *(next_to if i == c else same)])]
+
+        def taken(nu: Array, f: float = f, parts: list[tuple[list[int], list[tuple[int, int]]]] = parts) -> Array:
+            return np.asarray(sum(project(t, np.ascontiguousarray(X[:, axes]), weight, columns, np.array([f]), nu)
+                                  [0, :, :, 0, 0].sum(axis=1) for axes, columns in parts))
+
+        power = taken(trials)
+        for k in peaks(power, EACH):
+            nu = refine(taken, float(trials[k]), step)
+            found.append((float(taken(np.array([nu]))[0]), nu, c))
+    return sorted(found, reverse=True)[: 2 * NUTATIONS]
+
+
+def candidates(data: Direction, low: float, fastest: float, top: int) -> Iterator[tuple[float, Array, Array]]:
+    """Give (chi2 that is left, moments, omega at t = 0) of bodies, one nutation after the other, up to a rate."""
+    middle = 0.5 * float(data.t[0] + data.t[-1])
+    t, size = data.t - middle, float(np.linalg.norm(data.known))
+    weight = np.sqrt(np.mean(np.einsum("nii->ni", data.whitener) ** 2, axis=1)) * size
+    X = np.ascontiguousarray(weight[:, None] * data.y / size)
+    square = float((X * X).sum())
+    trials = grid(t, low, fastest)
+    lines = highest(t, X, 2 * fastest)
+    by_lines = _beside(t, X, weight, lines, trials)
+    by_harmonics = _from_harmonics(t, X, weight, trials, top)
+    near = np.array([sign * f for f, _ in lines for sign in (1, -1)])
+    for pair in itertools.zip_longest(by_lines, by_harmonics):
+        for found in pair:
+            if found is not None:
+                taken, nu, c = found
+                moments, omega = _bodies(t, weight, X, nu, c, near)
+                yield square - taken, moments, carried(moments, omega, -middle)
+
+
+def _bodies(t: Array, weight: Array, X: Array, nu: float, c: int, near: Array) -> tuple[Array, Array]:
+    """Return (moments, omega) at the phase 0 of the bodies with the largest sums."""
+    owners, series = _series(c)
+    shapes, harmonics = table(*GRID), np.arange(-TOP, TOP + 1)
+    u = weight[:, None] * X
+    kappas = np.unique(np.round((near[:, None] + nu * np.arange(-3, 4)).ravel(), 12))
+
+    def sums(f: Array) -> Array:
+        """Sum of exp(i f t) u, (f, 3)."""
+        return np.asarray(np.exp(1j * np.outer(f, t)) @ u)
+
+    # the part along: sum over samples of m(phase) u; a series in the phase of the table at the middle of the times
+    along = np.einsum("bhj,hj->bh", series[:, :, 2], sums(nu * harmonics))
+    # the part across, times exp(-i 2 kappa t): x + i y of the momentum's frame, turned back
+    turned = series[:, :, 0] + 1j * series[:, :, 1]
+    across = np.einsum("bhj,khj->bkh", turned, np.stack([sums(f + nu * harmonics) for f in kappas]))
+
+    def over_phases(rows: Array) -> Array:
+        whole = np.zeros((*rows.shape[:-1], PHASES), dtype=complex)
+        whole[..., harmonics % PHASES] = rows
+        return np.asarray(np.fft.ifft(whole, axis=-1) * PHASES)
+
+    power = np.abs(over_phases(across)) ** 2 + over_phases(along).real[:, None] ** 2    # (bodies, kappas, phases)
+    best = power.max(axis=2)
+    rank = np.argsort(-best, axis=None, kind="stable")[:BODIES]
+    moments, omega = [np.zeros((0, 3))], [np.zeros((0, 3))]
+    for place in rank:
+        b, k = np.unravel_index(place, best.shape)
+        which, order, back = owners[b]
+        phase = int(np.argmax(power[b, k]))
+        inertia, rate, _ = shapes.bodies(np.array([which]), np.array([phase]), nu, kappas[k : k + 1])
+        moments.append(inertia[:, np.argsort(order)])
+        omega.append(rotations.rotate(rotations.conjugate(back), rate))
+    return np.concatenate(moments), np.concatenate(omega)
