@@ -66,8 +66,8 @@ def rates_of(state: State) -> tuple[float, float]:
 class Pool:
     """Minima, each once, as long as they are near the best."""
 
-    def __init__(self, problem: Problem) -> None:
-        self.limit = limit(problem)
+    def __init__(self, problem: Problem, within: float = WITHIN) -> None:
+        self.limit, self.within = limit(problem), within
         self.found: list[Minimum] = []
 
     def add(self, found: Minimum) -> None:
@@ -80,7 +80,7 @@ class Pool:
         else:
             self.found.append(found)
         self.found.sort(key=lambda one: one.cost)
-        self.found = [one for one in self.found if 2 * (one.cost - self.found[0].cost) <= WITHIN][:64]
+        self.found = [one for one in self.found if 2 * (one.cost - self.found[0].cost) <= self.within][:64]
 
     @property
     def best(self) -> Minimum | None:

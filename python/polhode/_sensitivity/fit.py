@@ -26,7 +26,8 @@ from .starts import SPANS, from_scene, grown, search_at_random, search_free
 def _to_data(data: Any) -> list[Measurement]:
     found = [data] if isinstance(data, Measurement) else list(to_items(data, "data", "measurements"))
     if not found or not all(isinstance(m, Measurement) for m in found):
-        raise InvalidInput(f"data: must be one or several of ph.measured.{', '.join(n for n in SENSORS if n != 'Measurement')}")
+        names = ", ".join(name for name in SENSORS if name != "Measurement")
+        raise InvalidInput(f"data: must be one or several of ph.measured.{names}")
     return found
 
 
@@ -174,7 +175,7 @@ def fit(
 
     Notes
     -----
-    A gyroscope's scale and an offset of times are not fitted. See docs/fit.md.
+    An offset of times is not fitted. See docs/fit.md.
     """
     if scene is not None and not isinstance(scene, Scene):
         raise InvalidInput(f"scene: must be a polhode.Scene, got {type(scene).__name__}")

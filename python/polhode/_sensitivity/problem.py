@@ -135,12 +135,12 @@ class Problem:
         for k, measurement in enumerate(self.data):
             here = slice(self.ends[k], self.ends[k + 1])
             own = state.bias[bias : bias + measurement.bias]
-            seen = self._with_acceleration(state, omega[here]) if measurement.accelerates else omega[here]
+            seen = self.with_acceleration(state, omega[here]) if measurement.accelerates else omega[here]
             parts.append(measurement.whiten(measurement.residual(seen, attitude[here], own)).ravel())
             bias += measurement.bias
         return parts
 
-    def _with_acceleration(self, state: State, omega: Array) -> Array:
+    def with_acceleration(self, state: State, omega: Array) -> Array:
         """Return omega and the angular acceleration of Euler's equations, (n, 6)."""
         J = state.moments
         return np.concatenate([omega, np.cross(J * omega, omega) / J], axis=1)
@@ -196,7 +196,7 @@ class Problem:
             here = slice(self.ends[k], self.ends[k + 1])
             seen, d_seen = omega[here], d_omega[here]
             if measurement.accelerates:
-                seen, d_seen = self._with_acceleration(state, seen), self._with_its_derivatives(state, seen, d_seen)
+                seen, d_seen = self.with_acceleration(state, seen), self._with_its_derivatives(state, seen, d_seen)
             own = state.bias[bias : bias + measurement.bias]
             part = measurement.rows(seen, attitude[here], d_seen, d_attitude[here], own)
             if measurement.bias:

@@ -106,13 +106,15 @@ def search_free(problem: Problem, state: State, rng: np.random.Generator, loss: 
     return how
 
 
-def from_scene(problem: Problem, state: State, loss: str, scale: float, low: Array | None, high: Array | None) -> Minimum:
+def from_scene(problem: Problem, state: State, loss: str, scale: float, low: Array | None, high: Array | None,
+               ) -> Minimum:
     """Return the better of two minima: from the scene's values with all data at once, and with windows that grow."""
     at_once = minimise(problem, state, loss=loss, scale=scale, low=low, high=high, most=1000)
     if loss == "linear" and 2 * at_once.cost <= limit(problem):
         return at_once
     spans = np.unique(np.abs(problem.t))
-    span = spans[min(int(ENOUGH * len(problem.names) * len(spans) / max(at_once.residuals.size, 1)) + 2, len(spans) - 1)]
+    first = int(ENOUGH * len(problem.names) * len(spans) / max(at_once.residuals.size, 1)) + 2
+    span = spans[min(first, len(spans) - 1)]
     while span < spans[-1]:
         window = problem.with_data([part for m in problem.data if len(part := m.part(span)) or m.bias])
         state = minimise(window, state, loss=loss, scale=scale, low=low, high=high, most=40, tolerance=1e-4).state

@@ -15,23 +15,30 @@ from collections.abc import Iterator
 from functools import partial
 
 import numpy as np
+import numpy.typing as npt
 
 from .._sensitivity import rotations
 from ..measured import Direction
+from .attitudes import HARMONICS
 from .curve import PHASES, carried, orders
 from .scan import BLOCK, Array, grid, peaks, periodogram, project, refine
 from .shapes import attitudes_of, relabelled, table, variants
 
-NUTATIONS = 5      # maxima of each kind that are followed
-EACH = 3           # maxima beside each line
+NUTATIONS = 4      # maxima of each kind that are followed
+ALONG = 0.85       # of the median of what is left by harmonics: other minima are none
+BESIDE = 0.7       # the same beside a line
+EACH = 2           # maxima beside each line
 HIGHEST = 2        # lines of each component
-GRID = (12, 8)     # angles and moduli of the shapes
+GRID = (10, 6)     # angles and moduli of the shapes
 TOP = 8            # harmonics of the table's curves
 BODIES = 24        # of a nutation
 
 
+Owner = tuple[int, tuple[int, ...], Array]
+
+
 @functools.cache
-def _series(c: int) -> tuple[list[tuple[int, tuple[int, ...], Array]], Array]:
+def _series(c: int) -> tuple[list[Owner], npt.NDArray[np.complex128]]:
     """Return (shape, order, rotation to the table's axes) of bodies that encircle axis c, and their Fourier series.
 
     The series are those of the body axes in the frame of the momentum, (bodies, 2 TOP + 1, 3 of space, 3 of the body).
@@ -58,9 +65,12 @@ def _from_harmonics(t: Array, X: Array, weight: Array, trials: Array, top: int) 
         return np.asarray(odd.sum(axis=1, keepdims=True) + even - odd)
 
     power = np.concatenate([taken(trials[first : first + BLOCK]) for first in range(0, trials.size, BLOCK)])
-    step, found = float(trials[1] - trials[0]), []
+    step, found, square = float(trials[1] - trials[0]), [], float((X * X).sum())
+    limit = square - ALONG * (square - float(np.median(power)))
     for c in range(3):
         for k in peaks(power[:, c], NUTATIONS):
+            if power[k, c] < limit:
+                break
             nu = refine(lambda f, c=c: taken(f)[:, c], float(trials[k]), step)   # type: ignore[misc]
             found.append((float(taken(np.array([nu]))[0, c]), nu, c))
     return sorted(found, reverse=True)[:NUTATIONS]
@@ -80,7 +90,7 @@ def highest(t: Array, X: Array, high: float) -> list[tuple[float, int]]:
 def _beside(t: Array, X: Array, weight: Array, lines: list[tuple[float, int]], trials: Array,
             ) -> list[tuple[float, float, int]]:
     """Return (what is taken, nu, encircled axis) by lines beside the highest ones and low harmonics."""
-    step, found = float(trials[1] - trials[0]), []
+    step, found, square = float(trials[1] - trials[0]), [], float((X * X).sum())
     same, next_to = [(1, 0), (1, 2), (1, -2)], [(1, 1), (1, -1)]
     for (f, i), c in itertools.product(lines, range(3)):
         others = [k for k in range(3) if k != c]
@@ -92,10 +102,13 @@ def _beside(t: Array, X: Array, weight: Array, lines: list[tuple[float, int]], t
                                   [0, :, :, 0, 0].sum(axis=1) for axes, columns in parts))
 
         power = taken(trials)
+        limit = square - BESIDE * (square - float(np.median(power)))
         for k in peaks(power, EACH):
+            if power[k] < limit:
+                break
             nu = refine(taken, float(trials[k]), step)
             found.append((float(taken(np.array([nu]))[0]), nu, c))
-    return sorted(found, reverse=True)[: 2 * NUTATIONS]
+    return sorted(found, reverse=True)[:NUTATIONS]
 
 
 def candidates(data: Direction, low: float, fastest: float, top: int) -> Iterator[tuple[float, Array, Array]]:
@@ -107,7 +120,7 @@ def candidates(data: Direction, low: float, fastest: float, top: int) -> Iterato
     square = float((X * X).sum())
     trials = grid(t, low, fastest)
     lines = highest(t, X, 2 * fastest)
-    by_lines = _beside(t, X, weight, lines, trials)
+    by_lines = _beside(t, X, weight, lines, trials) if top == HARMONICS[0] else []
     by_harmonics = _from_harmonics(t, X, weight, trials, top)
     near = np.array([sign * f for f, _ in lines for sign in (1, -1)])
     for pair in itertools.zip_longest(by_lines, by_harmonics):
@@ -130,25 +143,35 @@ def _bodies(t: Array, weight: Array, X: Array, nu: float, c: int, near: Array) -
         return np.asarray(np.exp(1j * np.outer(f, t)) @ u)
 
     # the part along: sum over samples of m(phase) u; a series in the phase of the table at the middle of the times
-    along = np.einsum("bhj,hj->bh", series[:, :, 2], sums(nu * harmonics))
-    # the part across, times exp(-i 2 kappa t): x + i y of the momentum's frame, turned back
+    along = _over_phases(np.einsum("bhj,hj->bh", series[:, :, 2], sums(nu * harmonics))).real ** 2
+    # the part across, x + i y of the momentum's frame, turned by exp(i 2 kappa t)
     turned = series[:, :, 0] + 1j * series[:, :, 1]
-    across = np.einsum("bhj,khj->bkh", turned, np.stack([sums(f + nu * harmonics) for f in kappas]))
-
-    def over_phases(rows: Array) -> Array:
-        whole = np.zeros((*rows.shape[:-1], PHASES), dtype=complex)
-        whole[..., harmonics % PHASES] = rows
-        return np.asarray(np.fft.ifft(whole, axis=-1) * PHASES)
-
-    power = np.abs(over_phases(across)) ** 2 + over_phases(along).real[:, None] ** 2    # (bodies, kappas, phases)
-    best = power.max(axis=2)
-    rank = np.argsort(-best, axis=None, kind="stable")[:BODIES]
+    shape, zero = np.array([k for k, _, _ in owners]), np.zeros(len(owners), dtype=int)
+    found: list[tuple[float, int, int, float]] = []
+    for kappa2 in kappas:
+        there = shapes.bodies(shape, zero, nu, np.full(len(shape), kappa2))[2]
+        across = np.einsum("bhj,hj->bh", turned[there], sums(kappa2 + nu * harmonics))
+        power = np.abs(_over_phases(across)) ** 2 + along[there]
+        phases = power.argmax(axis=1)
+        best = power[np.arange(len(there)), phases]
+        found += [(float(best[k]), int(there[k]), int(phases[k]), float(kappa2)) for k in np.argsort(-best)[:BODIES]]
     moments, omega = [np.zeros((0, 3))], [np.zeros((0, 3))]
-    for place in rank:
-        b, k = np.unravel_index(place, best.shape)
+    seen: list[tuple[int, float]] = []
+    for _, b, phase, kappa2 in sorted(found, reverse=True):
+        if len(seen) == BODIES:
+            break
+        if any(b == other and abs(kappa2 - near_by) * np.ptp(t) < 1 for other, near_by in seen):
+            continue
+        seen.append((b, kappa2))
         which, order, back = owners[b]
-        phase = int(np.argmax(power[b, k]))
-        inertia, rate, _ = shapes.bodies(np.array([which]), np.array([phase]), nu, kappas[k : k + 1])
+        inertia, rate, _ = shapes.bodies(np.array([which]), np.array([phase]), nu, np.array([kappa2]))
         moments.append(inertia[:, np.argsort(order)])
         omega.append(rotations.rotate(rotations.conjugate(back), rate))
     return np.concatenate(moments), np.concatenate(omega)
+
+
+def _over_phases(rows: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
+    """Return the values at all phases of series of the harmonics from -TOP to TOP, (..., 2 TOP + 1)."""
+    whole = np.zeros((*rows.shape[:-1], PHASES), dtype=complex)
+    whole[..., np.arange(-TOP, TOP + 1) % PHASES] = rows
+    return np.asarray(np.fft.ifft(whole, axis=-1) * PHASES)

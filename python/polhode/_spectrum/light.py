@@ -1,14 +1,15 @@
-"""Bodies from one number a sample, as a light curve: two frequencies, then the shapes of a table by a quadratic function.
+"""Bodies from one number a sample, as a light curve: two frequencies, then shapes of a table by quadratic functions.
 
-A number that depends on the squares of the body's axes has the lines a sigma + j mu with mu = 2 nu, sigma = 2 kappa + nu
-and a = 0, 1, 2. The highest lines, each as one of these, leave one frequency to scan. Then the function of the attitude
-is replaced by the nearest quadratic one of the body axes. That gives the best attitude of a curve of the table by linear
-algebra.
+A number that depends on the squares of the body's axes has the lines a sigma + j mu with mu = 2 nu, sigma = 2 kappa +
+nu and a = 0, 1, 2. The highest lines, each as one of these, leave one frequency to scan. Then the function of the
+attitude is replaced by the nearest quadratic one of the body axes. That gives the best attitude of a curve of the table
+by linear algebra.
 """
 
 from __future__ import annotations
 
 import dataclasses
+import functools
 from collections.abc import Callable
 
 import numpy as np
@@ -22,17 +23,20 @@ from .shapes import attitudes_of, relabelled, table
 
 HIGHEST = 6        # lines that are tried
 EACH = 3           # maxima of a scan
-PAIRS = 10         # of frequencies that are followed
+PAIRS = 16         # of frequencies that are followed
+SLOWEST = 2.0      # over the span: slower lines are not told apart
+ABOVE = 1.3        # the highest line: beyond it are no frequencies
 APART = 1.0        # over the span: pairs nearer than that are one
 GRID = (8, 5)      # angles and moduli of the shapes
 SHIFTS = 8         # phases of the nutation, over half a period
-ATTITUDES = 600    # of the momentum's frame
+ATTITUDES = 500    # of the momentum's frame
+THIN = 150         # samples that choose the shapes, about
 RANDOM = 1500      # attitudes that give the quadratic function
 LEFT = 0.35        # of the variance of a function, beyond a quadratic one: it is none of this kind then
 LINES = [(0, 0), (0, 1), (0, 2), *((a, j) for a in (1, 2) for j in range(-2, 3))]
 
 
-Orders = list[tuple[int, ...]]
+Order = tuple[int, ...]
 
 
 def uniform_attitudes(count: int) -> Array:
@@ -81,7 +85,7 @@ def _turned(function: Array, attitudes: Array) -> Array:
 
 @dataclasses.dataclass(frozen=True)
 class Light:
-    """Samples about the middle of their times, and the function of the attitude that they are, up to scale and offset."""
+    """Samples about the middle of their times, and the function of the attitude that they show."""
 
     t: Array
     y: Array          # times the weight
@@ -97,8 +101,8 @@ def _clean(light: Light, high: float) -> list[float]:
     trials = grid(t, 0.5 / float(np.ptp(t)), high)
     step, zero = float(trials[1] - trials[0]), np.zeros(1)
     for _ in range(HIGHEST):
-        A = light.weight[:, None] * np.stack([np.ones_like(t), *(part(f * t) for f in found for part in (np.cos, np.sin))],
-                                             axis=1)
+        waves = [part(f * t) for f in found for part in (np.cos, np.sin)]
+        A = light.weight[:, None] * np.stack([np.ones_like(t), *waves], axis=1)
         rest = np.ascontiguousarray((light.y - A @ np.linalg.lstsq(A, light.y, rcond=None)[0])[:, None])
 
         def power(f: Array, rest: Array = rest) -> Array:
@@ -110,23 +114,25 @@ def _clean(light: Light, high: float) -> list[float]:
 
 
 def pairs(light: Light, high: float) -> list[tuple[float, float, float]]:
-    """Return (what is left, sigma, mu) of the pairs of frequencies that leave least, up to a frequency of lines."""
+    """Return (what is left, sigma, mu) of the pairs that leave least; no line is above `high`."""
     t, y = light.t, np.ascontiguousarray(light.y[:, None])
     span = float(np.ptp(t))
     square = float((light.y**2).sum())
-    both, half = grid(t, -high, high), grid(t, 0.3 / span, high)
+    lines = _clean(light, high)
+    half = grid(t, SLOWEST / span, max(ABOVE * max(lines), 4 * SLOWEST / span))
     found: list[tuple[float, float, float]] = []
 
-    def scan(lines: list[tuple[int, int]], f: float, trials: Array, pair: Callable[[float], tuple[float, float]]) -> None:
-        power = project(t, y, light.weight, lines, np.array([f]), trials)[0, :, 0, 0, 0]
+    def scan(kinds: list[tuple[int, int]], f: float, trials: Array, pair: Callable[[float], tuple[float, float]],
+             ) -> None:
+        power = project(t, y, light.weight, kinds, np.array([f]), trials)[0, :, 0, 0, 0]
         found.extend((square - float(power[k]), *pair(float(trials[k]))) for k in peaks(power, EACH))
 
-    for f in _clean(light, high):
+    for f in lines:
         scan(LINES, f, half, lambda mu, f=f: (f, mu))                        # type: ignore[misc]
         scan(LINES, 0.5 * f, half, lambda mu, f=f: (0.5 * f, mu))            # type: ignore[misc]
         scan([(a, 2 * j - a) for a, j in LINES], 0.5 * f, 0.5 * half,
              lambda g, f=f: (0.5 * f - g, 2 * g))                            # type: ignore[misc]
-        scan([(j, a) for a, j in LINES], f, both[both > 0], lambda sigma, f=f: (sigma, f))   # type: ignore[misc]
+        scan([(j, a) for a, j in LINES], f, half, lambda sigma, f=f: (sigma, f))   # type: ignore[misc]
     found.sort()
     out: list[tuple[float, float, float]] = []
     for _, sigma, mu in found[: 4 * PAIRS]:
@@ -137,13 +143,14 @@ def pairs(light: Light, high: float) -> list[tuple[float, float, float]]:
             i, j = np.unravel_index(int(np.argmax(power)), power.shape)
             sigma, mu, left = float(s[i]), float(m[j]), square - float(power[i, j])
             step /= 2.5
-        if mu > 0.2 / span and all(abs(abs(sigma) - abs(o[1])) + abs(mu - o[2]) > APART / span for o in out):
+        new = all(abs(abs(sigma) - s) + abs(mu - m) > APART / span for _, s, m in out)
+        if new and mu > 0.8 * SLOWEST / span and left > 0:
             out.append((left, abs(sigma), mu))
     return sorted(out)[:PAIRS]
 
 
 def light_of(data: Brightness | Scalar) -> tuple[Light, float] | None:
-    """Return the samples and their function, and the middle of their times; None where the function is not quadratic."""
+    """Return the samples with their function, and the middle of their times; None where it is not quadratic."""
     middle = 0.5 * float(data.t[0] + data.t[-1])
     y, weight = data.y, np.array(data.whitener[:, 0, 0])
     if isinstance(data, Brightness):
@@ -170,47 +177,58 @@ def light_of(data: Brightness | Scalar) -> tuple[Light, float] | None:
     return Light(data.t - middle, y * weight, weight, function, scale, offset), middle
 
 
-def bodies(light: Light, found: list[tuple[float, float, float]], orders: tuple[Orders, Orders], most: int,
-           ) -> tuple[Array, Array, Array, Array]:
-    """Return (moments, omega, attitude, what is left) in the middle of the times of bodies with these frequencies.
+@functools.cache
+def _curves(orders: tuple[tuple[Order, ...], tuple[Order, ...]]) -> tuple[Array, Array, Array, Array, Array]:
+    """Return the curves of two body axes, and of each the shape, the order, and the attitudes at all phases.
+
+    `orders` are for bodies that encircle their greatest axis, and for those that encircle their least one.
+    """
+    shapes = table(*GRID)
+    kinds = np.arange(len(shapes.u)) % 2     # of the table: its last loop is over both
+    shape, labels, backs, attitudes = [], [], [], []
+    for kind, labelled in enumerate(orders):
+        here = np.flatnonzero(kinds == kind)
+        q = attitudes_of(shapes, here, slice(None))
+        for order in labelled:
+            back = relabelled(order, False)
+            attitudes.append(rotations.product(q, back))
+            shape.append(here)
+            labels.append(np.tile(order, (len(here), 1)))
+            backs.append(np.tile(back, (len(here), 1)))
+    q = np.concatenate(attitudes)
+    R = rotations.to_matrix(q)
+    axes = np.ascontiguousarray(np.stack([R[..., 0], R[..., 1]], axis=2))
+    return axes, np.concatenate(shape), np.concatenate(labels), np.concatenate(backs), q
+
+
+def bodies(light: Light, found: list[tuple[float, float, float]], orders: tuple[tuple[Order, ...], tuple[Order, ...]],
+           most: int) -> tuple[Array, Array, Array]:
+    """Return (moments, omega, attitude) in the middle of the times of bodies with these frequencies, the best first.
 
     `orders` has the ways to label the axes (a, b, c) of the table by body axes, for bodies that encircle their greatest
     axis and for those that encircle their least one.
     """
     shapes, spirals = table(*GRID), uniform_attitudes(ATTITUDES)
-    kinds = np.arange(len(shapes.u)) % 2     # of the table: its last loop is over both
-    curves, owners = [], []
-    for kind, labels in enumerate(orders):
-        here = np.flatnonzero(kinds == kind)
-        q = attitudes_of(shapes, here, slice(None))
-        for order in labels:
-            R = rotations.to_matrix(rotations.product(q, relabelled(order, False)))
-            curves.append(np.stack([R[..., 0], R[..., 1]], axis=2))
-            owners += [(int(k), order) for k in here]
-    shape = np.array([k for k, _ in owners])
+    axes, shape, labels, backs, attitudes = _curves(orders)
     zero = np.zeros(len(shape), dtype=int)
     which, nus, kappas = [], [], []
     for _, sigma, mu in found:
-        nu = 0.5 * mu
-        for kappa2 in [sign * sigma + k * nu for sign in (1, -1) for k in (-3, -1, 1, 3)]:
-            there = shapes.bodies(shape, zero, nu, np.full(len(shape), kappa2))[2]
+        for kappa2 in [sign * sigma + 0.5 * k * mu for sign in (1, -1) for k in (-3, -1, 1, 3)]:
+            there = shapes.bodies(shape, zero, 0.5 * mu, np.full(len(shape), kappa2))[2]
             which.append(there)
-            nus.append(np.full(len(there), nu))
+            nus.append(np.full(len(there), 0.5 * mu))
             kappas.append(np.full(len(there), kappa2))
     curve, nu, kappa2 = np.concatenate(which), np.concatenate(nus), np.concatenate(kappas)
-    cost, best = _core._match_quadratics(light.t, light.y, light.weight, np.ascontiguousarray(np.concatenate(curves)),
-                                         PHASES, list(curve), nu, kappa2, SHIFTS,
-                                         np.ascontiguousarray(_turned(light.function, spirals)), light.scale, light.offset)
-    chosen = np.argsort(cost, axis=None, kind="stable")[:most]
-    trial, shift = np.unravel_index(chosen, cost.shape)
-    phase, S = shift * (PHASES // (2 * SHIFTS)), spirals[best[trial, shift].astype(int)]
-    out: list[tuple[Array, Array, Array]] = []
-    for k in range(len(trial)):
-        one, order = owners[curve[trial[k]]]
-        back = relabelled(order, False)
-        moments, omega, _ = shapes.bodies(np.array([one]), phase[k : k + 1], float(nu[trial[k]]), kappa2[trial[k : k + 1]])
-        q = attitudes_of(shapes, np.array([one]), slice(None))[0, phase[k]]
-        out.append((moments[0, np.argsort(order)], rotations.rotate(rotations.conjugate(back), omega[0]),
-                    rotations.product(rotations.product(S[k], q), back)))
-    m, w, q = (np.array(part).reshape(-1, width) for part, width in zip(zip(*out, strict=True), (3, 3, 4), strict=True))
-    return m, w, q, cost.ravel()[chosen]
+    if not len(curve):
+        return np.zeros((0, 3)), np.zeros((0, 3)), np.zeros((0, 4))
+    few = slice(None, None, max(1, len(light.t) // THIN))
+    cost, best = _core._match_quadratics(
+        light.t[few], light.y[few], light.weight[few], axes, PHASES, list(curve), nu, kappa2, SHIFTS,
+        np.ascontiguousarray(_turned(light.function, spirals)), light.scale, light.offset)
+    trial, shift = np.unravel_index(np.argsort(cost, axis=None, kind="stable")[:most], cost.shape)
+    phase, one = shift * (PHASES // (2 * SHIFTS)), curve[trial]
+    S = spirals[best[trial, shift].astype(int)]
+    moments, omega, _ = shapes.bodies(shape[one], phase, nu[trial], kappa2[trial])
+    moments = np.take_along_axis(moments, np.argsort(labels[one], axis=1), axis=1)
+    return (moments, rotations.rotate(rotations.conjugate(backs[one]), omega),
+            rotations.product(S, attitudes[one, phase]))

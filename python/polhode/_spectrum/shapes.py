@@ -31,12 +31,13 @@ class Shapes:
     v: Array
     bend: Array
 
-    def bodies(self, which: Array, phase: Array, nu: float, kappa2: Array) -> tuple[Array, Array, Array]:
+    def bodies(self, which: Array, phase: Array, nu: float | Array, kappa2: Array) -> tuple[Array, Array, Array]:
         """Return (moments, omega, places in the arguments) of the bodies that exist, at phases of the curves.
 
-        `which`, `phase` and `kappa2` have one number a body; `phase` counts the table's phases.
+        `which`, `phase` and `kappa2` have one number a body, `nu` one for all or one a body. `phase` counts the table's
+        phases.
         """
-        g = (kappa2 - nu * self.bend[which])[:, None] + nu * np.stack(
+        g = (kappa2 - nu * self.bend[which])[:, None] + np.reshape(nu, (-1, 1)) * np.stack(
             [self.u[which], self.v[which], np.zeros(len(which))], axis=1)
         here = np.flatnonzero(np.abs(np.sign(g).sum(axis=1)) == 3)
         moments = 1 / np.abs(g[here])

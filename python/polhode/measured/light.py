@@ -27,6 +27,11 @@ class _Number(Measurement):
         """Return half of chi2, (...,), of attitudes (..., n, 4) at the samples."""
 
 
+    def rough(self) -> Measurement:
+        """Return the same samples of a cheaper model, for a search."""
+        return self
+
+
 class Scalar(_Number):
     """A number that depends on the attitude, as a light curve does: y of shape (n,).
 
@@ -164,6 +169,14 @@ class Brightness(_Number):
         """The semi-axes of an ellipsoid along the body axes; None for triangles."""
         return self.body.C**-0.5 if isinstance(self.body, photometry.Ellipsoid) else None
 
+    def rough(self) -> Measurement:
+        """Return the same samples of a cheaper model, for a search."""
+        other = self.taken(slice(None))
+        assert isinstance(other, Brightness)
+        if isinstance(self.body, photometry.Ellipsoid):
+            other.body = self.body.rough()
+        return other
+
     @property
     def nights(self) -> Nights:
         """The groups of samples with scales and offsets of their own."""
@@ -174,32 +187,35 @@ class Brightness(_Number):
         """The samples less the scales and offsets, never below 0 in a night."""
         return self.nights.independent
 
-    def _light(self, attitude: Array) -> tuple[Array, Array, Array]:
-        """Return the light and the directions in body axes."""
+    def _seen(self, attitude: Array) -> tuple[Array, Array]:
+        """Return the directions of the Sun and the observer in body axes."""
         back = rotations.to_matrix(attitude).swapaxes(-1, -2)
         sun, observer = ((back @ v[:, :, None])[..., 0] for v in (self.sun, self.observer))
-        return self.body.light(sun, observer), sun, observer
+        return sun, observer
+
+    def _light(self, attitude: Array) -> Array:
+        return self.body.light(*self._seen(attitude))
 
     def model(self, attitude: npt.ArrayLike) -> Array:
         """Return the light, (n,), of attitudes (n, 4) at the samples, with scale 1 and offset 0."""
         given = to_numbers(attitude, "attitude")
         if given.shape != (len(self), 4):
             raise InvalidInput(f"attitude: must be of shape {(len(self), 4)}, got {given.shape}")
-        return self._light(given)[0]
+        return self._light(given)
 
     def costs(self, attitude: Array) -> Array:
         """Return half of chi2, (...,), of attitudes (..., n, 4) at the samples."""
-        residual = self.nights.matched(self._light(attitude)[0])[2]
+        residual = self.nights.matched(self._light(attitude))[2]
         return np.asarray(0.5 * (residual * residual).sum(axis=-1))
 
     def residual(self, omega: Array, attitude: Array, own: Array) -> Array:
         """Return scale light + offset - y with the best scale and offset of each night."""
-        return np.asarray(self.nights.matched(self._light(attitude)[0])[2] / self.whitener[:, 0, 0])[:, None]
+        return np.asarray(self.nights.matched(self._light(attitude))[2] / self.whitener[:, 0, 0])[:, None]
 
     def rows(self, omega: Array, attitude: Array, d_omega: Array, d_attitude: Array, own: Array) -> Array:
         """Return the derivatives, those of the best scales and offsets included."""
-        light, sun, observer = self._light(attitude)
-        by_sun, by_observer = self.body.gradients(sun, observer)
+        sun, observer = self._seen(attitude)
+        light, by_sun, by_observer = self.body.gradients(sun, observer)
         gradient = rotations.rotate(attitude, np.cross(by_sun, sun) + np.cross(by_observer, observer))
         found = self.nights.rows(light, (gradient[:, None, :] @ d_attitude)[:, 0])
         return np.asarray(found / self.whitener[:, 0, 0, None])[:, None, :]

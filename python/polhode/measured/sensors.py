@@ -12,15 +12,15 @@ from .._core import InvalidInput
 from .._sensitivity import rotations
 from .base import Array, Measurement
 
-
 OFF_DIAGONAL = [(0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1)]
 
 
 class Rates(Measurement):
     """Angular velocity in body axes [rad/s], as a gyroscope measures it: y of shape (n, 3).
 
-    The model is y = (1 + E) omega + bias. In a throw of a body with three different moments Euler's equations fix E up to
-    nothing, in principle; what the data do not fix is named by `unobservable`. A time offset is not fitted.
+    The model is y = (1 + E) omega + bias. A tumbling body with three different moments shows all of E, since Euler's
+    equations hold for one scale and one set of axes alone. A steady rotation does not. What the data do not show is
+    named by `unobservable`. A time offset is not fitted.
 
     Parameters
     ----------
@@ -38,8 +38,9 @@ class Rates(Measurement):
                  scale: bool = False, misalignment: bool = False) -> None:
         super().__init__(t, y, sigma)
         self._offset, self._scale, self._misalignment = bool(bias), bool(scale), bool(misalignment)
-        self.own = (*("bias_x", "bias_y", "bias_z") if bias else (), *(("scale_x", "scale_y", "scale_z") if scale else ()),
-                     *(f"misalignment_{'xyz'[i]}{'xyz'[j]}" for i, j in (OFF_DIAGONAL if misalignment else ())))
+        self.own = ((("bias_x", "bias_y", "bias_z") if bias else ())
+                    + (("scale_x", "scale_y", "scale_z") if scale else ())
+                    + tuple(f"misalignment_{'xyz'[i]}{'xyz'[j]}" for i, j in (OFF_DIAGONAL if misalignment else ())))
 
     def _parts(self, own: Array) -> tuple[Array, Array]:
         """Return 1 + E and the bias."""
@@ -80,10 +81,10 @@ class Rates(Measurement):
 class Acceleration(Measurement):
     """Specific force of an accelerometer in free fall [m/s^2], body axes: y of shape (n, 3).
 
-    The model is y = alpha x r + omega x (omega x r), with the angular acceleration alpha of Euler's equations and the arm
-    r from the centre of mass. In free fall the acceleration of the centre of mass is that of gravity, so neither is seen.
-    With rates beside it, the arm and the moments are observed. The accelerometer alone does not tell a motion from one
-    that is turned, together with the arm, by half a turn about a principal axis.
+    The model is y = alpha x r + omega x (omega x r), with the angular acceleration alpha of Euler's equations and the
+    arm r from the centre of mass. In free fall the centre of mass accelerates as gravity does, so neither is seen. With
+    rates beside it, the arm and the moments are observed. Alone it does not tell a motion from one that is turned,
+    together with the arm, by half a turn about a principal axis.
 
     Parameters
     ----------
