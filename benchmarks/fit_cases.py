@@ -22,7 +22,8 @@ def attitudes(rng, count, turns):
     inertia, omega, q = random_body(rng)
     t = times(rng, count, turns)
     seen = ph.Rotation.from_quat(ph.FreeMotion(inertia, omega, q).at(t)[1])
-    return ph.measured.Attitudes(t, seen * ph.Rotation.from_rotvec(0.01 * rng.normal(size=(count, 3))), 0.01), inertia, omega, q
+    noise = ph.Rotation.from_rotvec(0.01 * rng.normal(size=(count, 3)))
+    return ph.measured.Attitudes(t, seen * noise, 0.01), inertia, omega, q
 
 
 def axis(rng, count, turns):
@@ -79,3 +80,10 @@ def minimum_of(data, inertia, omega, q):
     """The fit that starts at the truth: the minimum that a search should find."""
     scene = ph.Scene(inertia=tuple(inertia), omega=tuple(omega), attitude=q, times=data.t)
     return ph.fit(data, scene, start="scene")
+
+
+def problem_of(data, scene):
+    """The residuals and derivatives of a fit from a scene, for SciPy's least_squares; no step is made."""
+    from polhode._sensitivity.fit import _set_up
+
+    return _set_up([data], ("omega", "attitude", "inertia"), scene, False)[2]

@@ -138,3 +138,11 @@ def _same(one: State, other: State) -> bool:
     size = max(float(np.linalg.norm(one.omega)), 1e-300)
     a, b = one.moments / one.moments.max(), other.moments / other.moments.max()
     return bool(np.abs(one.omega - other.omega).max() <= 1e-3 * size and np.abs(a - b).max() <= 1e-3)
+
+
+def in_one_valley(one: State, other: State, span: float) -> bool:
+    """Return whether two bodies have the same frequencies over a span, and nearly the same moments."""
+    a, b = one.moments / one.moments.max(), other.moments / other.moments.max()
+    if np.abs(a - b).max() > 0.05:
+        return False
+    return bool(np.abs(np.array(rates_of(one)) - rates_of(other)).max() * span < 1)

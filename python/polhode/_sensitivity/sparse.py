@@ -9,7 +9,7 @@ import numpy as np
 from .._spectrum import attitudes, axis, direction, rates
 from ..measured import Attitudes, Axis, Direction, Measurement, Rates
 from . import robust
-from .candidates import WITHIN, Pool, lattice
+from .candidates import WITHIN, Pool, in_one_valley, lattice
 from .least_squares import minimise
 from .problem import Problem, State, ratios_of
 from .rotations import Array
@@ -68,7 +68,10 @@ def _fit(problem: Problem, state: State, moments: Array, omega: Array, pool: Poo
         start = State(attitude[k], omega[k], ratios_of(moments[k]), state.axes, state.bias)
         tried.append(minimise(problem, start, loss=loss, scale=scale, most=SHORT, tolerance=1e-2))
     least = min(one.cost for one in tried)
-    for one in tried:
+    span = float(np.ptp(problem.t))
+    for one in sorted(tried, key=lambda one: one.cost):
+        if any(in_one_valley(one.state, other.state, span) for other in pool.found if pool.fits):
+            continue
         if one.cost <= NEAR * max(least, 0.5 * pool.limit) and one.cost < max(30 * pool.limit, 0.02 * usual):
             pool.add(minimise(problem, one.state, loss=loss, scale=scale, most=300))
 

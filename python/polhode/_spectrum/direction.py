@@ -15,14 +15,14 @@ from collections.abc import Iterator
 from functools import partial
 
 import numpy as np
-import numpy.typing as npt
 
 from .._sensitivity import rotations
 from ..measured import Direction
 from .attitudes import HARMONICS
-from .curve import PHASES, carried, orders
+from .curve import carried, orders
 from .scan import BLOCK, Array, grid, peaks, periodogram, project, refine
-from .shapes import attitudes_of, relabelled, table, variants
+from .shapes import Shapes, attitudes_of, relabelled, table, variants
+from .zoom import Complex, Sums, series_of, zoom
 
 NUTATIONS = 4      # maxima of each kind that are followed
 ALONG = 0.85       # of the median of what is left by harmonics: other minima are none
@@ -30,30 +30,31 @@ BESIDE = 0.7       # the same beside a line
 EACH = 2           # maxima beside each line
 HIGHEST = 2        # lines of each component
 GRID = (10, 6)     # angles and moduli of the shapes
-TOP = 8            # harmonics of the table's curves
-BODIES = 24        # of a nutation
+CELLS = 6          # of the table that are looked into
 
 
 Owner = tuple[int, tuple[int, ...], Array]
 
 
-@functools.cache
-def _series(c: int) -> tuple[list[Owner], npt.NDArray[np.complex128]]:
-    """Return (shape, order, rotation to the table's axes) of bodies that encircle axis c, and their Fourier series.
+def _rows(shapes: Shapes, back: Array) -> tuple[Complex, Complex]:
+    """Return the series of the body axes across the momentum, x + i y, and along it, (bodies, 2 TOP + 1, 3) each."""
+    R = rotations.to_matrix(rotations.product(attitudes_of(shapes, slice(None), slice(None)), back))
+    return series_of(R[:, :, 0] + 1j * R[:, :, 1]), series_of(R[:, :, 2])
 
-    The series are those of the body axes in the frame of the momentum, (bodies, 2 TOP + 1, 3 of space, 3 of the body).
-    """
+
+@functools.cache
+def _series(c: int) -> tuple[list[Owner], Complex, Complex]:
+    """Return (shape, order, rotation to the table's axes) of bodies that encircle axis c, and their series."""
     shapes = table(*GRID)
-    q = attitudes_of(shapes, slice(None), slice(None))
-    owners, series = [], []
+    owners: list[Owner] = []
+    rows = []
     for order, flip in variants():
-        if order[2] != c:
-            continue
-        back = relabelled(order, flip)
-        R = rotations.to_matrix(rotations.product(q, back))
-        series.append(np.fft.fft(R, axis=1)[:, np.arange(-TOP, TOP + 1)] / PHASES)
-        owners += [(k, order, back) for k in range(len(q))]
-    return owners, np.concatenate(series)
+        if order[2] == c:
+            back = relabelled(order, flip)
+            rows.append(_rows(shapes, back))
+            owners += [(k, order, back) for k in range(len(shapes.u))]
+    across, along = (np.concatenate(part) for part in zip(*rows, strict=True))
+    return owners, across, along
 
 
 def _from_harmonics(t: Array, X: Array, weight: Array, trials: Array, top: int) -> list[tuple[float, float, int]]:
@@ -131,47 +132,34 @@ def candidates(data: Direction, low: float, fastest: float, top: int) -> Iterato
                 yield square - taken, moments, carried(moments, omega, -middle)
 
 
+def _join(across: Array, along: Array) -> Array:
+    """Return the square of the length of the sum, which the best vector has."""
+    return np.asarray(across**2 + along**2)
+
+
 def _bodies(t: Array, weight: Array, X: Array, nu: float, c: int, near: Array) -> tuple[Array, Array]:
     """Return (moments, omega) at the phase 0 of the bodies with the largest sums."""
-    owners, series = _series(c)
-    shapes, harmonics = table(*GRID), np.arange(-TOP, TOP + 1)
-    u = weight[:, None] * X
+    owners, across, along = _series(c)
+    shapes, u = table(*GRID), weight[:, None] * X
+    sums = Sums(t, u, u, _join)
     kappas = np.unique(np.round((near[:, None] + nu * np.arange(-3, 4)).ravel(), 12))
-
-    def sums(f: Array) -> Array:
-        """Sum of exp(i f t) u, (f, 3)."""
-        return np.asarray(np.exp(1j * np.outer(f, t)) @ u)
-
-    # the part along: sum over samples of m(phase) u; a series in the phase of the table at the middle of the times
-    along = _over_phases(np.einsum("bhj,hj->bh", series[:, :, 2], sums(nu * harmonics))).real ** 2
-    # the part across, x + i y of the momentum's frame, turned by exp(i 2 kappa t)
-    turned = series[:, :, 0] + 1j * series[:, :, 1]
     shape, zero = np.array([k for k, _, _ in owners]), np.zeros(len(owners), dtype=int)
-    found: list[tuple[float, int, int, float]] = []
+    found: list[tuple[float, int, float]] = []
     for kappa2 in kappas:
         there = shapes.bodies(shape, zero, nu, np.full(len(shape), kappa2))[2]
-        across = np.einsum("bhj,hj->bh", turned[there], sums(kappa2 + nu * harmonics))
-        power = np.abs(_over_phases(across)) ** 2 + along[there]
-        phases = power.argmax(axis=1)
-        best = power[np.arange(len(there)), phases]
-        found += [(float(best[k]), int(there[k]), int(phases[k]), float(kappa2)) for k in np.argsort(-best)[:BODIES]]
+        best = sums.met(across[there], along[there], nu, float(kappa2)).max(axis=1, initial=0.0)
+        found += [(float(best[k]), int(there[k]), float(kappa2)) for k in np.argsort(-best)[:CELLS]]
     moments, omega = [np.zeros((0, 3))], [np.zeros((0, 3))]
     seen: list[tuple[int, float]] = []
-    for _, b, phase, kappa2 in sorted(found, reverse=True):
-        if len(seen) == BODIES:
+    for _, b, kappa2 in sorted(found, reverse=True):
+        if len(seen) == CELLS:
             break
         if any(b == other and abs(kappa2 - near_by) * np.ptp(t) < 1 for other, near_by in seen):
             continue
         seen.append((b, kappa2))
         which, order, back = owners[b]
-        inertia, rate, _ = shapes.bodies(np.array([which]), np.array([phase]), nu, np.array([kappa2]))
+        finer, best_one, phase, kappa2 = zoom(sums, partial(_rows, back=back), nu, kappa2, which, GRID)
+        inertia, rate, _ = finer.bodies(np.array([best_one]), np.array([phase]), nu, np.array([kappa2]))
         moments.append(inertia[:, np.argsort(order)])
         omega.append(rotations.rotate(rotations.conjugate(back), rate))
     return np.concatenate(moments), np.concatenate(omega)
-
-
-def _over_phases(rows: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
-    """Return the values at all phases of series of the harmonics from -TOP to TOP, (..., 2 TOP + 1)."""
-    whole = np.zeros((*rows.shape[:-1], PHASES), dtype=complex)
-    whole[..., np.arange(-TOP, TOP + 1) % PHASES] = rows
-    return np.asarray(np.fft.ifft(whole, axis=-1) * PHASES)
