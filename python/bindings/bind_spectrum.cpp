@@ -55,14 +55,14 @@ Array periodogram(const Array& t, const Array& z, std::size_t count, const GridO
 py::tuple match_quadratics(const Array& t, const Array& y, const Array& weight, const Array& curves,
                            std::size_t phases, const std::vector<std::size_t>& which, const Array& f, const Array& g,
                            std::size_t shifts, const Array& functions, bool scale, bool offset) {
-  std::vector<spectrum::Turning> turnings;
-  for (std::size_t k = 0; k < which.size(); ++k) turnings.push_back({which[k], f.data()[k], g.data()[k]});
+  std::vector<spectrum::Trial> trials;
+  for (std::size_t k = 0; k < which.size(); ++k) trials.push_back({which[k], f.data()[k], g.data()[k]});
   const std::array<py::ssize_t, 2> shape{static_cast<py::ssize_t>(which.size()), static_cast<py::ssize_t>(shifts)};
   Array cost(shape), found(shape);
   double *const cost_data = cost.mutable_data(), *const found_data = found.mutable_data();
   {
     const WithoutGil nogil;
-    spectrum::match_quadratics({to_span(t), to_span(y), to_span(weight), 1}, {to_span(curves), phases}, turnings, shifts,
+    spectrum::match_quadratics({to_span(t), to_span(y), to_span(weight), 1}, {to_span(curves), phases}, trials, shifts,
                                to_span(functions), {scale, offset}, cost_data, found_data);
   }
   return py::make_tuple(cost, found);

@@ -56,15 +56,15 @@ class Match {
     form_.resize(functions.count()), met_.resize(functions.count());
   }
 
-  void turn(const Turning& turning) {
-    curve_ = &curves_.axes[turning.curve * curves_.phases * 6];
+  void begin(const Trial& trial) {
+    curve_ = &curves_.axes[trial.curve * curves_.phases * 6];
     const double count = static_cast<double>(curves_.phases);
     for (std::size_t k = 0; k < series_.t.size(); ++k) {
-      const double phase = turning.f * series_.t[k] * (count / (2.0 * std::numbers::pi));
+      const double phase = trial.f * series_.t[k] * (count / (2.0 * std::numbers::pi));
       const double place = phase - count * std::floor(phase / count);
       first_[k] = std::min(static_cast<std::size_t>(place), curves_.phases - 1);
       part_[k] = place - static_cast<double>(first_[k]);
-      const math::SinCosPair angle = math::sincos(turning.g * series_.t[k]);
+      const math::SinCosPair angle = math::sincos(trial.g * series_.t[k]);
       cos_[k] = angle.cos, sin_[k] = angle.sin;
     }
   }
@@ -153,7 +153,7 @@ void require(bool good, const char* what, const char* requirement, std::size_t f
 
 }  // namespace
 
-void match_quadratics(const Series& series, const Curves& curves, std::span<const Turning> turnings, std::size_t shifts,
+void match_quadratics(const Series& series, const Curves& curves, std::span<const Trial> trials, std::size_t shifts,
                       std::span<const double> functions, const Calibration& calibration, double* cost, double* which,
                       int threads) {
   const std::size_t n = series.t.size(), each = 6 * curves.phases;
@@ -162,14 +162,14 @@ void match_quadratics(const Series& series, const Curves& curves, std::span<cons
   require(each > 0 && curves.axes.size() % each == 0, "curves", "two vectors at each phase", curves.axes.size());
   require(!functions.empty() && functions.size() % columns == 0, "functions", "of shape (n, 11)", functions.size());
   require(shifts > 0 && curves.phases % (2 * shifts) == 0, "shifts", "a divisor of half of the phases", shifts);
-  for (const Turning& turning : turnings)
-    require(turning.curve < curves.axes.size() / each, "turnings", "of curves that exist", turning.curve);
+  for (const Trial& trial : trials)
+    require(trial.curve < curves.axes.size() / each, "trials", "of curves that exist", trial.curve);
   const Functions all(functions);
-  parallel_for(turnings.size(), thread_count(threads, turnings.size(), 32), 8, [&](std::size_t begin, std::size_t end) {
+  parallel_for(trials.size(), thread_count(threads, trials.size(), 32), 8, [&](std::size_t begin, std::size_t end) {
     Match match(series, curves, all, calibration);
     for (std::size_t k = begin; k < end; ++k) {
       check_interrupt();
-      match.turn(turnings[k]);
+      match.begin(trials[k]);
       for (std::size_t s = 0; s < shifts; ++s)
         match.find(s * (curves.phases / (2 * shifts)), cost[k * shifts + s], which[k * shifts + s]);
     }

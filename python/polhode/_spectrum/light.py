@@ -24,7 +24,7 @@ from .shapes import attitudes_of, relabelled, table
 HIGHEST = 6        # lines that are tried
 EACH = 3           # maxima of a scan
 PAIRS = 16         # of frequencies that are followed
-SLOWEST = 2.0      # over the span: slower lines are not told apart
+SLOWEST = 2.0      # over the span: slower lines are not separated
 ABOVE = 1.3        # the highest line: beyond it are no frequencies
 APART = 1.0        # over the span: pairs nearer than that are one
 GRID = (8, 5)      # angles and moduli of the shapes
@@ -71,7 +71,7 @@ def quadratic(fun: Callable[[Array], Array]) -> tuple[Array, float]:
     return found, left
 
 
-def _turned(function: Array, attitudes: Array) -> Array:
+def _rotated(function: Array, attitudes: Array) -> Array:
     """Return the function for each attitude of the momentum's frame, (n, 11)."""
     S = rotations.to_matrix(attitudes)
     out = np.empty((len(S), 11))
@@ -224,7 +224,7 @@ def bodies(light: Light, found: list[tuple[float, float, float]], orders: tuple[
     few = slice(None, None, max(1, len(light.t) // THIN))
     cost, best = _core._match_quadratics(
         light.t[few], light.y[few], light.weight[few], axes, PHASES, list(curve), nu, kappa2, SHIFTS,
-        np.ascontiguousarray(_turned(light.function, spirals)), light.scale, light.offset)
+        np.ascontiguousarray(_rotated(light.function, spirals)), light.scale, light.offset)
     trial, shift = np.unravel_index(np.argsort(cost, axis=None, kind="stable")[:most], cost.shape)
     phase, one = shift * (PHASES // (2 * SHIFTS)), curve[trial]
     S = spirals[best[trial, shift].astype(int)]

@@ -13,8 +13,9 @@ struct Curves {
   std::size_t phases = 64;
 };
 
-/// The two vectors of a curve: the phase advances with the frequency f, and they turn about the third axis with g [rad/s].
-struct Turning {
+/// The two vectors of a curve: the phase advances with the frequency f, and they rotate about the third axis with g
+/// [rad/s].
+struct Trial {
   std::size_t curve = 0;
   double f = 0.0, g = 0.0;
 };
@@ -34,11 +35,11 @@ struct Calibration {
 /// @param series     one series; y times the weight
 /// @param shifts     the curves are tried from so many even phases of their first half
 /// @param functions  (count, 11)
-/// @param cost       (turnings, shifts): the sum of squares that is left
-/// @param which      (turnings, shifts): the function that leaves it
+/// @param cost       (trials, shifts): the sum of squares that is left
+/// @param which      (trials, shifts): the function that leaves it
 /// @param threads    at most; 0: as many as the machine has. The numbers do not depend on it
 /// @throws InvalidInput unless the sizes agree
-void match_quadratics(const Series& series, const Curves& curves, std::span<const Turning> turnings, std::size_t shifts,
+void match_quadratics(const Series& series, const Curves& curves, std::span<const Trial> trials, std::size_t shifts,
                       std::span<const double> functions, const Calibration& calibration, double* cost, double* which,
                       int threads = 0);
 
