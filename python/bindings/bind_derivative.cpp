@@ -53,13 +53,11 @@ FoundSensitivity sensitivity_of(const Scene& scene, const std::vector<std::strin
 }
 
 /// Of many bodies, in the rows of arrays of (bodies, ...); rows of a failed body are NaN.
-py::dict sensitivities_of(const py::list& scenes, const py::object& moments, const py::object& omega,
-                          const py::object& attitude, std::size_t bodies, std::size_t times,
+py::dict sensitivities_of(const ManyScenes& many, std::size_t bodies, std::size_t times,
                           const std::vector<std::string>& groups, double accuracy, bool certify,
                           const std::string& side, long max_steps, int threads, bool refuse) {
   const SensitivityOptions options{
       .accuracy = accuracy, .certify = certify, .side = to_rotation_side(side), .max_steps = max_steps};
-  const ManyScenes many(scenes, moments, omega, attitude);
   const MakeScene make_scene = many.maker();
   std::vector<ManySensitivity> all;
   {
@@ -128,9 +126,9 @@ void bind_solve_sensitivity(py::module_& m) {
   m.def("sensitivity", &sensitivity_of, py::arg("scene"), py::arg("groups"), py::arg("accuracy"), py::arg("certify"),
         py::arg("side"), py::arg("max_steps"),
         "The motion of a scene and its derivatives.");
-  m.def("_sensitivities", &sensitivities_of, py::arg("scenes"), py::arg("moments"), py::arg("omega"),
-        py::arg("attitude"), py::arg("bodies"), py::arg("times"), py::arg("groups"), py::arg("accuracy"),
-        py::arg("certify"), py::arg("side"), py::arg("max_steps"), py::arg("threads"), py::arg("refuse"));
+  m.def("_sensitivities", &sensitivities_of, py::arg("many"), py::arg("bodies"), py::arg("times"), py::arg("groups"),
+        py::arg("accuracy"), py::arg("certify"), py::arg("side"), py::arg("max_steps"), py::arg("threads"),
+        py::arg("refuse"));
 }
 
 }  // namespace polhode::python
