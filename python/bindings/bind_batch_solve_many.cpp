@@ -12,7 +12,8 @@ namespace {
 
 py::dict solve_batch(const py::list& scenes, const py::object& moments, const py::object& omega,
                      const py::object& attitude, std::size_t bodies, std::size_t times, const py::object& omega_out,
-                     const py::object& attitude_out, const py::dict& given, int threads, bool refuse) {
+                     const py::object& attitude_out, const py::dict& given, int threads, bool refuse,
+                     const std::vector<std::uint64_t>& numbers) {
   const SolveOptions options = to_solve_options(given);
 
   const ManyScenes many(scenes, moments, omega, attitude);
@@ -24,7 +25,7 @@ py::dict solve_batch(const py::list& scenes, const py::object& moments, const py
   std::vector<ManyResult> results;
   {
     const WithoutGil nogil;
-    results = solve_many(bodies, times, make_scene, options, out_w, out_q, threads, refuse);
+    results = solve_many(bodies, times, make_scene, options, out_w, out_q, threads, refuse, numbers);
   }
   py::list status, message, methods;
   const auto n = static_cast<py::ssize_t>(bodies);
@@ -61,7 +62,7 @@ py::dict solve_batch(const py::list& scenes, const py::object& moments, const py
 void bind_batch_solve_many(py::module_& m) {
   m.def("_solve_many", &solve_batch, py::arg("scenes"), py::arg("moments"), py::arg("omega"), py::arg("attitude"),
         py::arg("bodies"), py::arg("times"), py::arg("omega_out"), py::arg("attitude_out"), py::arg("options"),
-        py::arg("threads"), py::arg("refuse"));
+        py::arg("threads"), py::arg("refuse"), py::arg("numbers") = std::vector<std::uint64_t>());
 }
 
 }  // namespace polhode::python

@@ -30,7 +30,7 @@ class ManyScenes {
       if (moments_.size() != 0) inertia = InertiaTensor::from_moments({moment[0], moment[1], moment[2]});
       return Scene(SceneParts{inertia, {a[0], a[1], a[2]}, {b[0], b[1], b[2], b[3]}, common.given_torques(),
                               common.times(), common.want(), common.t0(), "", common.given_rotors(), common.given_damper(), common.changing(),
-                              common.momentum(), common.leaving()});
+                              common.momentum(), common.leaving(), common.given_controllers()});
     };
   }
 

@@ -14,11 +14,11 @@ from .. import _core, _export
 from .._attitude.arrays import require_bool, require_text, to_items
 from .._keywords import checked
 from .._scene.plain import to_plain
-from .._scene.scene import Scene, refuse_controllers
+from .._scene.scene import Scene
 from .._sensitivity.driven import check_groups, split_states
 from .._sensitivity.sensitivity import Sensitivity
 from .._solve.motion import Floats
-from .._solve.solve import check_max_steps
+from .._solve.solve import check_max_steps, to_body
 from .broadcast import WIDTHS, check_errors, check_threads, to_attitudes, to_rows
 
 
@@ -123,6 +123,15 @@ def _rows(value: Any, width: int, name: str) -> Floats:
     return array
 
 
+def _numbers(numbers: Iterable[int] | None, bodies: int) -> list[int]:
+    if numbers is None:
+        return []
+    found = [to_body(number) for number in to_items(numbers, "numbers", "whole numbers")]
+    if len(found) != bodies:
+        raise _core.InvalidInput(f"numbers: must be one for each body, {bodies}, got {len(found)}")
+    return found
+
+
 @checked
 def solve_many(
     scenes: Scene | Iterable[Scene],
@@ -141,6 +150,7 @@ def solve_many(
     errors: str = "raise",
     sensitivity: str | Sequence[str] | None = None,
     side: str = "space",
+    numbers: Iterable[int] | None = None,
 ) -> Motions:
     """Solve many scenes, or one scene from many starts.
 
@@ -170,6 +180,8 @@ def solve_many(
     sensitivity, side
         As in `solve`, for each body: what the motions are differentiated by, for `Motions.sensitivity`. Scenes with
         `accuracy`, or 1e-9, and all times; without `rtol`, `atol` and `step`.
+    numbers : iterable of int, optional
+        The numbers of the bodies, which decide what their controllers draw; 0, 1, 2 and so on if left out.
 
     Returns
     -------
@@ -208,8 +220,12 @@ def solve_many(
                 raise _core.InvalidInput(f"scenes[{i}]: must be a polhode.Scene, got {type(scene).__name__}")
             if scene.times.size != listed[0].times.size or scene.want != listed[0].want:
                 raise _core.InvalidInput(f"scenes[{i}]: must have as many times as scenes[0] and the same want")
-    for scene in listed:
-        refuse_controllers(scene, "solve_many")
+    for i, scene in enumerate(listed):
+        for k, controller in enumerate(scene.controllers):
+            if controller.function is not None:
+                raise _core.InvalidInput(f"scenes[{i}].controllers[{k}]: must be traced among many bodies, got "
+                                         "trace=False; Python would be called at each tick of each body")
+    own = _numbers(numbers, bodies)
     require_text(method, "method")
     groups = None if sensitivity is None else check_groups(sensitivity, side)
     for name, number in (("rtol", rtol), ("atol", atol), ("step", step)):
@@ -223,14 +239,15 @@ def solve_many(
     options = {"accuracy": accuracy, "method": method, "rtol": rtol, "atol": atol, "step": step,
                "max_steps": check_max_steps(max_steps), "leave_out": require_bool(leave_out, "leave_out")}
     found = _core._solve_many(listed, *starts, bodies, times, out["omega"], out["attitude"], options, workers,
-                               refuse)
+                               refuse, own)
     given |= {name: value for name, value in options.items()
               if value is not None and value != 10_000_000 and value is not True}
     given |= {} if refuse else {"errors": "nan"}
+    given |= {"numbers": own} if own else {}
     derivatives = None
     if groups and bodies:
         made = _core._sensitivities(listed, *starts, bodies, times, groups, 1e-9 if accuracy is None else accuracy,
-                                    True, side, check_max_steps(max_steps), workers, refuse)
+                                    True, side, check_max_steps(max_steps), workers, refuse, own)
         found["message"] = tuple(f"{message}; no derivatives: {failure}" if failure else message
                                  for message, failure in zip(found["message"], made["failures"], strict=True))
         d_states = split_states(listed[0], made["d_states"])

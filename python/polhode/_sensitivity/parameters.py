@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core, torques
+from .._clock.controller import Controller
 from .._core import InvalidInput, Rotor
 from .._scene.scene import Scene
 from .._scene.write import list_keywords
@@ -24,12 +25,14 @@ def _key(torque: Any) -> str:
 
 
 def _read(holder: Any, field: str) -> Any:
-    """The number of a torque or a rotor, or None."""
+    """The number of a torque, a rotor or a controller, or None."""
+    if isinstance(holder, Controller):
+        return {**holder.parameters, **holder.states}.get(field)
     return holder.parameters.get(field) if isinstance(holder, torques.Formula) else getattr(holder, field, None)
 
 
 def find(scene: Scene, group: str) -> tuple[str, int, str]:
-    """Return ('torques', 'rotors' or 'states', number, field) of a name such as 'torques.0.weight'."""
+    """Return ('torques', 'rotors', 'controllers' or 'states', number, field) of a name such as 'torques.0.weight'."""
     parts = group.split(".")
     if len(parts) == 2 and parts[0] == "states":
         owners = [k for k, torque in enumerate(scene.torques) if parts[1] in getattr(torque, "states", ())]
@@ -37,7 +40,7 @@ def find(scene: Scene, group: str) -> tuple[str, int, str]:
             raise InvalidInput(f"fit: must be a state of the scene's formulas, {', '.join(scene.states) or 'none'}, "
                                f"got {group!r}")
         return "states", owners[0], parts[1]
-    kinds = {"torques": scene.torques, "rotors": scene.rotors}
+    kinds = {"torques": scene.torques, "rotors": scene.rotors, "controllers": scene.controllers}
     if len(parts) == 3 and parts[0] in kinds and parts[1].isdigit() and int(parts[1]) < len(kinds[parts[0]]):
         what, index, field = parts[0], int(parts[1]), parts[2]
     else:
@@ -52,6 +55,11 @@ def find(scene: Scene, group: str) -> tuple[str, int, str]:
         index, field = among[0], parts[1]
     holder = _inner(kinds[what][index])
     value = _read(holder, field)
+    if what == "controllers":
+        if value is None:
+            raise InvalidInput(f"fit: must be a parameter or the start of a state of the controller, which has "
+                               f"{', '.join((*holder.parameters, *holder.states)) or 'none'}, got {group!r}")
+        return what, index, field
     if isinstance(holder, torques.Formula) and value is None:
         raise InvalidInput(f"fit: must be numbers of Formula, which has {', '.join(holder.parameters) or 'none'}, "
                            f"got {group!r}")
@@ -90,6 +98,11 @@ def put(scene: Scene, group: str, value: Array) -> Scene:
     holder = _inner(items[index])
     shape = np.shape(_read(holder, field))
     new: Any = value.reshape(shape) if shape else float(value[0])
+    if what == "controllers":
+        table = "parameters" if field in holder.parameters else "states"
+        return scene.replace(controllers=[
+            one.replace(**{table: {**getattr(one, table), field: new}}) if k == index else one
+            for k, one in enumerate(items)])
     if what == "rotors":
         made: Any = Rotor(**{**list_keywords(holder), field: new})
     else:

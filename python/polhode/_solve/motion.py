@@ -235,6 +235,8 @@ class Motion:
         missed = int(np.sum(~(error <= self.asked)))
         if not missed:
             return ""
+        if self.sensitivity.uncertain:
+            return f"the sensitivity is not certain: {self.sensitivity.uncertain}"
         worst = int(np.argmax(np.nan_to_num(error, nan=np.inf)))
         return (f"the sensitivity misses the accuracy of {self.asked:.3g} in {missed} of {len(error)} columns; the "
                 f"largest error is {error[worst]:.2g}, of {self.sensitivity.columns[worst]}")
@@ -285,7 +287,7 @@ class Motion:
         *parts : str
             The parts to draw; six or four that suit the scene if none is given. "polhode" (Poinsot's ellipsoid),
             "herpolhode", "momentum" (the sphere of the angular momentum in body axes), "axis" (path of body z in
-            space), "rates", "attitude", "angles" (z-x-z), "energy" and "invariants" (their drift). If the samples are
+            space), "rates", "attitude", "angles" (z-x-z), "energy" and "invariants" (their drift), "commands" (of controllers). If the samples are
             too far apart for a line, curves use dense output, or a second solution of the scene.
         ax : matplotlib Axes, optional
             Where to draw a single part.
