@@ -17,9 +17,9 @@ using Of = SceneParameter::Of;
 namespace {
 
 constexpr std::size_t body_numbers = 7;
-constexpr double largest = 0x1p200, least = 0x1p-200;   ///< of columns that are not scaled
+constexpr double largest_column = 0x1p200, least_column = 0x1p-200;   ///< that are not scaled
 
-[[noreturn]] void refuse(const std::string& column, const std::string& cause) {
+[[noreturn]] void refuse_column(const std::string& column, const std::string& cause) {
   throw InvalidInput("sensitivity", "without '" + column + "' beside these controllers", "it", cause);
 }
 
@@ -27,23 +27,25 @@ constexpr double largest = 0x1p200, least = 0x1p-200;   ///< of columns that are
 void require_carried(const Scene& scene, const std::vector<SceneParameter>& parameters) {
   const auto& controllers = scene.controllers();
   const auto& rotors = scene.rotors();
-  const bool measured = std::any_of(controllers.begin(), controllers.end(), [](const Controller& one) { return one.parts().rotors > 0; });
-  const bool kicks = std::any_of(controllers.begin(), controllers.end(), [](const Controller& one) {
-    return one.parts().output == Output::rotor_momentum;
-  });
-  const bool kept = std::any_of(rotors.begin(), rotors.end(), [](const Rotor& one) { return one.free() && !one.is_driven(); });
+  const bool measured = std::ranges::any_of(controllers, [](const Controller& one) { return one.parts().rotors > 0; });
+  const bool kicks = std::ranges::any_of(
+      controllers, [](const Controller& one) { return one.parts().output == Output::rotor_momentum; });
+  const bool kept = std::ranges::any_of(rotors, [](const Rotor& one) { return one.free() && !one.is_driven(); });
   for (const SceneParameter& parameter : parameters) {
     const bool of_body = parameter.of == Of::inertia || parameter.of == Of::axes;
-    if (of_body && kicks) refuse(parameter.column, "a command of rotor_momentum changes omega by the inverse of the inertia");
-    if (of_body && !scene.held_windows().empty()) refuse(parameter.column, "a torque in windows has its inertia as a number");
+    if (of_body && kicks)
+      refuse_column(parameter.column, "a command of rotor_momentum changes omega by the inverse of the inertia");
+    if (of_body && !scene.held_windows().empty())
+      refuse_column(parameter.column, "a torque in windows has its inertia as a number");
     if (parameter.of == Of::rotor && measured)
-      refuse(parameter.column, "a controller measures the speeds of rotors, of which it is a part");
+      refuse_column(parameter.column, "a controller measures the speeds of rotors, of which it is a part");
     if (parameter.of == Of::omega && measured && kept)
-      refuse(parameter.column, "a controller measures the speed of a free rotor that nothing drives, whose momentum it changes");
+      refuse_column(parameter.column, "a controller measures the speed of a free rotor that nothing drives");
   }
 }
 
-std::vector<Carrying> list_carrying(const Scene& scene, const std::vector<SceneParameter>& parameters, double accuracy) {
+std::vector<Carrying> list_carrying(const Scene& scene, const std::vector<SceneParameter>& parameters,
+                                    double accuracy) {
   std::vector<Carrying> all(scene.controllers().size(), Carrying{Carry::columns, parameters.size(), {}, {}, accuracy});
   for (std::size_t c = 0; c < parameters.size(); ++c) {
     const SceneParameter& parameter = parameters[c];
@@ -96,11 +98,11 @@ class Instant {
 int find_scale(const std::vector<double>& columns) {
   double size = 0.0;
   for (const double number : columns) size = std::max(size, std::abs(number));
-  if (!(size > 0.0) || (size < largest && size > least) || !std::isfinite(size)) return 0;
+  if (!(size > 0.0) || (size < largest_column && size > least_column) || !std::isfinite(size)) return 0;
   return std::ilogb(size);
 }
 
-std::string describe(const Clock& clock) {
+std::string describe_uncertain(const Clock& clock) {
   for (std::size_t i = 0; i < clock.channels().size(); ++i)
     if (const auto& tick = clock.channels()[i]->uncertain())
       return "a branch of controller " + std::to_string(i) + " is not certain at tick " + std::to_string(*tick) +
@@ -174,7 +176,7 @@ void ColumnRun::follow_clock(const Piece& piece, const std::vector<std::size_t>&
     }
     act(stop);
   }
-  out.uncertain = describe(clock);
+  out.uncertain = describe_uncertain(clock);
 }
 
 }  // namespace polhode

@@ -21,7 +21,8 @@ void require_free_name(const SceneParts& parts, const std::string& name) {
 torques::Formula make_held_window(const torques::During& during, const std::string& state, const SceneParts& parts,
                                   const std::string& where) {
   if (std::holds_alternative<torques::Custom>(during.torque()))
-    throw InvalidInput(where, "no Custom torque beside controllers", "one", "it has no Taylor series; write it as a Formula");
+    throw InvalidInput(where, "no Custom torque beside controllers", "one",
+                       "it has no Taylor series; write it as a Formula");
   formula::Program law = make_law(to_any(during.torque()), parts.inertia_B.matrix());
   if (!law.states.empty())
     throw InvalidInput(where, "without windows beside controllers, as a formula with states is", "windows",

@@ -143,7 +143,8 @@ def _width(path: Path, data: dict[str, Any]) -> int:
         kinds_of = {parameter["name"]: parameter["kind"] for record in torques.records() if record["key"] == kind
                     for parameter in record["parameters"]}
         return 3 if key == "diagonal" or kinds_of.get(key) == "vector" else 0
-    if table in ("torques", "controllers") and {"parameters", "states"} & set(path):   # of a formula: as many as its own lists have
+    # Of a formula: as many as its own lists have.
+    if table in ("torques", "controllers") and {"parameters", "states"} & set(path):
         drawn = get(data, path)
         lists = [value for entry in drawn.values() if isinstance(entry, list) for value in entry]
         return 3 if "sphere" in drawn else max((len(value) for value in lists if isinstance(value, list)), default=0)

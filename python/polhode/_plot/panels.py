@@ -281,14 +281,15 @@ def _commands(axes: Any, drawing: Drawing) -> None:
         if controller.width is not None:
             ends = np.minimum(begins + controller.width, ends)
         seen = begins <= end
-        t = np.stack([begins, ends, ends], axis=1)[seen].ravel()
+        t = np.stack([begins, begins, ends, ends], axis=1)[seen].ravel()
         for k in range(ticks.command.shape[1]):
             held = ticks.command[seen, k]
-            after = np.zeros_like(held) if controller.width is not None else np.append(held[1:], held[-1:])
+            beside = held if controller.width is None else np.zeros_like(held)
             name = "xyz"[k] if controller.output in ("torque", "dipole") else str(k)
             label = name if len(track.ticks) == 1 else f"{i} {name}"
-            axes.plot(np.minimum(t, end), np.stack([held, held, after], axis=1).ravel(), linewidth=1.2, label=label,
-                      color=palette.lines[k % len(palette.lines)], linestyle=("-", "--", ":")[i % 3])
+            values = np.stack([beside, held, held, beside], axis=1).ravel()
+            axes.plot(np.minimum(t, end), values, linewidth=1.2, label=label, linestyle=("-", "--", ":")[i % 3],
+                      color=palette.lines[k % len(palette.lines)])
         most += int(seen.sum())
     _mark_times(axes, drawing)
     axes.set_xlabel("t [s]")

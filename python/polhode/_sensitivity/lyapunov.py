@@ -109,7 +109,8 @@ def lyapunov(scene: Scene, span: float | None = None, *, accuracy: float = 1e-9)
     parts = int(min(max(PARTS, length * rate / (2 * math.pi * TURN)), 1_000_000))
     if scene.changing is not None or scene.momentum is not None:
         raise InvalidInput("lyapunov: must be of a scene whose body is constant, got one that changes")
-    if not scene.controllers and (scene.damper is not None or any(name.startswith("rotor_momentum_") for name in scene.states)):
+    inner = scene.damper is not None or any(name.startswith("rotor_momentum_") for name in scene.states)
+    if inner and not scene.controllers:
         raise InvalidInput("lyapunov: must be of a scene without a damper and without motors or friction of rotors, "
                                  "got one with them; their momenta are states, which it does not carry")
     if scene.controllers:

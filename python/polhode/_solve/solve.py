@@ -189,8 +189,8 @@ def solve(
         What to differentiate the motion by, for `motion.sensitivity`: "omega" and "attitude" (the start), "inertia"
         (principal moments), "axes" (a small rotation of the principal axes in the body), numbers of torques and rotors
         such as "torques.0.weight", "torques.1.matrix", "torques.0.windows" (the ends of windows), "rotors.0.momentum",
-        or "gravity.weight" where only one is there, and "controllers.0.kp" (a parameter or the start of a state). Its error is relative to the size of each column. It is not
-        measured with certify=False.
+        or "gravity.weight" where only one is there, and "controllers.0.kp" (a parameter or the start of a state). Its
+        error is relative to the size of each column. It is not measured with certify=False.
     side : {"space", "body"}
         The axes of small rotations in `motion.sensitivity`.
     body : int

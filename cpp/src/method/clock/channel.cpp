@@ -56,6 +56,11 @@ Channel::Channel(const Scene& scene, std::size_t number, std::uint64_t body, con
     for (int i = 0; i < found.count; ++i) held_.push_back(body_numbers + static_cast<std::size_t>(found.first + i));
   }
   const ControllerParts& parts = controller_.parts();
+  if (parts.field) field_ = body_numbers + place("field");
+  if (parts.rotors > 0) speed_ = body_numbers + place("speed");
+  omega_noise_ = make_noise("omega", Distribution::normal, parts.measure.omega_noise);
+  attitude_noise_ = make_noise("attitude", Distribution::rotation, parts.measure.attitude_noise);
+  field_noise_ = make_noise("field", Distribution::normal, parts.measure.field_noise);
   for (const ParameterColumn& one : carrying.by_start)
     memory_.changes[one.column][memory_.values.size() - states_ + static_cast<std::size_t>(one.number)] = 1.0;
   const double before = std::ceil((scene.t0() - parts.start) / parts.period) - 1.0;
@@ -122,7 +127,7 @@ void Channel::fill_inputs(double t, const Carried& state, Carried& in) const {
   }
   const ControllerParts& parts = controller_.parts();
   if (parts.field) {
-    const std::size_t at = body_numbers + place("field");
+    const std::size_t at = field_;
     const Vec<double, 3> B_W = formula::make_vector<double>(parts.field->at(t));
     const Vec<double, 4> q{{state.values[3], state.values[4], state.values[5], state.values[6]}};
     const Vec<double, 3> B = formula::rotate_to_body(q, B_W);
@@ -137,7 +142,7 @@ void Channel::fill_inputs(double t, const Carried& state, Carried& in) const {
     }
   }
   if (parts.rotors == 0) return;
-  const std::size_t at = body_numbers + place("speed");
+  const std::size_t at = speed_;
   const Vector3d w(state.values[0], state.values[1], state.values[2]);
   for (std::size_t i = 0; i < static_cast<std::size_t>(parts.rotors); ++i) {
     const Rotor& rotor = scene_.rotors()[i];
@@ -158,30 +163,29 @@ void Channel::fill_inputs(double t, const Carried& state, Carried& in) const {
   }
 }
 
+std::optional<Channel::Noise> Channel::make_noise(const char* quantity, Distribution distribution, double size) const {
+  if (!(size > 0.0)) return std::nullopt;
+  const bool one_row = distribution == Distribution::rotation;
+  const double rows[] = {0.0, size, 0.0, size, 0.0, size}, row[] = {size, size, size};
+  const std::string name = "controllers." + std::to_string(number_) + "." + quantity;
+  return Noise{draw_key(name), Draw(distribution, one_row ? row : rows, one_row ? 1 : 3, one_row ? 3 : 2)};
+}
+
 void Channel::add_noise(Carried& in) const {
-  const Measure& measure = controller_.parts().measure;
-  const auto draw = [&](const char* quantity, Distribution distribution, double size, double* values) {
-    const std::string name = "controllers." + std::to_string(number_) + "." + quantity;
-    const bool one_row = distribution == Distribution::rotation;
-    const double rows[] = {0.0, size, 0.0, size, 0.0, size}, row[] = {size, size, size};
-    const Draw made(distribution, one_row ? row : rows, one_row ? 1 : 3, one_row ? 3 : 2);
-    made({measure.seed, draw_key(name), tick_}, body_, 1, values);
+  double drawn[4];
+  const auto draw = [&](const std::optional<Noise>& noise) {
+    if (noise) noise->draw({controller_.parts().measure.seed, noise->key, tick_}, body_, 1, drawn);
+    return noise.has_value();
   };
-  double noise[4];
-  if (measure.omega_noise > 0.0) {
-    draw("omega", Distribution::normal, measure.omega_noise, noise);
-    for (std::size_t i = 0; i < 3; ++i) in.values[omega_at + i] += noise[i];
-  }
-  if (measure.attitude_noise > 0.0) {
-    draw("attitude", Distribution::rotation, measure.attitude_noise, noise);
-    const Quat rotated{noise[0], noise[1], noise[2], noise[3]};
+  if (draw(omega_noise_))
+    for (std::size_t i = 0; i < 3; ++i) in.values[omega_at + i] += drawn[i];
+  if (draw(attitude_noise_)) {
+    const Quat rotated{drawn[0], drawn[1], drawn[2], drawn[3]};
     set_attitude(get_attitude(in.values) * rotated, in.values);
     for (std::vector<double>& error : in.changes) set_attitude(get_attitude(error) * rotated, error);
   }
-  if (measure.field_noise > 0.0) {
-    draw("field", Distribution::normal, measure.field_noise, noise);
-    for (std::size_t i = 0; i < 3; ++i) in.values[body_numbers + place("field") + i] += noise[i];
-  }
+  if (draw(field_noise_))
+    for (std::size_t i = 0; i < 3; ++i) in.values[field_ + i] += drawn[i];
 }
 
 void Channel::round(Carried& in) {
@@ -232,7 +236,7 @@ void Channel::call(double t, const Carried& in, Carried& out) {
   }
 }
 
-void Channel::keep(double t, const Carried& command) {
+void Channel::record(double t, const Carried& command) {
   const std::size_t commands = command.values.size(), first = memory_.values.size() - states_;
   ticks_.t.push_back(t);
   ticks_.measurement.insert(ticks_.measurement.end(), in_.values.begin(), in_.values.begin() + body_numbers);
@@ -278,7 +282,7 @@ void Channel::measure(double t, const Carried& state) {
   };
   keep(out_.values, memory_.values);
   for (std::size_t e = 0; e < carrying_.count; ++e) keep(out_.changes[e], memory_.changes[e]);
-  if (keep_ticks_) keep(now, command);
+  if (keep_ticks_) record(now, command);
   pending_.push_back({now + controller_.parts().delay, std::move(command)});
   ++tick_;
 }

@@ -40,6 +40,11 @@ class Channel {
   const std::optional<std::uint64_t>& uncertain() const { return uncertain_; }
 
  private:
+  /// The noise of one quantity.
+  struct Noise {
+    std::uint64_t key;
+    Draw draw;
+  };
   struct Pending {
     double t;
     Carried command;
@@ -51,13 +56,14 @@ class Channel {
   void clip(Carried& command);
   void hold(const Carried& command, Carried& state);
   void call(double t, const Carried& in, Carried& out);
-  void keep(double t, const Carried& command);
+  void record(double t, const Carried& command);
   void doubt() { if (!uncertain_) uncertain_ = tick_; }
   bool carries_errors() const { return carrying_.what == Carry::errors; }
   bool carries_columns() const { return carrying_.what == Carry::columns; }
   static void scale(Carried& one, double factor);
   double next_tick() const { return controller_.tick(tick_); }
   std::size_t place(std::string_view name) const;   ///< among the numbers of the inputs, behind omega and attitude
+  std::optional<Noise> make_noise(const char* quantity, Distribution distribution, double size) const;
 
   const Scene& scene_;
   const Controller& controller_;
@@ -70,6 +76,8 @@ class Channel {
   double off_ = std::numeric_limits<double>::infinity(), end_ = std::numeric_limits<double>::infinity();
   std::deque<Pending> pending_;
   Carried memory_;                       ///< the numbers of the inputs
+  std::size_t field_ = 0, speed_ = 0;    ///< their places, where they are measured
+  std::optional<Noise> omega_noise_, attitude_noise_, field_noise_;
   std::vector<std::size_t> held_;        ///< where a command's numbers are in a state of the run
   std::size_t states_;                   ///< numbers of the controller's own
   std::vector<Carried> spare_;           ///< commands that have begun

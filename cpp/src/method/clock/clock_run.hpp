@@ -62,7 +62,8 @@ class ClockRun {
     clock_.stop_at(last_);
     act(stepper_->t());
     take_samples_here();
-    const std::vector<ode::Event> events = make_events(options_.events, [this](double t, const double* y) { return to_state(t, y); });
+    const auto see = [this](double t, const double* y) { return to_state(t, y); };
+    const std::vector<ode::Event> events = make_events(options_.events, see);
     ode::EventSearch search(events, stepper_->t(), plain().state());
     search_ = events.empty() ? nullptr : &search;
     while (next_ < order_.forward.size()) {
@@ -125,7 +126,8 @@ class ClockRun {
 
   /// Keeps zeros of events; true if the run ends at one.
   bool found_event(const ode::EventSearch::Found& found) {
-    for (const ode::EventHit& hit : found.hits) trajectory_.events.push_back({hit.event, to_state(hit.t, hit.y.data())});
+    for (const ode::EventHit& hit : found.hits)
+      trajectory_.events.push_back({hit.event, to_state(hit.t, hit.y.data())});
     if (!found.ended) return false;
     ended_ = true, reached_time_ = found.t;
     EndingText text = describe_ending(ode::Ending::event, found.t, options_.max_steps);
