@@ -91,7 +91,7 @@ class ClockRun {
       if (step != ode::StepResult::accepted) return end(find_ending(step));
       if (options_.dense) trajectory_.dense_forward.append(stepper_->t_old(), stepper_->t(), stepper_->segment());
       if (search_ != nullptr && found_event(search_->step(*stepper_))) {
-        take_samples_within(reached_time_);
+        take_samples_within(reached_time_, true);
         return false;
       }
       take_samples_within(stop);
@@ -221,11 +221,13 @@ class ClockRun {
     if (any) series_.pack_error(kick);
   }
 
-  void take_samples_within(double stop) {
+  /// @param event  the run ends at this time, which lies within the last step
+  void take_samples_within(double stop, bool event = false) {
     const std::vector<double>& times = scene_.times();
     std::size_t end = next_;
     const auto time = [&](std::size_t i) { return times[order_.forward[i]]; };
-    while (end < order_.forward.size() && time(end) <= stepper_->t() && !is_same_instant(time(end), stop)) ++end;
+    const double last = std::min(stepper_->t(), stop);
+    while (end < order_.forward.size() && time(end) <= last && (event || !is_same_instant(time(end), stop))) ++end;
     std::vector<double> at;
     for (; next_ < end; next_ += at.size()) {
       at.clear();
