@@ -38,7 +38,8 @@ class ManyScenes {
       return Scene(SceneParts{inertia, {a[0], a[1], a[2]}, {b[0], b[1], b[2], b[3]}, common.given_torques(),
                               times_.size() == 0 ? common.times() : own_times(), common.want(),
                               t0_.size() == 0 ? common.t0() : t0_.data()[body], "", common.given_rotors(),
-                              common.given_damper(), common.changing(), common.momentum(), common.leaving()});
+                              common.given_damper(), common.changing(), common.momentum(), common.leaving(),
+                              common.given_controllers()});
     };
   }
 

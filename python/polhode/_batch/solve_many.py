@@ -14,13 +14,13 @@ from .. import _core, _export
 from .._attitude.arrays import require_bool, require_text, to_items
 from .._keywords import checked
 from .._scene.plain import to_plain
-from .._scene.scene import Scene, refuse_controllers
+from .._scene.scene import Scene
 from .._scene.wanted import At, MotionAt, MotionOm, Om, Wanted
 from .._sensitivity.driven import check_groups, split_states
 from .._sensitivity.sensitivity import Sensitivity
 from .._solve.motion import Floats
 from .._solve.record import same_record
-from .._solve.solve import check_max_steps
+from .._solve.solve import check_max_steps, to_body
 from .broadcast import WIDTHS, check_errors, check_threads, to_attitudes, to_rows
 
 
@@ -170,6 +170,15 @@ def _starts_of(scene: Scene, starts: dict[str, Any]) -> tuple[dict[str, Floats],
     return given, {name: rows.get(name, given.get(name)) for name in starts}, bodies
 
 
+def _numbers(numbers: Iterable[int] | None, bodies: int) -> list[int]:
+    if numbers is None:
+        return []
+    found = [to_body(number) for number in to_items(numbers, "numbers", "whole numbers")]
+    if len(found) != bodies:
+        raise _core.InvalidInput(f"numbers: must be one for each body, {bodies}, got {len(found)}")
+    return found
+
+
 @checked
 def solve_many(
     scenes: Scene[Om, At] | Iterable[Scene[Om, At]],
@@ -190,6 +199,7 @@ def solve_many(
     errors: str = "raise",
     sensitivity: str | Sequence[str] | None = None,
     side: str = "space",
+    numbers: Iterable[int] | None = None,
 ) -> Motions[Om, At]:
     """Solve many scenes, or one scene from many starts.
 
@@ -223,6 +233,8 @@ def solve_many(
     sensitivity, side
         As in `solve`, for each body: what the motions are differentiated by, for `Motions.sensitivity`. Scenes with
         `accuracy`, or 1e-9, and all times; without `rtol`, `atol` and `step`.
+    numbers : iterable of int, optional
+        The numbers of the bodies, which decide what their controllers draw; 0, 1, 2 and so on if left out.
 
     Returns
     -------
@@ -251,8 +263,12 @@ def solve_many(
                 raise _core.InvalidInput(f"scenes[{i}]: must be a polhode.Scene, got {type(scene).__name__}")
             if scene.times.size != listed[0].times.size or scene.want != listed[0].want:
                 raise _core.InvalidInput(f"scenes[{i}]: must have as many times as scenes[0] and the same want")
-    for scene in listed:
-        refuse_controllers(scene, "solve_many")
+    for i, scene in enumerate(listed):
+        for k, controller in enumerate(scene.controllers):
+            if controller.function is not None:
+                raise _core.InvalidInput(f"scenes[{i}].controllers[{k}]: must be traced among many bodies, got "
+                                         "trace=False; Python would be called at each tick of each body")
+    own = _numbers(numbers, bodies)
     require_text(method, "method")
     groups = None if sensitivity is None else check_groups(sensitivity, side)
     for name, number in (("rtol", rtol), ("atol", atol), ("step", step)):
@@ -267,14 +283,15 @@ def solve_many(
                            for name, width in WIDTHS.items()}
     options = {"accuracy": accuracy, "method": method, "rtol": rtol, "atol": atol, "step": step,
                "max_steps": check_max_steps(max_steps), "leave_out": require_bool(leave_out, "leave_out")}
-    found = _core._solve_many(many, bodies, count, out["omega"], out["attitude"], options, workers, refuse)
+    found = _core._solve_many(many, bodies, count, out["omega"], out["attitude"], options, workers, refuse, own)
     given |= {name: value for name, value in options.items()
               if value is not None and value != 10_000_000 and value is not True}
     given |= {} if refuse else {"errors": "nan"}
+    given |= {"numbers": own} if own else {}
     derivatives = None
     if groups and bodies:
         made = _core._sensitivities(many, bodies, count, groups, 1e-9 if accuracy is None else accuracy, True,
-                                     side, check_max_steps(max_steps), workers, refuse)
+                                     side, check_max_steps(max_steps), workers, refuse, own)
         found["message"] = tuple(f"{message}; no derivatives: {failure}" if failure else message
                                  for message, failure in zip(found["message"], made["failures"], strict=True))
         d_states = split_states(listed[0], made["d_states"])

@@ -9,7 +9,7 @@ import numpy as np
 
 from .._attitude.arrays import is_one_of, is_whole, to_items, to_number
 from .._core import IntegrationFailure, InvalidInput
-from .._scene.scene import Scene, refuse_controllers
+from .._scene.scene import Scene
 from ..measured import Attitudes, Measurement, Rates
 from ..measured import __all__ as SENSORS
 from . import robust, rotations
@@ -181,9 +181,7 @@ def fit(
         raise InvalidInput(f"scene: must be a polhode.Scene, got {type(scene).__name__}")
     if scene is not None and (scene.changing is not None or scene.momentum is not None):
         raise InvalidInput("scene: must have a body of constant inertia and momentum, got one that changes")
-    if scene is not None:
-        refuse_controllers(scene, "fit")
-    driven = scene is not None and bool(len(scene.torques) or len(scene.rotors))
+    driven = scene is not None and bool(len(scene.torques) or len(scene.rotors) or len(scene.controllers))
     measurements, groups = _to_data(data), _to_groups(fit, driven)
     if not is_one_of(loss, LOSSES):
         raise InvalidInput(f"loss: must be one of {', '.join(LOSSES)}, got {loss!r}")
