@@ -98,8 +98,13 @@ Orbit Orbit::from_elements(const OrbitElements& given) {
                                     std::pair{"t0", given.t0}, std::pair{"j2", given.j2}})
     require_finite(name, value);
   if (given.j2 != 0.0) {
-    if (given.e >= 1.0) throw InvalidInput("j2", "left out with e >= 1", to_text(given.j2), "its secular rates are of ellipses");
+    if (given.e >= 1.0)
+      throw InvalidInput("j2", "left out with e >= 1", to_text(given.j2), "its secular rates are of ellipses");
     require_positive("radius", given.radius);
+    const double least = by_axis ? given.semi_major_axis * (1.0 - given.e) : given.periapsis_distance;
+    if (given.radius > least)
+      throw InvalidInput("radius", "at most the periapsis distance, " + to_text(least), to_text(given.radius),
+                         "the orbit goes through the planet");
   }
   return Orbit(std::make_shared<ConicPath>(given));
 }

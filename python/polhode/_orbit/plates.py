@@ -6,6 +6,7 @@ import dataclasses
 from collections.abc import Iterable
 from typing import Any
 
+import numpy as np
 import numpy.typing as npt
 
 from .. import _core
@@ -38,7 +39,7 @@ class Plate:
     Raises
     ------
     InvalidInput
-        For a negative area, a normal 0, and shares that are negative or above 1 together.
+        For a negative area, a normal 0, numbers that are not finite, and shares that are negative or above 1 together.
     """
 
     area: float
@@ -54,9 +55,11 @@ class Plate:
             row = to_any(getattr(self, name), f"Plate.{name}").astype(float)
             if row.shape != (3,):
                 raise InvalidInput(f"Plate.{name}: must be of shape (3,), got {row.shape}")
+            if not np.isfinite(row).all():
+                raise InvalidInput(f"Plate.{name}: must be finite, got {row[~np.isfinite(row)][0]}")
             object.__setattr__(self, name, tuple(row.tolist()))
-        if not self.area >= 0.0:
-            raise InvalidInput(f"Plate.area: must be at least 0, got {self.area}")
+        if not 0.0 <= self.area < np.inf:
+            raise InvalidInput(f"Plate.area: must be at least 0 and finite, got {self.area}")
         if not any(self.normal):
             raise InvalidInput("Plate.normal: must be not 0, got (0, 0, 0)")
         if min(self.specular, self.diffuse) < 0.0 or not self.specular + self.diffuse <= 1.0:
