@@ -15,7 +15,7 @@ inputs := build/.names $(shell find CMakeLists.txt pyproject.toml cpp python/CMa
             tests/cpp/CMakeLists.txt scenes -type f 2>/dev/null)
 
 .PHONY: help help-all demo test format same-bits check-long install module clang sanitize valgrind fuzz mutants \
-        aarch64 debian13 free-threaded wheels wings stubs docs docs-pictures browser web web-check web-pictures clean
+        aarch64 debian13 free-threaded wheels forge wings stubs docs docs-pictures browser web web-check web-pictures clean
 .NOTPARALLEL:
 # An environment whose Python has gone is made anew.
 ifneq ($(shell $(VENV)/bin/python -c 'import pip; print("there")' 2>/dev/null),there)
@@ -117,10 +117,16 @@ free-threaded: ## the Python tests by Python 3.13 without its lock, in the same 
 wheels: ## a wheel for each Python at hand, repaired, checked, tested in a bare environment; the sdist
 	@.ci/wheels
 
+forge: $(VENV)/.demo ## linters of workflows, forms and CITATION.cff
+	@.ci/forge
+
 wings: install ## deletes each wing in a copy, and imports and tests the rest: a minute
 	@$(PYTHON) .ci/wings
 
-docs: install ## the site, with its notebooks and gallery run: two minutes, build/site/index.html
+ZIG := ziglang==0.17.1
+docs: install ## the site, with its notebooks and gallery run, and the playground: some minutes, build/site/index.html
+	@$(PYTHON) -m pip install -qq --disable-pip-version-check "$(ZIG)"
+	@JOBS=$(JOBS) $(PYTHON) web/build.py
 	@$(PYTHON) -m sphinx -W --keep-going -n -q docs build/site 2> >(grep -v IPKernelApp >&2)
 
 docs-pictures: docs ## screenshots of the site, light and dark, wide and narrow, by a headless Chromium
@@ -130,7 +136,7 @@ docs-pictures: docs ## screenshots of the site, light and dark, wide and narrow,
 # The check skips nothing: POLHODE_WEB makes a test that lacks what it needs a failure.
 web-check: web ## `make web`, as .ci/run calls it: two minutes on two cores
 web: install ## the core as WebAssembly, its numbers tested by wasmtime, and the playground as one file
-	@$(PYTHON) -m pip install -qq --disable-pip-version-check "ziglang==0.17.1" wasmtime
+	@$(PYTHON) -m pip install -qq --disable-pip-version-check "$(ZIG)" wasmtime
 	@JOBS=$(JOBS) $(PYTHON) web/build.py
 	@POLHODE_WEB=required POLHODE_SIMD=baseline $(PYTHON) -m pytest -q tests/python/web/test_web.py
 

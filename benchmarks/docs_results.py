@@ -33,6 +33,7 @@ def page(content):
         f"Python {machine['python']}. {versions}.",
         "What is measured:",
         "\n".join(f"- {part}" for part in content["measure"].split("; ")),
+        tables.how_they_ran(content),
         "## The fastest at each error",
         "`never`: every setting ran, and none reached the error. `not in the budget`: none of those that ran reached "
         "it, and the budget of time left some out.",

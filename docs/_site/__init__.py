@@ -1,9 +1,9 @@
-"""What the site needs beside its pages: citations from plain links, lists made from the code, KaTeX, pictures."""
+"""What the site needs beside its pages: citations from plain links, lists made from the code, KaTeX, films."""
 
 import os
 from typing import Any
 
-from . import links, lists, style
+from . import answers, extras, links, lists, style
 from .formulas import katex_at_hand as katex_at_hand
 
 
@@ -24,5 +24,8 @@ def read(app: Any, docname: str, source: list[str]) -> None:
 def setup(app: Any) -> dict[str, Any]:
     """Connect all of it to Sphinx."""
     style.register()
+    answers.setup(app)
     app.connect("source-read", read)
+    app.connect("env-get-outdated", extras.changed)
+    app.connect("build-finished", extras.write)
     return {"parallel_read_safe": True}

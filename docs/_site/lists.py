@@ -11,6 +11,7 @@ from typing import Any
 
 import polhode as ph
 
+from .extras import playground
 from .links import ROOT, rewrite
 
 MARK = re.compile(r"^<!-- (list|include|page): ([\w./-]+)(?: to \"([^\"]+)\")? -->$", flags=re.MULTILINE)
@@ -183,10 +184,18 @@ def works() -> str:
             f"  version = {{{version}}},\n}}\n```")
 
 
+def against() -> str:
+    """Return the comparisons of the charts that are worst for polhode."""
+    from polhode.report import tables
+
+    return tables.markdown(tables.against(json.loads((ROOT / "docs/results/charts.json").read_text())))
+
+
 LISTS: dict[str, Callable[[], str]] = {
     "methods": methods, "models": models, "torques": torques, "shapes": ph.shapes.table, "commands": commands,
     "scene-keys": scene_keys, "recipe-keys": recipe_keys, "exceptions": classes, "findings": findings,
     "headers": headers, "citation": works, "limits": limits,
+    "playground": playground, "against": against,
 }
 
 

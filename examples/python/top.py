@@ -22,6 +22,6 @@ print(" t [s]   precession   tilt [deg]   height of the axis")
 for t, (phi, theta, _) in zip(motion.t, np.degrees(motion.rotation.as_euler("ZXZ"))):
     print(f"{t:6.1f}   {phi:10.4f}   {theta:10.6f}   {np.cos(np.radians(theta)):10.6f}")
 
-error = (ph.Rotation.from_quat(true_attitude).inv() * motion.rotation).magnitude().max()
+error = np.max((ph.Rotation.from_quat(true_attitude).inv() * motion.rotation).magnitude())
 print(f"farthest from the closed form: {error:.0e} rad in {motion.stats['steps']} steps of {motion.plan.method}")
 print("drift:", ", ".join(f"{name} {value:.0e}" for name, value in motion.drift.items()))

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ._wings import AttitudeEphemeris, Ensemble
 
 
-def load(path: str | os.PathLike[str]) -> Motion | Motions | Ensemble | AttitudeEphemeris:
+def load(path: str | os.PathLike[str]) -> Any:
     """Read what `save` wrote, or the store of an ensemble.
 
     Parameters
@@ -30,7 +30,8 @@ def load(path: str | os.PathLike[str]) -> Motion | Motions | Ensemble | Attitude
     Returns
     -------
     Motion, Motions, Ensemble or AttitudeEphemeris
-        Dense output is not saved.
+        A motion, and many motions, are equal to those that were saved. Dense output and derivatives are not saved. For
+        type checkers it is Any, since the file decides.
 
     Raises
     ------
@@ -114,6 +115,8 @@ def _motions(about: dict[str, Any], arrays: dict[str, Any]) -> Motions:
     shared = about["scenes"]
     scenes = from_plain(shared) if isinstance(shared, dict) else [from_plain(scene) for scene in shared]
     starts = {name: arrays[f"start_{name}"] for name in ("inertia", "omega", "attitude") if f"start_{name}" in arrays}
-    return Motions(arrays.get("omega"), arrays.get("attitude"), tuple(about["status"]), tuple(about["message"]),
+    omega: Any = arrays.get("omega")
+    attitude: Any = arrays.get("attitude")
+    return Motions(omega, attitude, tuple(about["status"]), tuple(about["message"]),
                    tuple(about["method"]), arrays["t_reached"], arrays["error"], arrays["steps"], arrays["success"],
                    arrays["lanes"], arrays["refused"], scenes, {**starts, **about["options"]})

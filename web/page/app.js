@@ -12,7 +12,7 @@ const PRESETS = {
   wheel: { a: 0.7, b: 0.25, c: 0.05, w1: 0.3, w2: 3, w3: 0.1, wheel: 0.2 },
   brake: { a: 0.3, b: 0.22, c: 0.05, w1: 2, w2: 3, w3: 4, torque: "-0.002 * omega * norm(omega)" },
 };
-const REST = { weight: 0, arm: 0.1, tilt: 0, wheel: 0, rate: 60, torque: "" };
+const REST = { weight: 0, arm: 0.1, tilt: 0, wheel: 0, rate: 60, torque: "", moments: null, attitude: null };
 const METHODS = ["euler", "semi_euler", "catto", "jolt", "buss", "split", "dmv2", "rk4", "free"];
 const SPAN = 20, FRAMES = 120;   // [s], and states a second
 const DENSITY = 900;             // [kg/m^3]
@@ -26,6 +26,7 @@ const bodyView = new View(get("body")), ellipsoidView = new View(get("ellipsoid"
 const times = Float64Array.from({ length: SPAN * FRAMES + 1 }, (_, i) => i / FRAMES);
 
 function massAndMoments() {
+  if (state.moments) return [...state.moments];   // of a scene's address; about the pivot, where there is one
   const { a, b, c } = state, mass = DENSITY * a * b * c;
   const own = [b * b + c * c, a * a + c * c, a * a + b * b].map(s => mass / 12 * s);
   if (state.weight > 0) own[0] += mass * state.arm ** 2, own[1] += mass * state.arm ** 2;   // about the pivot
@@ -36,8 +37,8 @@ const isFree = () => !(state.weight > 0) && !state.wheel && !state.torque;
 const solve = (t, options = {}) => solveScene(cores.solve, fullStart(), t, { torque: state.torque, ...options });
 
 function start() {
-  const half = state.tilt * Math.PI / 360;
-  return [...massAndMoments(), state.w1, state.w2, state.w3, Math.sin(half), 0, 0, Math.cos(half)];
+  const half = state.tilt * Math.PI / 360, attitude = state.attitude ?? [Math.sin(half), 0, 0, Math.cos(half)];
+  return [...massAndMoments(), state.w1, state.w2, state.w3, ...attitude];
 }
 
 const fullStart = () => [...start(), state.weight, 0, 0, state.arm, 0, 0, 1, state.wheel];
@@ -170,6 +171,7 @@ function show() {
 function save() {
   const words = new URLSearchParams();
   for (const id of [...FIELDS, "method", "torque"]) words.set(id, state[id]);
+  for (const id of ["moments", "attitude"]) if (state[id]) words.set(id, state[id].join(","));
   history.replaceState(null, "", `#${words}`);
 }
 
@@ -177,6 +179,9 @@ function restore() {
   for (const [id, value] of new URLSearchParams(location.hash.slice(1))) {
     if (FIELDS.includes(id) && Number.isFinite(Number(value))) state[id] = Number(value);
     if (id === "torque") state.torque = value;
+    const list = value.split(",").map(Number), whole = list.every(Number.isFinite);
+    if (id === "moments" && list.length === 3 && whole) state.moments = list;
+    if (id === "attitude" && list.length === 4 && whole) state.attitude = list;
     if (id === "method" && METHODS.includes(value)) state.method = value;
   }
 }
@@ -195,7 +200,10 @@ function sceneText() {
 
 function listen() {
   for (const id of FIELDS) get(id).addEventListener("input", event => {
-    state[id] = Number(event.target.value), show(), recompute();
+    state[id] = Number(event.target.value);
+    if ("abc".includes(id)) state.moments = null;   // the sides, or the tilt, count again
+    if (id === "tilt") state.attitude = null;
+    show(), recompute();
   });
   get("torque").addEventListener("change", event => { state.torque = event.target.value.trim(), recompute(); });
   get("method").addEventListener("input", event => { state.method = event.target.value, recompute(); });

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "derivative/column_motion.hpp"
@@ -18,14 +20,24 @@ struct ColumnSamples {
   std::vector<double> d_omega, theta;     ///< (n, 3, columns) in body axes
   std::vector<double> d_states;          ///< (n, states, columns)
   std::vector<std::size_t> samples;      ///< those that were computed
+  std::vector<int> scale;                ///< of each sample: its columns are 2^scale times these
+  std::string uncertain = {};            ///< what the branches of controllers leave open, in words
   long steps = 0;
+};
+
+/// What a run through controllers needs besides.
+struct LoopOptions {
+  double accuracy;      ///< of the motion, which decides what branch of a law is certain
+  std::uint64_t body;   ///< whose number decides the draws
+  bool rescale;         ///< multiply columns that leave float64's range by powers of two
 };
 
 /// Integrates the columns of a scene through its pieces.
 class ColumnRun {
  public:
   /// @param side  of the small rotations of the start
-  ColumnRun(const Scene& scene, const std::vector<SceneParameter>& parameters, RotationSide side);
+  ColumnRun(const Scene& scene, const std::vector<SceneParameter>& parameters, RotationSide side,
+            const LoopOptions& loop);
 
   /// @param most  compute about so many samples in each direction of time, the last among them; 0: all
   /// @throws IntegrationFailure if it does not reach its end
@@ -36,6 +48,9 @@ class ColumnRun {
 
   void follow(const std::vector<Piece>& pieces, const std::vector<std::size_t>& order, double rtol, long max_steps,
               ColumnSamples& out) const;
+  /// The same from tick to tick of a scene with controllers.
+  void follow_clock(const Piece& piece, const std::vector<std::size_t>& order, double rtol, long max_steps,
+                    ColumnSamples& out) const;
   void start_momenta(const SceneParameter& by, const std::function<void(int state, double slope)>& add) const;
   std::vector<double> start_columns() const;
   std::vector<bool> find_rotating(const Piece& piece) const;
@@ -53,6 +68,7 @@ class ColumnRun {
   const Scene& scene_;
   const std::vector<SceneParameter>& parameters_;
   RotationSide side_;
+  LoopOptions loop_;
   Pieces pieces_;
   std::size_t states_;                   ///< numbers of the states of formulas
   Matrix3d J_inverse_;

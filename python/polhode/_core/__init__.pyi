@@ -194,6 +194,11 @@ class MassProperties:
         A mass that is not positive, anything not finite, and what InertiaTensor refuses.
     """
     @staticmethod
+    def _repr_html_(body: typing.Any) -> str:
+        """
+        Return mass, centre of mass and tensor.
+        """
+    @staticmethod
     def from_file(path: typing.Any, *, density: typing.Any = None, mass: typing.Any = None, unit: typing.Any = 'm', check: bool = True, repair: typing.Any = None, weld: typing.Any = 1e-09) -> MassProperties:
         """
         The solid inside the surface that a file holds: STL, or with the `mesh` extra OBJ, PLY, glTF.

@@ -20,7 +20,7 @@ class _ClosedForm:
         """
         Return the start and the properties of a closed form.
         """
-    def animate(self, t: typing.Any = None, *, body: typing.Any = 'box', axis: typing.Any = None) -> polhode._wings.Film:
+    def animate(self, t: typing.Any = None, *, body: typing.Any = 'box', axis: typing.Any = None, title: str | None = None) -> polhode._wings.Film:
         """
         Make a film of the motion: the body turns, beside the polhode on the ellipsoid of its energy.
 
@@ -28,7 +28,7 @@ class _ClosedForm:
         ----------
         t : array_like, shape (n,), or float, optional
             As for `plot`: the times, or the end of the span [s].
-        body, axis
+        body, axis, title
             As for :meth:`Motion.animate`.
 
         Returns

@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Iterable
-from typing import Any, NamedTuple
+from html import escape
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -22,6 +23,9 @@ from .layout import HEAD
 from .recipe import EnsembleRecipe
 from .states import States
 from .task import Task
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 KIND = "ensemble"   # of a saved file
 
@@ -247,6 +251,40 @@ class Ensemble:
         with _files.whole(target) as draft:
             np.savez_compressed(draft, about=np.array(json.dumps(about)), chunks=np.array(chunks, dtype=np.int64),
                                 records=np.array(self.records(chunks)))
+
+    def plot(self, *names: str, point: int = 0) -> Figure:
+        """Draw the spread of quantities against time: bands of quantiles, median and rms.
+
+        Parameters
+        ----------
+        *names : str
+            Names of the summary; all of them if none is given.
+        point : int
+            Of a sweep.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            A notebook shows it; ``.savefig(path)`` writes it.
+
+        Raises
+        ------
+        InvalidInput
+            For an unknown name or point, and without matplotlib.
+        """
+        from .picture import draw
+
+        self._point(point)
+        return draw(self, names, int(point))
+
+    def _repr_html_(self) -> str:
+        rows = {"bodies that are done": f"{self.done:,} of {self.total:,}", "times": self.times.size,
+                "points of the sweep": len(self.points), "store": self.out or "none",
+                "summary": ", ".join(self.summary), **{name.replace("_", " "): value for name, value in
+                                                       self.counts.items() if name != "bodies"}}
+        cells = "".join(f"<tr><td>{escape(str(name))}</td><td>{escape(str(value))}</td></tr>"
+                        for name, value in rows.items())
+        return f"<div><b>Ensemble</b> {escape(self.name)}<table>{cells}</table></div>"
 
     def __repr__(self) -> str:
         where = f" in {self.out}" if self.out else ""

@@ -9,58 +9,22 @@ from typing import Any
 
 import numpy as np
 
-from .._core import InvalidInput, __version__
+from .._core import __version__
 from .._plot import style
 from .ensemble import Ensemble
+from .picture import draw
 
-BANDS = ((0.01, 0.99, 0.15), (0.05, 0.95, 0.25), (0.25, 0.75, 0.35))   # quantiles, and how dark
-MOST_TIMES = 1000
 MOST_POINTS = 12
-COLOUR = "#0072b2"
 CSS = """body{font:16px/1.5 sans-serif;max-width:60em;margin:2em auto;padding:0 1em;color:#1d2733;background:#fff}
 table{border-collapse:collapse}td,th{padding:.2em 1em .2em 0;text-align:left;border-bottom:1px solid #e4e8ec}
 figure{margin:2em 0}svg{max-width:100%;height:auto}pre{background:#f4f6f8;padding:1em;overflow:auto}"""
 
 
-
-
-def _draw(axes: Any, found: Any, times: Any, pick: Any) -> None:
-    if found.of == "attitude":
-        axes.plot(times, pick(found.spread), color=COLOUR, label="spread")
-        axes.set_ylabel("spread of the attitude [rad]")
-        return
-    shares = sorted({share for low, high, _ in BANDS for share in (low, high)} | {0.5})
-    bounds = found.quantile(shares)
-    column = {share: pick(bounds.value)[..., k] for k, share in enumerate(shares)}
-    for low, high, dark in BANDS:
-        axes.fill_between(times, column[low], column[high], color=COLOUR, alpha=dark, linewidth=0,
-                          label=f"{100 * (high - low):g} % of the bodies")
-    axes.plot(times, column[0.5], color=COLOUR, label="median")
-    axes.plot(times, pick(found.rms), color="#d55e00", linestyle="--", label="rms")
-    axes.set_ylabel(f"{found.name} [{found.unit}]")
-
-
 def picture(run: Ensemble, name: str, point: int = 0) -> str:
     """Return the spread of a quantity against time as SVG."""
-    try:
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise InvalidInput("report: needs matplotlib: pip install 'polhode[plot]'") from None
-    order = np.argsort(run.times, kind="stable")
-    order = order[:: max(1, -(-order.size // MOST_TIMES))]
-    swept = len(run.points) > 1
-
-    def pick(values: Any) -> Any:
-        return (values[point] if swept else values)[order]
-
+    held = io.StringIO()
+    figure = draw(run, (name,), point)
     with style.settings():
-        figure = Figure(figsize=(8, 4), layout="constrained")
-        axes = figure.add_subplot()
-        found = run.summary[name]
-        _draw(axes, found, run.times[order], pick)
-        axes.set_xlabel("time [s]")
-        axes.legend(frameon=False, fontsize=8)
-        held = io.StringIO()
         figure.savefig(held, format="svg", metadata={"Date": None})
     return held.getvalue()[held.getvalue().index("<svg"):]
 

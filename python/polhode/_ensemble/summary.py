@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -128,11 +128,21 @@ class AttitudeSummary:
         return f"AttitudeSummary({self.name}: {self.count.max(initial=0)} bodies, {self.spread.size} times)"
 
 
-class Summaries(Mapping[str, Any]):
-    """The summaries of an ensemble by their names."""
+class Summaries(Mapping[str, "QuantitySummary"]):
+    """The summaries of an ensemble by their names.
+
+    Each is a `QuantitySummary`, or an `AttitudeSummary` of an attitude. For type checkers only the one named "attitude"
+    is of the latter.
+    """
 
     def __init__(self, parts: dict[str, QuantitySummary | AttitudeSummary]) -> None:
         self._parts = parts
+
+    @overload
+    def __getitem__(self, name: Literal["attitude"]) -> AttitudeSummary: ...   # type: ignore[overload-overlap]
+
+    @overload
+    def __getitem__(self, name: str) -> QuantitySummary: ...
 
     def __getitem__(self, name: str) -> Any:
         if name not in self._parts:

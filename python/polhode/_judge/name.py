@@ -71,13 +71,14 @@ def raised(track: Track, floor: Numbers) -> Numbers:
 def weigh(track: Track, floor: Numbers, sigma: Numbers | None, known: bool) -> Verdict:
     """Score all causes along one motion, refine the best, and say what the numbers allow."""
     floor = raised(track, floor)
-    scores = rank(track, list(catalogue(track, known)), floor, sigma)
+    scope = Scope(track)
+    scores = rank(scope, list(catalogue(track, known)), floor, sigma)
     none, rest = scores[0], scores[1:]
     before, low = np.sqrt(3 * np.array(none.rest)), np.array(floor)
     if np.all(before < DIGIT * low):
         return Verdict("fine", track, rest, floor=floor)
     hopeful = [s for s in rest[:REFINED] if s.gain > 0.5 * GAIN]
-    exact = [refine(track, s, floor, sigma) for s in hopeful]
+    exact = [refine(scope, s, floor, sigma) for s in hopeful]
     for score in exact:
         score.gain = score.likelihood - none.likelihood
     ranking = sorted([*exact, *[s for s in rest if s not in hopeful]], key=lambda s: -s.gain)
@@ -166,10 +167,11 @@ def second(verdict: Verdict, floor: Numbers, sigma: Numbers | None, known: bool)
     rest = np.sqrt(np.array(first.rest) * 3)
     if np.all(rest < 5 * np.array(floor)):
         return None
-    push, show = slopes(own, Scope(track), first.c) if not own.substeps else pattern(own, Scope(track))
+    scope = Scope(track)
+    push, show = slopes(own, scope, first.c) if not own.substeps else pattern(own, scope)
     nuisance = carry(track.phi, push) + show
     causes = [c for c in catalogue(track, known) if c.name != own.name and (own.name, c.name) not in EQUIVALENT]
-    none, *others = rank(track, causes, floor, sigma, nuisance)
+    none, *others = rank(scope, causes, floor, sigma, nuisance)
     if not others or others[0].gain < 2 * GAIN:
         return None
     best, rivals, margin = _leader(others)

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._core import InertiaTensor
+from .._attitude.rotation import Rotation
+from .._core import InertiaTensor, MassProperties
 from .._core.exact import _ClosedForm
 from .._scene.scene import Scene
 from .._solve.motion import Floats
-from . import html
+from . import html, tables
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -83,14 +84,15 @@ def plot(self: Any, t: Any = None, *parts: str, ax: matplotlib.axes.Axes | None 
     return draw(make_track(self, t), parts, ax, marks, dark)
 
 
-def animate(self: Any, t: Any = None, *, body: Any = "box", axis: Any = None) -> polhode._wings.Film:
+def animate(self: Any, t: Any = None, *, body: Any = "box", axis: Any = None,
+            title: str | None = None) -> polhode._wings.Film:
     """Make a film of the motion: the body turns, beside the polhode on the ellipsoid of its energy.
 
     Parameters
     ----------
     t : array_like, shape (n,), or float, optional
         As for `plot`: the times, or the end of the span [s].
-    body, axis
+    body, axis, title
         As for :meth:`Motion.animate`.
 
     Returns
@@ -100,14 +102,16 @@ def animate(self: Any, t: Any = None, *, body: Any = "box", axis: Any = None) ->
     """
     from .motion import make_film
 
-    return make_film(make_track(self, t), body, axis)
+    return make_film(make_track(self, t), body, axis, title)
 
 
 def attach() -> None:
-    """Give the compiled classes their methods."""
+    """Give the compiled classes their methods, and rotations their table."""
     for method in (plot, animate):
         method.__doc__ = inspect.getdoc(method)   # without the indent, for the stubs
     setattr(_ClosedForm, "plot", plot)
     setattr(_ClosedForm, "animate", animate)
     setattr(_ClosedForm, "_repr_html_", html.of_closed_form)
     setattr(InertiaTensor, "_repr_html_", html.of_tensor)
+    setattr(MassProperties, "_repr_html_", tables.of_mass_properties)
+    setattr(Rotation, "_repr_html_", tables.of_rotation)

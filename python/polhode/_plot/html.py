@@ -75,7 +75,7 @@ def of_plan(plan: Plan) -> str:
                   _list(plan.reasons), *parts)
 
 
-def of_motion(motion: Motion) -> str:
+def of_motion(motion: Motion[Any, Any]) -> str:
     """Return what is known of a motion, with its first and last sample."""
     rows = [["result", escape(motion.message)]]
     if not math.isnan(motion.error):

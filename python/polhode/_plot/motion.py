@@ -30,6 +30,9 @@ def _choose(track: Track, parts: tuple[str, ...]) -> list[str]:
             raise InvalidInput(f"plot: {part!r} must have the attitude; solve a scene whose want includes it")
     if parts:
         return list(parts)
+    if track.scene.controllers:
+        return ["polhode", "momentum", "rates", "commands"] if track.attitude is None else [
+            "polhode", "axis", "commands", "rates", "angles", "invariants"]
     if track.attitude is None:
         return ["polhode", "momentum", "rates", "invariants"]
     return ["polhode", "axis" if track.scene.torques else "herpolhode", "momentum", "rates", "angles", "invariants"]
@@ -46,20 +49,21 @@ def _find_marks(marks: Any, track: Track) -> Floats:
     return to_times(marks, "marks")
 
 
-def plot(motion: Motion, *parts: str, ax: Axes | None = None, marks: Any = None, dark: bool = False) -> Figure:
+def plot(motion: Motion[Any, Any], *parts: str, ax: Axes | None = None, marks: Any = None,
+         dark: bool = False) -> Figure:
     """Draw a motion; see `Motion.plot`."""
     style.need_matplotlib("plot")
     return draw(of_motion(motion), parts, ax, marks, dark)
 
 
-def animate(motion: Motion, body: Any, axis: Any) -> Film:
+def animate(motion: Motion[Any, Any], body: Any, axis: Any, title: str | None) -> Film:
     """Make a film of a motion; see `Motion.animate`."""
-    return make_film(of_motion(motion), body, axis)
+    return make_film(of_motion(motion), body, axis, title)
 
 
-def make_film(track: Track, body: Any, axis: Any) -> Film:
+def make_film(track: Track, body: Any, axis: Any, title: str | None = None) -> Film:
     """Make a film of what was taken of a motion."""
-    film: Film = _wings.load("_plot.film.film").Film(track, body, axis)
+    film: Film = _wings.load("_plot.film.film").Film(track, body, axis, title)
     return film
 
 
@@ -99,6 +103,8 @@ def _words(track: Track) -> tuple[str, str]:
     acting = ", ".join(type(torque).__name__ for torque in scene.torques) or "no torque"
     if scene.rotors:
         acting += f"; {len(scene.rotors)} rotor" + ("s" if len(scene.rotors) > 1 else "")
+    if scene.controllers:
+        acting += f"; {len(scene.controllers)} controller" + ("s" if len(scene.controllers) > 1 else "")
     moments = ", ".join(f"{m:.4g}" for m in scene.inertia.moments)
     under = f"moments {moments} kg m²; {acting}; {track.source}"
     if not curve.whole:

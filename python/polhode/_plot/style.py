@@ -79,6 +79,13 @@ def need_matplotlib(what: str) -> None:
         raise InvalidInput(f"{what}: needs matplotlib: pip install 'polhode[plot]'") from None
 
 
+def make_picture(**options: Any) -> Figure:
+    """Return an empty figure that a notebook shows."""
+    from .picture import Picture
+
+    return Picture(**options)
+
+
 @contextmanager
 def settings(look: Palette = LIGHT) -> Iterator[None]:
     """Use the style."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -13,12 +13,16 @@ from .. import _core
 from .._attitude.arrays import to_items
 from .._keywords import checked, wrong
 from .._orbit.sunlight import resolve
+from .wanted import At, AttitudeAlone, Om, OmegaAlone, Parts, Wanted
 
 if TYPE_CHECKING:
     import pathlib
+    from typing import Self, Unpack
+
+    from .wanted import Floats
 
 
-class Scene(_core.Scene):
+class Scene(_core.Scene, Wanted[Om, At]):
     """A body with its rotors, its start, its torques, and the sample times.
 
     Parameters
@@ -62,6 +66,15 @@ class Scene(_core.Scene):
     _torques: tuple[Any, ...]
     _controllers: tuple[Any, ...]
 
+    @overload
+    def __init__(self: Scene[Floats, None], *, want: OmegaAlone, **parts: Unpack[Parts]) -> None: ...
+
+    @overload
+    def __init__(self: Scene[None, Floats], *, want: AttitudeAlone, **parts: Unpack[Parts]) -> None: ...
+
+    @overload
+    def __init__(self: Scene[Floats, Floats], *, want: Iterable[str] = ..., **parts: Unpack[Parts]) -> None: ...
+
     @checked
     def __init__(
         self,
@@ -69,16 +82,16 @@ class Scene(_core.Scene):
         inertia: Any,
         omega: npt.ArrayLike,
         attitude: Any = (0.0, 0.0, 0.0, 1.0),
-        torques: Iterable[Any] = (),
+        torques: Iterable[Any] | Any = (),
         times: npt.ArrayLike,
         want: Iterable[str] = ("omega", "attitude"),
         t0: float = 0.0,
         name: str = "",
-        rotors: Iterable[_core.Rotor] = (),
+        rotors: Iterable[_core.Rotor] | _core.Rotor = (),
         damper: _core.Damper | None = None,
         momentum: _core.Changing | None = None,
         leaving: bool = False,
-        controllers: Iterable[Any] = (),
+        controllers: Iterable[Any] | Any = (),
     ) -> None:
         kept = to_items(torques, "scene.torques", "torques") if isinstance(torques, Iterable) else (torques,)
         if not isinstance(rotors, Iterable):
@@ -104,7 +117,7 @@ class Scene(_core.Scene):
         return self._controllers
 
     @classmethod
-    def load(cls, source: str | os.PathLike[str]) -> Scene:
+    def load(cls, source: str | os.PathLike[str]) -> Scene[Floats, Floats]:
         """Read a scene from a TOML file, or a scene of polhode by its name, such as "S1".
 
         Raises
@@ -128,6 +141,23 @@ class Scene(_core.Scene):
 
         save_scene(self, path)
 
+    def show_url(self, page: str = "playground.html") -> str:
+        """Return the address of the scene on the playground, to be opened in a browser.
+
+        Parameters
+        ----------
+        page : str
+            Where the page is: a file, or the address of a copy of the site with the page's name.
+
+        Raises
+        ------
+        InvalidInput
+            For a scene that the page has no fields for, with the reason. See docs/playground.md.
+        """
+        from .playground import show_url
+
+        return show_url(self, page)
+
     def _parts(self) -> dict[str, Any]:
         return {
             "inertia": self.inertia if self.changing is None else self.changing,
@@ -145,7 +175,19 @@ class Scene(_core.Scene):
             "controllers": self.controllers,
         }
 
-    def replace(self, **changes: Any) -> Scene:
+    @overload
+    def replace(self, *, want: OmegaAlone, **changes: Any) -> Scene[Floats, None]: ...
+
+    @overload
+    def replace(self, *, want: AttitudeAlone, **changes: Any) -> Scene[None, Floats]: ...
+
+    @overload
+    def replace(self, *, want: Iterable[str], **changes: Any) -> Scene[Floats, Floats]: ...
+
+    @overload
+    def replace(self, **changes: Any) -> Self: ...
+
+    def replace(self, **changes: Any) -> Scene[Any, Any]:
         """Return a scene with some parts changed, by the names of the constructor."""
         parts = self._parts()
         for key in changes:
@@ -166,6 +208,11 @@ class Scene(_core.Scene):
     def __hash__(self) -> int:
         arrays = self.omega.tobytes(), self.attitude.tobytes(), self.times.tobytes()
         return hash((self.name, self.t0, self.want, *arrays))
+
+    def _repr_html_(self) -> str:
+        from .._plot.tables import of_scene
+
+        return of_scene(self)
 
     def __repr__(self) -> str:
         moments = ", ".join(f"{m:.6g}" for m in self.inertia.moments)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core, torques
+from .._clock.controller import Controller
 from .._core import Damper, InvalidInput, Rotor
 from .._orbit.sunlight import rewrap
 from .._scene.scene import Scene
@@ -29,7 +30,9 @@ ROTOR_FIELDS = ("momentum", "inertia", "speed", "torque", "viscous", "coulomb", 
 
 
 def _read(holder: Any, field: str) -> Any:
-    """The number of a torque, a rotor or a damper, or None."""
+    """The number of a torque, a rotor, a damper or a controller, or None."""
+    if isinstance(holder, Controller):
+        return {**holder.parameters, **holder.states}.get(field)
     if isinstance(holder, torques.Formula):
         return holder.parameters.get(field)
     if isinstance(holder, Rotor) and field not in ROTOR_FIELDS:
@@ -43,17 +46,20 @@ def _is_fitted(what: str, holder: Any, field: str) -> bool:
         return field == "viscous"
     if what == "rotors":
         return field in ROTOR_FIELDS or field in dict(holder.parameters or {})
-    return isinstance(holder, torques.Formula) or field not in ("traits", "value", "windows")
+    return isinstance(holder, (torques.Formula, Controller)) or field not in ("traits", "value", "windows")
 
 
 def _holders(scene: Scene) -> dict[str, tuple[Any, ...]]:
     """What has numbers that are fitted."""
-    return {"torques": scene.torques, "rotors": scene.rotors,
+    return {"torques": scene.torques, "rotors": scene.rotors, "controllers": scene.controllers,
             "damper": () if scene.damper is None else (scene.damper,)}
 
 
 def find(scene: Scene, group: str) -> tuple[str, int, str]:
-    """Return ('torques', 'rotors', 'damper' or 'states', number, field) of a name such as 'torques.0.weight'."""
+    """Return what a name such as 'torques.0.weight' means: ('torques', 0, 'weight').
+
+    The first is 'torques', 'rotors', 'controllers', 'damper' or 'states'.
+    """
     parts = group.split(".")
     if len(parts) == 2 and parts[0] == "states":
         owners = [k for k, torque in enumerate(scene.torques) if parts[1] in getattr(torque, "states", ())]
@@ -78,6 +84,11 @@ def find(scene: Scene, group: str) -> tuple[str, int, str]:
         index, field = among[0], parts[1]
     holder = _inner(kinds[what][index])
     value = _read(holder, field)
+    if what == "controllers":
+        if value is None:
+            raise InvalidInput(f"fit: must be a parameter or the start of a state of the controller, which has "
+                               f"{', '.join((*holder.parameters, *holder.states)) or 'none'}, got {group!r}")
+        return what, index, field
     if isinstance(holder, torques.Formula) and value is None:
         raise InvalidInput(f"fit: must be numbers of Formula, which has {', '.join(holder.parameters) or 'none'}, "
                            f"got {group!r}")
@@ -115,6 +126,11 @@ def put(scene: Scene, group: str, value: Array) -> Scene:
     new: Any = value.reshape(shape) if shape else float(value[0])
     if what == "damper":
         return scene.replace(damper=Damper(inertia=holder.inertia, viscous=new, rates=holder.rates))
+    if what == "controllers":
+        table = "parameters" if field in holder.parameters else "states"
+        return scene.replace(controllers=[
+            one.replace(**{table: {**getattr(one, table), field: new}}) if k == index else one
+            for k, one in enumerate(items)])
     if what == "rotors":
         own = field in ROTOR_FIELDS
         change = {field: new} if own else {"parameters": {**holder.parameters, field: new}}

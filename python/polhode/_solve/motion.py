@@ -13,10 +13,11 @@ import numpy.typing as npt
 from .. import _core, _export, _wings
 from .._attitude.rotation import Rotation
 from .._scene.scene import Scene
+from .._scene.wanted import MotionAt, MotionOm, Wanted
 from .event_hit import EventHit
 from .plan import Plan
-from .record import describe, list_samples
-from .ticks import Ticks, list_arrays
+from .record import describe, describe_columns, describe_drift, list_samples, record, same_record
+from .ticks import Ticks
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,8 +39,10 @@ _PARTS: dict[str, Callable[[Any], Any]] = {
 }
 
 
-class Motion:
+class Motion(Wanted[MotionOm, MotionAt]):
     """The attitude and the angular velocity of a body at the sample times, in the order of the times.
+
+    Motions are equal if all that a file keeps of them is equal, but for the seconds that they took.
 
     Attributes
     ----------
@@ -50,9 +53,9 @@ class Motion:
     t : ndarray, shape (n,)
         The times that were reached [s].
     omega : ndarray, shape (n, 3), or None
-        Angular velocity in body axes [rad/s]; None if not requested.
+        Angular velocity in body axes [rad/s]; None if `want` leaves it out.
     attitude : ndarray, shape (n, 4), or None
-        Unit quaternions (x, y, z, w), body to space; None if not requested.
+        Unit quaternions (x, y, z, w), body to space; None if `want` leaves it out.
     states : dict of ndarray, shape (n,) or (n, k)
         The states of the scene's formulas by name; empty without any.
     status : {"finished", "event", "max_steps", "stopped", "failed", "sliding"}
@@ -89,8 +92,8 @@ class Motion:
     """
 
     t: Floats
-    omega: Floats | None
-    attitude: Floats | None
+    omega: MotionOm
+    attitude: MotionAt
     states: dict[str, Floats]
     status: str
     stats: dict[str, Any]
@@ -107,9 +110,9 @@ class Motion:
     proved_span: tuple[float, float] | None
     events: tuple[EventHit, ...]
     ticks: tuple[Ticks, ...]
-    sensitivity: Sensitivity | None = None
+    sensitivity: Sensitivity = None   # type: ignore[assignment]   # of solve(sensitivity=)
 
-    def __init__(self, scene: Scene, answer: _core.Answer, wishes: dict[str, Any] | None = None,
+    def __init__(self, scene: Scene[MotionOm, MotionAt], answer: _core.Answer, wishes: dict[str, Any] | None = None,
                  options: dict[str, Any] | None = None) -> None:
         self.scene = scene
         self.options = options or {}
@@ -207,13 +210,6 @@ class Motion:
                                                                  self._state_rows()))
         return kept
 
-    def _describe_drift(self) -> str:
-        drifted = {name: value for name, value in self.drift.items() if not value <= self.asked}
-        if not drifted:
-            return ""
-        name = max(drifted, key=lambda key: drifted[key])
-        return f"{name} drifted by {drifted[name]:.2g} (relative), more than the requested {self.asked:.2g}"
-
     @property
     def success(self) -> bool:
         """True if the run reached its end with the requested accuracy, and every sample is finite.
@@ -225,19 +221,7 @@ class Motion:
             return False
         if not all(np.isfinite(part).all() for part in (self.omega, self.attitude) if part is not None):
             return False
-        return not self._describe_drift() if math.isnan(self.error) else self.error <= self.asked
-
-    def _describe_columns(self) -> str:
-        """The columns of `sensitivity` whose error is above the accuracy of the call; empty where there are none."""
-        error = None if self.sensitivity is None else self.sensitivity.error
-        if self.sensitivity is None or error is None or not len(error) or math.isnan(self.asked):
-            return ""
-        missed = int(np.sum(~(error <= self.asked)))
-        if not missed:
-            return ""
-        worst = int(np.argmax(np.nan_to_num(error, nan=np.inf)))
-        return (f"the sensitivity misses the accuracy of {self.asked:.3g} in {missed} of {len(error)} columns; the "
-                f"largest error is {error[worst]:.2g}, of {self.sensitivity.columns[worst]}")
+        return not describe_drift(self) if math.isnan(self.error) else self.error <= self.asked
 
     @property
     def message(self) -> str:
@@ -245,8 +229,8 @@ class Motion:
         kept: str | None = self.__dict__.get("_message")
         if kept is None:
             assert self._answer is not None
-            drifted = self._describe_drift() if self.status in ("finished", "event") and math.isnan(self.error) else ""
-            notes = [note for note in (self._answer.message, drifted, self._describe_columns()) if note]
+            drifted = describe_drift(self) if self.status in ("finished", "event") and math.isnan(self.error) else ""
+            notes = [note for note in (self._answer.message, drifted, describe_columns(self)) if note]
             kept = self.__dict__["_message"] = "; ".join(notes)
         return kept
 
@@ -285,7 +269,8 @@ class Motion:
         *parts : str
             The parts to draw; six or four that suit the scene if none is given. "polhode" (Poinsot's ellipsoid),
             "herpolhode", "momentum" (the sphere of the angular momentum in body axes), "axis" (path of body z in
-            space), "rates", "attitude", "angles" (z-x-z), "energy" and "invariants" (their drift). If the samples are
+            space), "rates", "attitude", "angles" (z-x-z), "energy", "invariants" (their drift) and
+            "commands" (of controllers). If the samples are
             too far apart for a line, curves use dense output, or a second solution of the scene.
         ax : matplotlib Axes, optional
             Where to draw a single part.
@@ -352,9 +337,9 @@ class Motion:
         if accuracy is not None or epoch is not None or options:
             first = next(iter({"accuracy": accuracy, "epoch": epoch, **options}))
             raise _core.InvalidInput(f"{first}: belongs to files of attitudes: {', '.join(_wings.list_suffixes())}")
-        _export.save(found, describe(self), {"t": self.t, **list_samples(self), **list_arrays(self.ticks)})
+        _export.save(found, *record(self))
 
-    def animate(self, *, body: Any = "box", axis: npt.ArrayLike | None = None) -> Film:
+    def animate(self, *, body: Any = "box", axis: npt.ArrayLike | None = None, title: str | None = None) -> Film:
         """Make a film of the motion: the body turns, beside the polhode on the ellipsoid of its energy.
 
         Parameters
@@ -364,6 +349,8 @@ class Motion:
         axis : array_like, shape (3,), optional
             The body axis whose path in space is drawn. By default the arm of gravity, or the principal axis nearest to
             omega at the start.
+        title : str, optional
+            By default the name of the scene.
 
         Returns
         -------
@@ -377,10 +364,18 @@ class Motion:
         """
         from .._plot.motion import animate
 
-        return animate(self, body, axis)
+        return animate(self, body, axis, title)
 
     def __len__(self) -> int:
         return int(self.t.size)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Motion):
+            return NotImplemented
+        return self is other or same_record(record(self), record(other))
+
+    def __hash__(self) -> int:
+        return hash((self.status, self.t.tobytes()))
 
     def __repr__(self) -> str:
         drift = ", ".join(f"{name} {value:.1e}" for name, value in self.drift.items())

@@ -24,6 +24,25 @@ class Failure(Exception):
     """A run that ended without a result; the text says why."""
 
 
+OWN = "compiled, its own"   # where the equations of most candidates are evaluated
+EULER, SEPARATRIX, CLOSED = "Euler's rates", "u, v", "closed form"   # the variables of a candidate
+
+
+def euler(scene: Scene) -> str:
+    """The variables of a solver of the plain equations."""
+    return EULER
+
+
+def separatrix(scene: Scene) -> str:
+    """The variables of methods that step u and v of triaxial bodies: docs/ode.md, Variables."""
+    return SEPARATRIX if scene.inertia.symmetry == "triaxial" else EULER
+
+
+def closed(scene: Scene) -> str:
+    """A closed form has no variables that are stepped."""
+    return CLOSED
+
+
 Run = Callable[[float, float | None], Answer]
 Settings = tuple[tuple[str, float], ...]
 
@@ -44,6 +63,8 @@ class Candidate(NamedTuple):
     start: Callable[[Scene], Run]
     refuses: Callable[[Scene], str]
     swept: str = "rtol"   # | "accuracy" | "step" | "": what a setting's value is
+    variables: Callable[[Scene], str] = euler
+    right_hand_side: str = OWN   # where the equations are evaluated
 
     def run(self, scene: Scene, value: float, limit: float | None) -> Answer:
         """Get ready and answer once."""

@@ -13,10 +13,24 @@ from .. import _core
 from .._harness.formulas import to_formulas, why_no_formulas
 from .._scene.scene import Scene
 from .._solve.motion import Motion
+from .._solve.plan import plan
 from .._solve.solve import methods, solve
 from . import peers as peer_list
-from .candidate import Answer, Candidate, Failure, Run, Settings, fixed, steps, tolerances
+from .candidate import (
+    Answer,
+    Candidate,
+    Failure,
+    Run,
+    Settings,
+    closed,
+    euler,
+    fixed,
+    separatrix,
+    steps,
+    tolerances,
+)
 
+IN_U_V = {"taylor", "radau", "symplectic"}   # methods that step separatrix variables
 COUNTS = ("steps", "rejected", "derivatives")
 
 
@@ -56,20 +70,26 @@ def _method(record: dict[str, Any]) -> Candidate:
 
     return Candidate(name, "cheap" if record["comparison"] else "method", record["source"], settings,
                      lambda scene: _solving(scene, "rtol" if adaptive else "step", method=name), refuses,
-                     "rtol" if adaptive else "step")
+                     "rtol" if adaptive else "step", separatrix if name in IN_U_V else euler)
 
 
 def _formula() -> Candidate:
     """Return the candidate of torques as a user would write them: formulas, by their Taylor series."""
     return Candidate("formula", "formula", "taylor; each torque is a formula of its own law, which is not recognised",
                      tolerances(3, 14), lambda scene: _solving(to_formulas(scene), "rtol", method="taylor"),
-                     why_no_formulas)
+                     why_no_formulas, variables=separatrix)
 
 
 def _plan() -> Candidate:
     """Return the candidate of `solve` with an accuracy, including its certificate."""
     return Candidate("plan", "plan", "polhode.solve(accuracy=), with its certificate", tolerances(3, 12, 3),
-                     lambda scene: _solving(scene, "accuracy"), lambda scene: "", "accuracy")
+                     lambda scene: _solving(scene, "accuracy"), lambda scene: "", "accuracy", _planned)
+
+
+def _planned(scene: Scene) -> str:
+    """The variables of what the plan chooses at its tightest setting here."""
+    chosen = plan(scene, 1e-12).method
+    return closed(scene) if chosen == "exact" else separatrix(scene) if chosen in IN_U_V else euler(scene)
 
 
 def _closed_form(name: str, source: str) -> Candidate:
@@ -85,7 +105,7 @@ def _closed_form(name: str, source: str) -> Candidate:
             return "torques or rotors start or stop within the span"
         return str(_core.closed_form_refusal(scene, name))
 
-    return Candidate(name, "exact", source, fixed("closed form"), start, refuses, "")
+    return Candidate(name, "exact", source, fixed("closed form"), start, refuses, "", closed)
 
 
 def _exact() -> list[Candidate]:

@@ -109,6 +109,69 @@ def refuses(scene: Scene, implicit: bool = False) -> str:
     return unwritten(scene) or refuses_times(scene)
 
 
+def _rotating(w: Numbers, q: Numbers) -> list[Any]:
+    """The derivative of the quaternion."""
+    x, y_, z, s = q
+    a, b, c = (0.5 * v for v in w)
+    return [s * a + y_ * c - z * b, s * b + z * a - x * c, s * c + x * b - y_ * a,
+            -1.0 * (x * a + y_ * b + z * c)]
+
+
+class Separatrix:
+    """The variables u = omega_3 - s omega_1, omega_2 and v = omega_3 + s omega_1 of a triaxial body: docs/ode.md.
+
+    Their part without a torque is u' = r omega_2 u, v' = -r omega_2 v: next to the separatrix each keeps its digits.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        moments = np.diag(scene.carrier_inertia.matrix)
+        self.axes = [int(k) for k in np.argsort(moments)]
+        a, b, c = (float(moments[k]) for k in self.axes)
+        even = self.axes in ([0, 1, 2], [1, 2, 0], [2, 0, 1])
+        sign = 1.0 if even else -1.0
+        self.scale = math.sqrt(a * (b - a) / (c * (c - b)))
+        self.rate = sign * math.sqrt((b - a) * (c - b) / (a * c))
+        self.middle = sign * (c - a) / (4.0 * b * self.scale)
+        self.moments = a, b, c
+
+    @staticmethod
+    def refuses(scene: Scene, implicit: bool = False) -> str:
+        """Why a scene has no such variables, or ""."""
+        matrix = scene.carrier_inertia.matrix
+        if scene.inertia.symmetry != "triaxial" or (matrix != np.diag(np.diag(matrix))).any():
+            return "u, v: for triaxial bodies in principal axes"
+        if scene.rotor_momentum.any():
+            return "u, v: without rotors"
+        return refuses(scene, implicit)
+
+    def start(self, scene: Scene) -> Any:
+        """The first state: u, omega_2, v and the quaternion."""
+        a, b, c = scene.omega[self.axes]
+        return np.concatenate([[c - self.scale * a, b, c + self.scale * a], scene.attitude])
+
+    def rates(self, y: Any) -> Any:
+        """The rates about the body axes of states, shape (n, 3)."""
+        found = np.empty((len(y), 3))
+        found[:, self.axes] = np.stack([(y[:, 2] - y[:, 0]) / (2 * self.scale), y[:, 1], (y[:, 0] + y[:, 2]) / 2], 1)
+        return found
+
+    def derivatives(self, scene: Scene, t: Any, y: Numbers, cos: Function = math.cos,
+                    sin: Function = math.sin) -> list[Any]:
+        """Return the seven derivatives."""
+        u, b, v = y[:3]
+        w: list[Any] = [0.0, 0.0, 0.0]
+        for axis, value in zip(self.axes, ((0.5 / self.scale) * (v - u), b, 0.5 * (u + v))):
+            w[axis] = value
+        change = [self.rate * b * u, self.middle * ((v - u) * (v + u)), -self.rate * b * v]
+        for torque in scene.torques:
+            tau = _TORQUES[type(torque)](torque, scene, t, w, y[3:], cos, sin)
+            one, two, three = (_dot([1.0 / m], [tau[k]]) for m, k in zip(self.moments, self.axes))
+            push = _dot([self.scale], [one])
+            change = [_dot([1.0, 1.0], pair)
+                      for pair in zip(change, (_difference(three, push), two, _dot([1.0, 1.0], [three, push])))]
+        return [*change, *_rotating(w, y[3:])]
+
+
 def derivatives(scene: Scene, t: Any, y: Numbers, cos: Function = math.cos, sin: Function = math.sin) -> list[Any]:
     """Return the seven derivatives of y = (omega, quaternion)."""
     w, q = y[:3], y[3:]
@@ -125,10 +188,7 @@ def derivatives(scene: Scene, t: Any, y: Numbers, cos: Function = math.cos, sin:
         tau = [_dot([1.0, 1.0], pair) for pair in zip(tau, more)]
     if scene.rotor_momentum.any():
         tau = [_dot([1.0, 1.0], pair) for pair in zip(tau, _cross(scene.rotor_momentum.tolist(), w))]
-    x, y_, z, s = q
-    a, b, c = (0.5 * v for v in w)
-    return [*(_dot(row, tau) for row in inverse), s * a + y_ * c - z * b, s * b + z * a - x * c, s * c + x * b - y_ * a,
-            -1.0 * (x * a + y_ * b + z * c)]
+    return [*(_dot(row, tau) for row in inverse), *_rotating(w, q)]
 
 
 class Symbol:
@@ -171,11 +231,15 @@ class Symbol:
 STATE = ("a", "b", "c", "x", "y", "z", "s")
 
 
-def source(scene: Scene) -> tuple[list[tuple[str, str]], list[str]]:
-    """Return the steps, as (name, text), from t and the names in `STATE` to the seven derivatives, and their names."""
+def source(scene: Scene, form: Separatrix | None = None) -> tuple[list[tuple[str, str]], list[str]]:
+    """Return the steps, as (name, text), from t and the names in `STATE` to the seven derivatives, and their names.
+
+    With a `form` the first three of the state are its variables instead of the rates.
+    """
     lines: dict[str, str] = {}
     state = [Symbol(name, lines) for name in STATE]
-    found = derivatives(scene, Symbol("t", lines), state, lambda v: v.called("cos"), lambda v: v.called("sin"))
+    write = derivatives if form is None else form.derivatives
+    found = write(scene, Symbol("t", lines), state, lambda v: v.called("cos"), lambda v: v.called("sin"))
     names = [value.name if isinstance(value, Symbol) else repr(float(value)) for value in found]
     used, kept = set(names), []
     for text, name in reversed(lines.items()):   # unused names are left out
@@ -183,6 +247,16 @@ def source(scene: Scene) -> tuple[list[tuple[str, str]], list[str]]:
             kept.append((name, text))
             used.update(re.findall(r"\bv\d+\b", text))
     return kept[::-1], names
+
+
+def for_numba(scene: Scene, arguments: str) -> Any:
+    """Return a function of these arguments, which fills f from t and u, in words that Numba compiles."""
+    steps, names = source(scene)
+    lines = [f"{name} = u[{i}]" for i, name in enumerate(STATE)] + [f"{name} = {text}" for name, text in steps]
+    lines += [f"f[{i}] = {name}" for i, name in enumerate(names)]
+    space: dict[str, Any] = {"cos": math.cos, "sin": math.sin}
+    exec(f"def function({arguments}):\n " + "\n ".join(lines), space)   # made of floats and the names above alone
+    return space["function"]
 
 
 def in_floats(scene: Scene) -> Callable[[float, Any], list[float]]:

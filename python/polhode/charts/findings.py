@@ -7,6 +7,7 @@ import re
 import statistics
 
 from .._plot.text import to_count, to_error, to_time
+from .candidate import CLOSED, OWN
 from .measure import Point, SceneResult
 
 
@@ -190,3 +191,32 @@ def without_answer(result: SceneResult) -> dict[str, str]:
     answered = {p.candidate for p in result.points if p.answered}
     silent = [p for p in result.points if p.candidate not in answered and not p.left_out and p.family != "cheap"]
     return {p.candidate: p.why for p in reversed(silent)}
+
+
+def stopped(result: SceneResult, name: str) -> str | None:
+    """Return the tightest setting that a candidate answered, where the budget left out one after it."""
+    points = [p for p in result.points if p.candidate == name]
+    answered = [i for i, p in enumerate(points) if p.answered]
+    cut = answered and any(p.left_out or p.why.startswith("not done") for p in points[answered[-1] + 1:])
+    return points[answered[-1]].setting if cut else None
+
+
+def how_it_ran(result: SceneResult) -> list[str]:
+    """Return what a picture says of its curves: the variables, the right-hand sides, and where the budget ended."""
+    shown = result.names("method", "cheap", "formula", "peer", "exact", "plan")
+    variables: dict[str, list[str]] = {}
+    places: dict[str, list[str]] = {}
+    for name in shown:
+        if name in result.about:
+            stepped, place = result.about[name]
+            variables.setdefault(stepped, []).append(name)
+            if place != OWN:
+                places.setdefault(place, []).append(name)
+    lines = [f"In {stepped}: {', '.join(names)}" for stepped, names in variables.items() if stepped != CLOSED]
+    if places:
+        parts = [f"{place}: {', '.join(names)}" for place, names in places.items()]
+        lines.append(f"Right-hand side {'; '.join(parts)}")
+    ends = {name: setting for name in shown if (setting := stopped(result, name))}
+    if ends:
+        lines.append("The budget stopped " + ", ".join(f"{name} at {setting}" for name, setting in ends.items()))
+    return [f"{line}." for line in lines]

@@ -21,7 +21,7 @@ SHORTEST = 2e-3   # seconds of calls behind one reading of the clock
 SWEEPS = 0.75     # of the budget: when the sweeps must have ended; then come repeats
 LEAST = 0.1       # of the budget, for the repeats
 CROWDED = 0.01    # of the budget: what a candidate gets when all the time is gone
-WEIGHTS = {"cheap": 0.25, "peer": 0.7}   # of a candidate in the sweeps, by its family; 1 for the others
+WEIGHTS = {"cheap": 0.25, "peer": 1.5}   # of a candidate in the sweeps, by its family; 1 for the others
 
 ENDS = ("not done within", "hung", "ended its process", "InvalidInput")   # failures that tighter settings share
 
@@ -66,6 +66,7 @@ class SceneResult:
     notes: list[str]
     seconds: float = 0.0
     startups: dict[str, float] = field(default_factory=dict)   # seconds before the first answer, beside that answer's
+    about: dict[str, tuple[str, str]] = field(default_factory=dict)   # variables and right-hand side, by candidate
     per_turn: dict[str, float] = field(default_factory=dict)   # error per turn at 1/60 s [rad], by fixed-step method
 
     def of(self, candidate: str) -> list[Point]:
@@ -214,4 +215,5 @@ def measure(
     report("repeats")
     deadline = max(start + budget, time.perf_counter() + LEAST * budget)
     _repeat([p for p in points if p.answered], runner, deadline)
-    return SceneResult(scene, title, truth, points, notes, time.perf_counter() - start, startups)
+    about = {candidate.name: (candidate.variables(scene), candidate.right_hand_side) for candidate in taking_part}
+    return SceneResult(scene, title, truth, points, notes, time.perf_counter() - start, startups, about)

@@ -20,6 +20,7 @@ from .findings import (
     dominated,
     headline,
     held_by_stability,
+    how_it_ran,
     program_ratios,
     stalls,
     to_ratio,
@@ -149,10 +150,13 @@ def work_precision(result: SceneResult, folder: pathlib.Path) -> list[pathlib.Pa
     """One scene: time against error."""
     with style.used() as plt:
         title, under = _wrap(headline(result), 72), _wrap(under_headline(result), 125)
-        height = 5.9
-        below = height - 0.62 - 0.25 * title.count("\n") - 0.18 * under.count("\n")
+        foot = "\n".join(_wrap(line, 140) for line in how_it_ran(result))
+        base = 0.62 + 0.155 * (foot.count("\n") + 1) if foot else 0.62
+        height = 5.28 + base
+        below = height - base - 0.25 * title.count("\n") - 0.18 * under.count("\n")
         figure = plt.figure(figsize=(8.6, height))
-        axes = figure.add_axes((0.1, 0.62 / height, 0.73, (below - 0.9) / height))
+        axes = figure.add_axes((0.1, base / height, 0.73, (below - 0.9) / height))
+        figure.text(0.03, 0.08 / height, foot, fontsize=7.5, color=style.QUIET, va="bottom", linespacing=1.35)
         _frame(axes, [result])
         _time_ticks(axes)
         _error_ticks(axes, every=2)

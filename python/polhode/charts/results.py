@@ -13,15 +13,16 @@ from .._harness.machine import machine, versions
 from .._harness.truth import to_json
 from .._scene.scene import Scene
 from . import peers as peer_list
-from .findings import dominated, headline, without_answer
+from .findings import dominated, headline, stopped, without_answer
 from .measure import Point, SceneResult
 
-FORMAT = "polhode chart 2"
+FORMAT = "polhode chart 3"
 MEASURE = ("error: over all samples, the larger of |omega - truth| / max |truth| and the angle of the rotation between "
            "the attitudes [rad]; seconds: CPU time of the thread for all samples, median of the repeats, taken in turn "
            "with all others, fastest and slowest among them; startups: wall seconds before and above the first answer, "
-           "such "
-           "as for a compiler; drift: largest move of each invariant from its start, relative; error per turn at "
+           "such as for a compiler; variables: in which the equations are stepped; right_hand_side: where they are "
+           "evaluated; stopped_at: the tightest setting that ran, where the budget of time left out tighter ones; "
+           "drift: largest move of each invariant from its start, relative; error per turn at "
            "1/60 s: of the attitude of a method with a fixed step, over ten turns at the start's rate [rad]")
 
 
@@ -59,6 +60,9 @@ def document(results: list[SceneResult], seconds: float, files: list[str], with_
             {"name": r.scene.name, "title": r.title, "samples": int(r.scene.times.size),
              "span": float(np.ptp(np.append(r.scene.times, r.scene.t0))), "scene": _scene(r.scene),
              "reference": to_json(r.truth), "finding": headline(r),
+             "candidates": {name: {"variables": variables, "right_hand_side": where, "stopped_at": stopped(r, name)}
+                            for name, (variables, where) in r.about.items()
+                            if any(p.candidate == name for p in r.points)},
              "error_per_turn_at_60_hz": {name: _number(value) for name, value in r.per_turn.items()},
              "dominated": sorted(dominated(r)), "without_answer": without_answer(r), "startups": r.startups,
              "notes": r.notes, "seconds": r.seconds, "points": [_point(p) for p in r.points]}

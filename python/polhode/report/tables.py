@@ -70,6 +70,29 @@ def best(content: dict[str, Any]) -> tuple[Row, list[Row]]:
     return ["smallest error", *(scene["name"] for scene in content["scenes"])], rows
 
 
+def against(content: dict[str, Any], count: int = 5) -> tuple[Row, list[Row]]:
+    """Return the comparisons that are worst for polhode's integrators: at an error, the time over another program's.
+
+    Closed forms stand in a column of their own, and do not count. An error that polhode's integrators do not reach and
+    another program does comes first.
+    """
+    found: list[tuple[float, Row]] = []
+    for scene in content["scenes"]:
+        for level in LEVELS:
+            peer = fastest(scene, level, ("peer",))
+            if peer is None:
+                continue
+            own, exact = fastest(scene, level, ("method", "cheap")), fastest(scene, level, ("exact",))
+            ratio = math.inf if own is None else float(own["seconds"]) / float(peer["seconds"])
+            found.append((ratio, [
+                f"{scene['name']} {scene['title']}", to_error(level), f"{peer['candidate']} {to_time(peer['seconds'])}",
+                "not reached" if own is None else f"{own['candidate']} {to_time(own['seconds'])}",
+                "-" if own is None else f"{ratio:.2g}", "-" if exact is None else to_time(exact["seconds"])]))
+    found.sort(key=lambda item: -item[0])
+    return (["scene", "error", "other program", "polhode's integrators", "times as long", "closed form"],
+            [row for _, row in found[:count]])
+
+
 def failures(content: dict[str, Any]) -> tuple[Row, list[Row]]:
     """Return every run that failed and every one that was left out, with the reason."""
     found: dict[tuple[str, str, str], list[str]] = {}
@@ -111,6 +134,20 @@ def machine(content: dict[str, Any]) -> list[Row]:
     rows += [[name, version] for name, version in content["versions"].items()]
     rows += [[f"{name}, not installed", how] for name, how in content["missing"].items()]
     return rows
+
+
+def how_they_ran(content: dict[str, Any]) -> str:
+    """Return the variables and the right-hand side of each candidate; of older results what is known of them."""
+    about: dict[str, set[tuple[str, str]]] = {}
+    for scene in content["scenes"]:
+        for name, one in scene.get("candidates", {}).items():
+            about.setdefault(name, set()).add((one["variables"], one["right_hand_side"]))
+    if not about:
+        return ("taylor, radau and symplectic stepped u, v on triaxial bodies in this run. All other methods and "
+                "programs stepped Euler's rates. SciPy and SUNDIALS called a right-hand side in Python.")
+    rows = [[name, " or ".join(sorted({v for v, _ in found})), " or ".join(sorted({w for _, w in found}))]
+            for name, found in about.items()]
+    return markdown((["candidate", "variables", "right-hand side"], rows))
 
 
 def startups(content: dict[str, Any]) -> tuple[Row, list[Row]]:

@@ -199,3 +199,44 @@ def test_startups_are_told():
                      lambda text: None)
     assert 0.05 <= result.startups["late"] < 1 and all(p.seconds < 0.01 for p in result.points)
     assert math.isfinite(result.points[0].slowest)
+
+
+@pytest.mark.parametrize("torque", ["none", "gravity", "gravity gradient", "damping", "thruster", "wind"])
+@pytest.mark.parametrize("moments", [(1.0, 2.0, 2.5), (2.5, 1.0, 2.0), (2.0, 1.0, 2.5), (1.0, 2.5, 2.0)])
+def test_the_separatrix_variables_have_the_same_motion(torque, moments):
+    q = np.array([0.1, 0.7, 0.3, 0.5])
+    scene = ph.Scene(inertia=moments, omega=(1.0, 2.0, 3.0), attitude=q / np.linalg.norm(q), times=[0.0, 1.0],
+                     torques=TORQUES[torque])
+    form, h = equations.Separatrix(scene), 1e-6
+    y = form.start(scene)
+    np.testing.assert_allclose(form.rates(y[None])[0], scene.omega, rtol=1e-15)
+    slope = np.array(form.derivatives(scene, 0.3, y.tolist()))
+    plain = equations.derivatives(scene, 0.3, [*scene.omega, *scene.attitude])
+    moved = form.rates(np.stack([y + h * slope, y - h * slope]))
+    np.testing.assert_allclose((moved[0] - moved[1]) / (2 * h), plain[:3], atol=1e-9)
+    np.testing.assert_allclose(slope[3:], plain[3:], rtol=1e-14, atol=1e-14)
+
+
+def test_scenes_without_separatrix_variables_are_refused():
+    assert equations.Separatrix.refuses(TINY) == ""
+    assert "triaxial" in equations.Separatrix.refuses(TINY.replace(inertia=(1.0, 1.0, 1.5)))
+    assert "triaxial" in equations.Separatrix.refuses(TINY.replace(inertia=TURN @ np.diag([1.0, 2.0, 2.5]) @ TURN.T))
+    assert "rotors" in equations.Separatrix.refuses(TINY.replace(rotors=[ph.Rotor((0, 0, 1), momentum=0.3)]))
+
+
+def test_heyoka_in_u_v_keeps_the_racket():
+    pytest.importorskip("heyoka")
+    scene, found = ph.Scene.load("S2"), {}
+    truth = find_truth(scene)
+    for candidate in peers.heyoka.candidates():
+        answer = candidate.start(scene)(2.3e-16, None)
+        found[candidate.name] = compute_errors(answer.omega, answer.attitude, truth).largest
+    assert found["heyoka u v"] < 1e-11 < 1e-6 < found["heyoka high_accuracy"] < found["heyoka"]
+
+
+def test_cvode_takes_a_compiled_right_hand_side():
+    pytest.importorskip("numba")
+    program = equations.for_numba(TINY, "t, u, f")
+    y, slope = np.array([1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0]), np.empty(7)
+    program(0.0, y, slope)
+    np.testing.assert_array_equal(slope, equations.in_floats(TINY)(0.0, y))

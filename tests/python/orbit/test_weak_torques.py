@@ -38,7 +38,7 @@ def find_effect(scene):
 def test_the_bound_holds(name, kind):
     if (name, kind) == ("radial", "light"):
         pytest.skip("a radial orbit meets the centre, which lies in the shadow")
-    scene = ph.Scene(inertia=(1e-2, 2e-2, 2.5e-2), omega=(1e-3, 2e-3, -1e-3), times=np.linspace(0, 60, 4),
+    scene = ph.Scene(inertia=(1, 2, 2.5), omega=(0.1, 0.2, -0.1), times=np.linspace(0, 6, 4),
                      attitude=ph.Rotation.from_rotvec((0.4, 0.7, -0.2)).as_quat(), torques=[make(kind, ORBITS[name])])
     bound = ph.effect(scene)
     assert bound.kind == "bounded", bound.reason
@@ -47,12 +47,12 @@ def test_the_bound_holds(name, kind):
 
 def test_the_bound_of_a_gradient_is_sharp():
     """A body that stands in the worst attitude at the periapsis: half of the bound is there."""
-    orbit = ph.Orbit.from_elements(1.0, periapsis_distance=1.0, e=0.5)
-    scene = ph.Scene(inertia=(1, 2, 2.5), omega=(0, 0, 1e-3), torques=[ph.torques.GravityGradient(orbit=orbit)],
+    orbit = ph.Orbit.from_elements(1e-4, periapsis_distance=1.0, e=0.5)
+    scene = ph.Scene(inertia=(1, 2, 2.5), omega=(0, 0, 1), torques=[ph.torques.GravityGradient(orbit=orbit)],
                      attitude=ph.Rotation.from_rotvec((0, np.pi / 4, 0)).as_quat(), times=[0.01])
     bound = ph.effect(scene)
-    exact = 1.5 * 1.5 * 0.01   # 3 mu / r^3 (I3 - I1) / 2 over the time, and over the moment 2 about that axis
-    assert find_effect(scene) == pytest.approx(exact / 2, rel=1e-2)
+    exact = 1.5e-4 * 1.5 * 0.01   # 3 mu / r^3 (I3 - I1) / 2 over the time, and over the moment 2 about that axis
+    assert find_effect(scene) == pytest.approx(exact / 2, rel=2e-2)
     assert exact / 2 <= bound.omega <= 1.1 * exact
 
 
@@ -62,7 +62,7 @@ def test_weak_torques_on_orbits_leave_a_closed_form():
                      torques=[make("gradient", ORBITS["flyby"]), make("dipole", orbit)])
     assert ph.plan(scene, accuracy=1e-12).left_out == ()
     scene = scene.replace(torques=[make("dipole", orbit), make("light", orbit)])
-    motion = ph.solve(scene, accuracy=1e-4)
+    motion = ph.solve(scene, accuracy=1e-3)
     assert motion.plan.method == "exact" and [record.torque for record in motion.plan.left_out] == [0, 1]
     whole = ph.solve(scene, accuracy=1e-12)
     assert np.abs(motion.omega - whole.omega).max() <= motion.error * motion.omega_scale

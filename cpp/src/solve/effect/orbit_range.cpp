@@ -44,10 +44,18 @@ OrbitRange find_range(const formula::Ephemeris& ephemeris, [[maybe_unused]] doub
     return {least, std::max({top * room, measure(first) * room, measure(last) * room}), std::sqrt(2 * mu / least) * room};
   }
   const bool closed = e < 1.0 && std::isfinite(orbit->period());
-  const double most = closed ? q * (1 + e) / (1 - e) : std::max(measure(first), measure(last));
   const DriftBound drift = closed ? bound_drift(*orbit, q, e) : DriftBound{};
-  const double speed = std::sqrt(mu / q * (1 + e)) * (1 + drift.faster) + drift.turn * most;   // at the periapsis
-  return {q / room, most * room, speed * room};
+  double least = q, most = closed ? q * (1 + e) / (1 - e) : std::max(measure(first), measure(last));
+  if (!closed || last - first < 0.4 * orbit->period()) {
+    // At most one apsis lies within: the sign of the radial velocity says which.
+    const OrbitState a = orbit->at(first), b = orbit->at(last);
+    const bool falls = a.r.dot(a.v) <= 0.0, rises = b.r.dot(b.v) >= 0.0;
+    if (!(falls && rises)) least = std::max(least, std::min(a.r.norm(), b.r.norm()));
+    if (falls || rises) most = std::min(most, std::max(a.r.norm(), b.r.norm()));
+  }
+  // Vis viva; the speed is largest at the least distance.
+  const double speed = std::sqrt(std::max(2 * mu / least - mu * (1 - e) / q, 0.0)) * (1 + drift.faster) + drift.turn * most;
+  return {least / room, most * room, speed * room};
 #else
   static_cast<void>(ephemeris);
   return unknown;

@@ -37,7 +37,11 @@ class Film:
         The body axis whose path in space is drawn.
     """
 
-    def __init__(self, track: Track, body: Any = "box", axis: npt.ArrayLike | None = None) -> None:
+    def __init__(self, track: Track, body: Any = "box", axis: npt.ArrayLike | None = None,
+                 title: str | None = None) -> None:
+        if title is not None and not isinstance(title, str):
+            raise InvalidInput(f"title: must be a text, got {type(title).__name__}")
+        self._title = title
         if track.curve.attitude is None:
             raise InvalidInput("animate: must have the attitude; solve a scene whose want includes it")
         if track.curve.t.size < 2 or not np.ptp(track.curve.t) > 0:
@@ -66,8 +70,13 @@ class Film:
 
     @property
     def title(self) -> str:
-        """The name of the scene."""
-        return self.scene.name or "Motion"
+        """As given, or the name of the scene."""
+        return self._title or self.scene.name or "Motion"
+
+    @property
+    def keeps_momentum(self) -> bool:
+        """Whether no torque changes the angular momentum in space, so that its arrow is drawn."""
+        return not self.scene.torques and not self.scene.controllers and not self.scene.leaving
 
     def to_html(self, start: float | None = None) -> str:
         """Return a page that needs no network and no other file.

@@ -3,9 +3,18 @@
 (function () {
   const film = JSON.parse(document.getElementById("film").textContent);
   const find = (id) => document.getElementById(id);
-  const dark = window.matchMedia("(prefers-color-scheme: dark)");
-  const hue = (pair) => (dark.matches ? pair.dark : pair.light);
+  const system = window.matchMedia("(prefers-color-scheme: dark)"), root = document.documentElement;
+  const isDark = () => (root.dataset.theme ? root.dataset.theme === "dark" : system.matches);
+  const hue = (pair) => (isDark() ? pair.dark : pair.light);
   const ink = () => getComputedStyle(document.documentElement).getPropertyValue("--quiet").trim();
+
+  // A page that frames a film says in the address how it is to look: #within&theme=dark
+  function dress() {
+    const theme = /[#&]theme=(light|dark)/.exec(location.hash);
+    if (theme) root.dataset.theme = theme[1]; else delete root.dataset.theme;
+    root.toggleAttribute("data-within", /[#&]within/.test(location.hash));
+  }
+  dress();
 
   function unpack(text) {
     const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
@@ -42,6 +51,23 @@
       ball.paint();
       lines.push(ball);
       return ball;
+    };
+    view.arrowhead = function (along, tip, colour) {   // a cone along a unit vector
+      const way = new THREE.Vector3(...along), middle = new THREE.Vector3(...tip), corners = [];
+      const side = new THREE.Vector3(Math.abs(along[0]) < 0.8 ? 1 : 0, Math.abs(along[0]) < 0.8 ? 0 : 1, 0).cross(way).normalize();
+      const other = way.clone().cross(side), end = middle.clone().addScaledVector(way, 0.16);
+      const rim = (k) => middle.clone().addScaledVector(side, 0.055 * Math.cos(k * Math.PI / 10)).addScaledVector(other, 0.055 * Math.sin(k * Math.PI / 10));
+      for (let k = 0; k < 20; k++) for (const top of [end, middle]) {
+        for (const point of [top, rim(k), rim(k + 1)]) corners.push(...point.toArray());
+      }
+      const made = new THREE.BufferGeometry();
+      made.setAttribute("position", new THREE.BufferAttribute(new Float32Array(corners), 3));
+      const material = new THREE.MeshBasicMaterial({ side: 2 });
+      const head = new THREE.Mesh(made, material);
+      head.paint = () => material.color.set(colour());
+      head.paint();
+      lines.push(head);
+      return head;
     };
     view.draw = function () {
       const width = canvas.clientWidth, height = canvas.clientHeight;
@@ -133,7 +159,7 @@
     if (film.arm) space.scene.add(space.ball(0.03, ink));
     if (film.momentum) {
       const tip = film.momentum.map((x) => 1.3 * x);
-      space.scene.add(space.line([0, 0, 0, ...tip], ink, 2.5));
+      space.scene.add(space.line([0, 0, 0, ...tip], ink, 2.5), space.arrowhead(film.momentum, tip, ink));
     }
     const frame = new THREE.Quaternion(), next = new THREE.Quaternion();
     const points = new Float32Array(3 * film.count), tip = new THREE.Vector3();
@@ -147,7 +173,7 @@
       const poinsot = makeView(find("poinsot").querySelector("canvas"), 0.61, 0.38, 1.15);
       views.push(poinsot);
       const grey = new THREE.MeshLambertMaterial({ polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2 });
-      grey.paint = () => grey.color.set(dark.matches ? "#3a424b" : "#dfe5ea");
+      grey.paint = () => grey.color.set(isDark() ? "#3a424b" : "#dfe5ea");
       grey.paint();
       poinsot.lines.push(grey);
       const ellipsoid = new THREE.Mesh(new THREE.SphereGeometry(1, 72, 48), grey);
@@ -223,14 +249,16 @@
     if (event.key === " " && event.target.tagName !== "BUTTON") { event.preventDefault(); run(!playing); }
   });
   window.addEventListener("resize", () => go(now));
-  dark.addEventListener("change", () => {
+  function repaint() {
     views.forEach((view) => view.lines.forEach((one) => one.paint()));
     go(now);
-  });
+  }
+  system.addEventListener("change", repaint);
+  window.addEventListener("hashchange", () => { dress(); repaint(); });
   const asked = /[#&]t=([-\d.eE+]+)/.exec(location.hash);
   const begin = asked ? Number(asked[1]) : film.start;
   go(begin === null ? film.begin : begin);
-  if (begin === null) run(true);
+  if (begin === null && !window.matchMedia("(prefers-reduced-motion: reduce)").matches) run(true);
   window.polhode = { go, run };
   document.body.dataset.drawn = "yes";
 })();

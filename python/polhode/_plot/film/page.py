@@ -53,7 +53,7 @@ def _content(film: Film, start: float | None) -> dict[str, Any]:
         "begin": float(film.t[0]), "end": float(film.t[-1]), "count": len(film.t), "seconds": film.seconds,
         "start": start, "attitude": _packed(film.attitude), "axis": film.axis.tolist(),
         "arm": None if solid.arm is None else solid.arm.tolist(),
-        "momentum": (momentum / size).tolist() if size > 0 and not film.scene.torques else None,
+        "momentum": (momentum / size).tolist() if size > 0 and film.keeps_momentum else None,
         "solid": {"corners": _packed(solid.corners), "normals": _packed(solid.normals),
                   "colours": _packed(np.repeat(solid.colours[:, None], 3, axis=1))},
         "poinsot": _poinsot(film), "path": {"light": style.LIGHT.path, "dark": style.DARK.path},
@@ -66,7 +66,8 @@ def render(film: Film, start: float | None = None) -> str:
     data = json.dumps(_content(film, start), allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
     under = f"{', '.join(type(torque).__name__ for torque in film.scene.torques) or 'no torque'}; {film.solid.name}"
     moments = ", ".join(f"{m:.4g}" for m in film.scene.inertia.moments)
+    fixed = ", and L" if film.keeps_momentum else ""
     parts = {"title": escape(film.title), "under": escape(f"moments {moments} kg m²; {under}"),
              "css": _text("page.css"), "licence": _text("three.LICENSE").replace("--", "- -"), "data": data,
-             "three": _text("three.min.js"), "script": _text("page.js")}
+             "fixed": fixed, "three": _text("three.min.js"), "script": _text("page.js")}
     return re.sub(r"\{\{ (\w+) \}\}", lambda found: parts[found[1]], _text("page.html"))

@@ -54,6 +54,10 @@ def _frames(film: Film, chosen: list[int]) -> Iterator[Floats]:
         left.set_axis_off()
         DRAW["polhode"](right, Drawing(film.track, look, np.empty(0)))
         right.set_title("ω in the body")
+        if film.keeps_momentum and (size := float(np.linalg.norm(momentum := film.track.angular_momentum[0]))) > 0:
+            end = 1.2 * (momentum / size) @ paper
+            left.annotate("", end, (0, 0), arrowprops={"arrowstyle": "-|>", "color": look.ink, "linewidth": 1.6})
+            left.annotate("L", end, xytext=(4, -2), textcoords="offset points", color=look.ink)
         (trail,) = left.plot([], [], color=look.path, linewidth=1.6)
         body: Any = left.add_collection(PolyCollection([]))
         (tip,) = left.plot([], [], "o", color=look.path, markersize=5)

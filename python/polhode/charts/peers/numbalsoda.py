@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from ..._scene.scene import Scene
 from ..candidate import Answer, Candidate, Failure, Run, tolerances
-from ..equations import STATE, refuses, source
+from ..equations import for_numba, refuses
 from .found import version
 
 NAME, INSTALL = "numbalsoda", "pip install numba numbalsoda (built on the spot: apt install g++ gfortran)"
@@ -20,17 +18,10 @@ def found() -> str:
 
 
 def _start(scene: Scene, method: str) -> Run:
-    from math import cos, sin
-
     import numba
     import numbalsoda as nb  # type: ignore[import-not-found,import-untyped,unused-ignore]
 
-    steps, names = source(scene)
-    lines = [f"{name} = u[{i}]" for i, name in enumerate(STATE)] + [f"{name} = {text}" for name, text in steps]
-    lines += [f"f[{i}] = {name}" for i, name in enumerate(names)]
-    space: dict[str, Any] = {"cos": cos, "sin": sin}
-    exec("def function(t, u, f, p):\n " + "\n ".join(lines), space)   # made of floats and the names above alone
-    pointer = numba.cfunc(nb.lsoda_sig)(space["function"]).address
+    pointer = numba.cfunc(nb.lsoda_sig)(for_numba(scene, "t, u, f, p")).address
     start = np.concatenate([scene.omega, scene.attitude])
     times = np.array(scene.times) if scene.times[0] == scene.t0 else np.concatenate([[scene.t0], scene.times])
     solve = getattr(nb, method)
@@ -51,6 +42,6 @@ def candidates() -> list[Candidate]:
     """Both of its solvers; lsoda refuses tolerances below 1e-13."""
     def make(method: str) -> Candidate:
         return Candidate(f"numbalsoda {method}", "peer", f"numbalsoda.{method}", tolerances(3, 13, 2),
-                         lambda scene: _start(scene, method), refuses)
+                         lambda scene: _start(scene, method), refuses, right_hand_side="compiled by Numba")
 
     return [make("lsoda"), make("dop853")]

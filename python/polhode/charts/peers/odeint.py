@@ -15,8 +15,8 @@ import numpy as np
 
 from ..._scene.scene import Scene
 from ..._solve.motion import Floats
-from ..candidate import Answer, Candidate, Failure, Run, tolerances
-from ..equations import STATE, refuses, source
+from ..candidate import Answer, Candidate, Failure, Run, euler, separatrix, tolerances
+from ..equations import STATE, Separatrix, refuses, source
 
 NAME, INSTALL = "Boost.Odeint", "apt install g++ libboost-dev"
 FLAGS = ("-O3", "-march=native", "-std=c++20", "-shared", "-fPIC", "-w")
@@ -57,8 +57,8 @@ def _driver() -> ctypes.CDLL:
     return library
 
 
-def _right_hand_side(scene: Scene) -> ctypes.CDLL:
-    lines, names = source(scene)
+def _right_hand_side(scene: Scene, in_u_v: bool) -> ctypes.CDLL:
+    lines, names = source(scene, Separatrix(scene) if in_u_v else None)
     body = [f"  const double {name} = u[{i}];" for i, name in enumerate(STATE)]
     body += [f"  const double {name} = {text};" for name, text in lines]
     body += [f"  f[{i}] = {name};" for i, name in enumerate(names)]
@@ -67,13 +67,14 @@ def _right_hand_side(scene: Scene) -> ctypes.CDLL:
 
 
 @functools.lru_cache(maxsize=4)   # both methods share it
-def _compiled(scene: Scene) -> ctypes.CDLL:
-    return _right_hand_side(scene)
+def _compiled(scene: Scene, in_u_v: bool) -> ctypes.CDLL:
+    return _right_hand_side(scene, in_u_v)
 
 
-def _start(scene: Scene, method: str) -> Run:
-    driver, function = _driver(), _compiled(scene).f
-    start, n = np.concatenate([scene.omega, scene.attitude]), scene.times.size
+def _start(scene: Scene, method: str, in_u_v: bool = False) -> Run:
+    driver, function = _driver(), _compiled(scene, in_u_v).f
+    form = Separatrix(scene) if in_u_v else None
+    start, n = form.start(scene) if form else np.concatenate([scene.omega, scene.attitude]), scene.times.size
     from_start = scene.times[0] == scene.t0
     times = np.array(scene.times) if from_start else np.concatenate([[scene.t0], scene.times])
     size = float(np.linalg.norm(scene.omega)) or 1.0
@@ -91,17 +92,18 @@ def _start(scene: Scene, method: str) -> Run:
         if calls < 0:
             raise Failure(f"not done within {limit:.2g} "
                           "s" if calls == -1 else "Odeint gave up: no step is small enough")
-        return Answer(out[-n:, :3], out[-n:, 3:], {"derivatives": int(calls)})
+        return Answer(form.rates(out[-n:]) if form else out[-n:, :3], out[-n:, 3:], {"derivatives": int(calls)})
 
     return run
 
 
 def candidates() -> list[Candidate]:
-    """Dormand and Prince's pair with its dense output, and Fehlberg's 7(8), stepping onto the samples."""
-    def make(method: str) -> Candidate:
-        return Candidate(f"Odeint {method}", "peer",
+    """Dormand and Prince's pair with its dense output, and Fehlberg's 7(8), stepping onto samples, in u, v too."""
+    def make(method: str, in_u_v: bool = False) -> Candidate:
+        return Candidate(f"Odeint {method}{' u v' * in_u_v}", "peer",
                          f"boost::numeric::odeint::runge_kutta_{method}, g++ {' '.join(FLAGS[:2])}",
-                         tolerances(3, 14), lambda scene: _start(scene, method),
-                         refuses)
+                         tolerances(3, 14), lambda scene: _start(scene, method, in_u_v),
+                         Separatrix.refuses if in_u_v else refuses, variables=separatrix if in_u_v else euler,
+                         right_hand_side="compiled by g++, called through a pointer")
 
-    return [make(method) for method in METHODS]
+    return [*(make(method) for method in METHODS), make("fehlberg78", True)]

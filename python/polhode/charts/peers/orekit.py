@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..._scene.scene import Scene
-from ..candidate import Answer, Candidate, Failure, Run, fixed
+from ..candidate import Answer, Candidate, Failure, Run, closed, fixed
 from .found import version
 
 NAME, INSTALL = "Orekit", "pip install orekit-jpype, apt install openjdk-17-jdk-headless"
@@ -69,5 +69,4 @@ def _start(scene: Scene) -> Run:
 def candidates() -> list[Candidate]:
     """Its TorqueFree, construction and all times in one call, the virtual machine warm."""
     return [Candidate("Orekit TorqueFree", "peer", "org.orekit.attitudes.TorqueFree", fixed("closed form"), _start,
-                      _refuses,
-                      "")]
+                      _refuses, "", closed)]

@@ -68,6 +68,7 @@ def candidates() -> list[Candidate]:
         # A run takes up to seconds, so every third decade is what there is time for.
         return Candidate(f"SciPy {method}", "peer", f"scipy.integrate.solve_ivp(method={method!r})",
                          tolerances(3, 12, 3),
-                         lambda scene: _start(scene, method), lambda scene: refuses(scene, method == "Radau"))
+                         lambda scene: _start(scene, method), lambda scene: refuses(scene, method == "Radau"),
+                         right_hand_side="in Python")
 
     return [make(method) for method in ("RK45", "DOP853", "LSODA", "Radau")]
