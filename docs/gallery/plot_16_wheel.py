@@ -8,7 +8,6 @@ body stays.
 """
 
 import matplotlib.pyplot as plt
-import numpy as np
 
 import polhode as ph
 

@@ -44,7 +44,8 @@ def torque(given, orbit, t, R, moments):
         field = given["field"]
         angle = field["spin"] * np.asarray(t) + field["phase"]
         tilt = field["tilt"]
-        m = np.stack([np.sin(tilt) * np.cos(angle), np.sin(tilt) * np.sin(angle), np.full_like(angle, np.cos(tilt))], -1)
+        m = [np.sin(tilt) * np.cos(angle), np.sin(tilt) * np.sin(angle), np.full_like(angle, np.cos(tilt))]
+        m = np.stack(m, -1)
         along = np.sum(m * r, axis=-1)[..., None] / size
         return np.cross(given["moment"], seen(field["strength"] / size**3 * (3 * along * r / size - m)))
     total = np.zeros(np.shape(r))

@@ -1,9 +1,9 @@
 """4179 Toutatis as a free body from 1992 to 2008, beside the residuals that Principia has from the same numbers.
 
-Takahashi, Busch and Scheeres (2013), Spin state and moment of inertia characterization of 4179 Toutatis: the start, the
-moments and the radar's attitudes and rates, in axes x, y, z with the moments 3.0836, 3.235 and 1. The residuals stand in
-Principia's physics/euler_solver_test.cpp: of the size of the rate, of its direction, and of the axes of the least, the
-middle and the largest moment [deg]. In 2008 they are large: the tides of the Earth and the Sun are left out.
+Takahashi, Busch and Scheeres (2013), Spin state and moment of inertia characterization of 4179 Toutatis: the start,
+the moments and the radar's attitudes and rates, in axes x, y, z with the moments 3.0836, 3.235 and 1. The residuals
+stand in Principia's physics/euler_solver_test.cpp: of the size of the rate, of its direction, and of the axes of the
+least, the middle and the largest moment [deg]. In 2008 they are large: the tides of the Earth and the Sun are left out.
 """
 
 import datetime

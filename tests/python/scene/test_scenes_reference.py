@@ -19,7 +19,7 @@ import orbit_laws  # noqa: E402
 
 SCENES = ROOT / "scenes"
 STORED = SCENES / "reference"
-NAMES = ["N2", "S1", "S10", "S11", "S12", "S13", "S14", "S15", "S2", "S3", "S4", "S5", "S5c", "S6", "S7", "S7b", "S9", "Z1"]
+NAMES = ["N2", "S1", "S10", "S11", "S13", "S14", "S15", "S2", "S3", "S4", "S5", "S5c", "S6", "S7", "S7b", "S9", "Z1"]
 WHEEL = "S15"   # a state of its own: its tests stand below
 LONG = np.longdouble  # 64 bits of mantissa on x86: what is checked is the rounding of the stored float64
 HALF_ULP = 2.0**-53

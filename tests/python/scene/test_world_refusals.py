@@ -1,4 +1,4 @@
-"""Orbits, fields, plates, rotors, dampers and bodies that change: what cannot be is refused in one line with its number."""
+"""Orbits, fields, plates, rotors, dampers, bodies that change: a refusal is one line with its number."""
 
 import math
 
@@ -73,7 +73,8 @@ DAMPERS = [
     (lambda: damper(inertia=-1.5), "Damper.inertia: must be positive and finite, got -1.5"),
     (lambda: damper(viscous=NAN), "Damper.viscous: must be finite, got nan"),
     (lambda: damper(rates=(0, 1)), "Damper.rates: must be an array of shape (3,), got shape (2,)"),
-    (lambda: scene(damper=damper(inertia=1.0)), "scene.damper.inertia: must be below the body's least moment, 1, got 1"),
+    (lambda: scene(damper=damper(inertia=1.0)),
+     "scene.damper.inertia: must be below the body's least moment, 1, got 1"),
     (lambda: scene(damper=damper(inertia=0.9), rotors=[rotor(axis=(1, 0, 0), inertia=0.2)]),
      "three positive moments, got a least moment of -0.0999"),
 ]
@@ -85,7 +86,8 @@ CHANGING = [
     (lambda: changing([(0, 0.5, [J])]), "must be of pieces from 0 to 1 s, got 0 to 0.5 s"),
     (lambda: changing([(0, 2, [J, -2 * J, J])]), "positive definite at all times, got a least moment of 0 at t = 1 s"),
     (lambda: changing([(0, 2, [J, -2.2 * J, 1.1 * J])]), "positive definite at all times, got a least moment of -"),
-    (lambda: changing([(0, 2, [J, np.diag([0, 0, 1.0])])]), "must be a body's tensor at all times, got moments 1, 2, 3.0"),
+    (lambda: changing([(0, 2, [J, np.diag([0, 0, 1.0])])]),
+     "must be a body's tensor at all times, got moments 1, 2, 3.0"),
     (lambda: changing([(0, 2, [J * NAN])]), "Changing.pieces[0]: must be finite, got nan"),
     (lambda: changing([(0, 2, [J + np.triu(np.ones((3, 3)), 1)])]), "must be symmetric, got 0 and 1"),
     (lambda: changing([]), "Changing.pieces: must be at least one, got none"),
@@ -105,15 +107,19 @@ ORBITS = [
     (lambda: elements(periapsis_distance=0.0), "periapsis_distance: must be positive and finite, got 0"),
     (lambda: elements(periapsis_distance=7e6, e=1.5, anomaly=3.0), "between the asymptotes of the hyperbola, got 3"),
     (lambda: elements(a=7e6, j2=1e-3), "radius: must be positive and finite, got 0"),
-    (lambda: elements(periapsis_distance=7e6, e=1.5, j2=1e-3, radius=6e6), "j2: must be left out with e >= 1, got 0.001"),
-    (lambda: elements(a=7e6, e=0.5, j2=1e-3, radius=6e6), "radius: must be at most the periapsis distance, 3500000, got 6e+06"),
+    (lambda: elements(periapsis_distance=7e6, e=1.5, j2=1e-3, radius=6e6),
+     "j2: must be left out with e >= 1, got 0.001"),
+    (lambda: elements(a=7e6, e=0.5, j2=1e-3, radius=6e6),
+     "radius: must be at most the periapsis distance, 3500000, got 6e+06"),
     (lambda: light(orbit=ORBIT, shadow=-1.0), "shadow: must be positive and finite, got -1"),
     (lambda: light(shadow=6e6), "must be given together, got shadow 6000000.0 alone"),
-    (lambda: scene(torques=[light(orbit=ORBIT, shadow=7.5e6)]), "shadow: must be at most the least distance of the orbit, 6784615.38"),
+    (lambda: scene(torques=[light(orbit=ORBIT, shadow=7.5e6)]),
+     "shadow: must be at most the least distance of the orbit, 6784615.38"),
     (lambda: ph.Orbit.table([0, 2, 1], PLACES, PLACES), "t: must be increasing, got 1 after 2"),
     (lambda: ph.Orbit.table([0, NAN, 1], PLACES, PLACES), "table: must be finite, got row 1"),
     (lambda: ph.Orbit.table([0, 1, 2], PLACES, PLACES).at(3.0), "within the table, 0 to 2 s, got 3"),
-    (lambda: gauss(-6e6, [[0], [1, 2]], [[0], [0, 1]]), "MagneticField.radius: must be positive and finite, got -6e+06"),
+    (lambda: gauss(-6e6, [[0], [1, 2]], [[0], [0, 1]]),
+     "MagneticField.radius: must be positive and finite, got -6e+06"),
     (lambda: gauss(6e6, [[0], [1, 2]], [[0], [0, 1], [0, 1, 1]]), "must be as many rows as g, 2, got 3"),
     (lambda: gauss(6e6, [[0], [1, 2]], [[0], [1, 1]]), "MagneticField.h[1][0]: must be 0: it has no meaning, got 1"),
     (lambda: ph.MagneticField.dipole(ORBIT, NAN), "MagneticField.strength: must be finite, got nan"),

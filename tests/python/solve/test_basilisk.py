@@ -1,7 +1,7 @@
 """Numbers of Basilisk's tests of reaction wheels and of its gravity gradient (AVSLab/basilisk, commit babdff7).
 
-test_reactionWheelStateEffector_integrated.py, cases BalancedWheels and BOE: hub, wheels Honeywell HR16 with 100 N m s at
-6000 rpm and at most 0.2 N m, commands, and the MRP after 1 s to nine digits. The hub's inertia has the wheels in it.
+test_reactionWheelStateEffector_integrated.py, cases BalancedWheels and BOE: hub, wheels Honeywell HR16 with 100 N m s
+at 6000 rpm and at most 0.2 N m, commands, and the MRP after 1 s to nine digits. The hub's inertia has the wheels in.
 test_gravityGradient.py, case 0: the orbit about the Earth, the hub and its attitude.
 """
 
