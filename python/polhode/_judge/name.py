@@ -19,6 +19,9 @@ ROUNDING, TRIALS = 3e-15, 4
 DIGIT = 1.7  # the step of the last digit over the floor that it sets
 # What the errors of a method may look like, and which part of them stays as a pattern then.
 IMITATED, PATTERN = ("lag", "clock", "units of rates", "inertia", "damping", "kinematics"), 0.005
+# An unknown method of a high order looks like one of a low order with many steps in a sample; one of the same order does
+# with as many steps as it has.
+NEAR_STEPS = 4
 # Causes that are one and the same for some motions; the first is named, the other stands in its rivals.
 EQUIVALENT = {("clock", "units of rates"), ("lag", "kinematics")}
 
@@ -40,6 +43,7 @@ class Verdict:
     after: float = 0.0
     alone: Numbers = ()  # rms of each channel with the best start alone
     floor: Numbers = ()  # below which nothing shows
+    whole: float = 0.0  # `before` in the longest segments, where shorter ones decided
 
     @property
     def explained(self) -> float:
@@ -95,14 +99,18 @@ def weigh(track: Track, floor: Numbers, sigma: Numbers | None, known: bool) -> V
         verdict.kind = "unexplained"
     elif margin < MARGIN and not _equivalent(best, rivals):
         verdict.kind = "cannot tell"
-    elif _like_a_method(best, track, lead, alone[lead], float(after[lead]), floor[lead]):
+    elif not _leaves_a_pattern(best, track, lead, alone[lead], float(after[lead]), floor[lead]):
+        pass
+    elif best.held > NEAR_STEPS:
+        verdict.kind = "unexplained"
+    elif best.cause is not None and best.cause.name in IMITATED:
         verdict.kind, verdict.rivals = "cannot tell", tuple(dict.fromkeys((*rivals, "integrator")))
     return verdict
 
 
-def _like_a_method(best: Score, track: Track, channel: int, before: float, after: float, floor: float) -> bool:
-    """Return True if a cause that an unknown method of integration may imitate leaves a pattern."""
-    if best.cause is None or best.cause.name not in IMITATED or after < max(PATTERN * before, 30 * floor):
+def _leaves_a_pattern(best: Score, track: Track, channel: int, before: float, after: float, floor: float) -> bool:
+    """Return True if a cause leaves more than a small part, and not as noise: another method may be at work."""
+    if after < max(PATTERN * before, 30 * floor):
         return False
     shown = best.track or track
     return whiteness(shown.flat(shown.residual)[:, track.data.channels[channel][0]]) < 0.1
@@ -152,7 +160,7 @@ def decide(
         if verdict.kind != "unexplained" or track.length <= 8:
             break
         track = fit(data, law, track.length // 2)
-        verdict = weigh(track, floor, sigma, known)
+        verdict = dataclasses.replace(weigh(track, floor, sigma, known), whole=first.before)
         if verdict.kind == "fine":
             break
     return first if verdict.kind in ("fine", "unexplained") else verdict
