@@ -21,7 +21,6 @@ SHORT = 12         # evaluations of a first fit
 FOLLOWED = 12      # first fits that are followed, each another body
 NEAR = 3.0         # cost over the best one's beyond which a first fit is not followed
 SPARE = 0.2        # of the limit of chi2, by which the cheaper model may be wrong
-OTHERS = 10        # bodies that are fitted after the first that fits
 ALL = tuple(itertools.permutations(range(3)))
 
 
@@ -70,13 +69,10 @@ def search_light(problem: Problem, state: State, pool: Pool, loss: str, scale: f
         for m in (part.taken(slice(None, None, len(part) // THIN + 1)) for part in rough.data):
             assert isinstance(m, (Brightness, Scalar))
             costs += m.costs(free_motion(moments[:, None], omega[:, None], attitude[:, None], m.t, want="attitude"))
-        tried, more = Pool(rough, 1e300), OTHERS
+        tried = Pool(rough, 1e300)
         for k in np.argsort(costs, kind="stable")[:FITTED]:
-            if not more:
-                break
             start = State(attitude[k], omega[k], ratios_of(moments[k], 1e-3), state.axes, state.bias)
             tried.add(minimise(rough, start, loss=loss, scale=scale, most=SHORT, tolerance=1e-2))
-            more -= tried.fits
         ends = Pool(rough, WITHIN + SPARE * pool.limit)
         for one in tried.found[:FOLLOWED]:
             if one.cost <= NEAR * max(tried.found[0].cost, 0.5 * pool.limit):

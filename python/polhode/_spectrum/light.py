@@ -26,6 +26,7 @@ EACH = 3           # maxima of a scan
 PAIRS = 16         # of frequencies that are followed
 SLOWEST = 2.0      # over the span: slower lines are not separated
 ABOVE = 1.3        # the highest line: beyond it are no frequencies
+SAME = 0.3         # over the span: such frequencies are the same
 APART = 1.0        # over the span: pairs nearer than that are one
 GRID = (8, 5)      # angles and moduli of the shapes
 SHIFTS = 8         # phases of the nutation, over half a period
@@ -212,8 +213,13 @@ def bodies(light: Light, found: list[tuple[float, float, float]], orders: tuple[
     axes, shape, labels, backs, attitudes = _curves(orders)
     zero = np.zeros(len(shape), dtype=int)
     which, nus, kappas = [], [], []
+    seen: list[tuple[float, float]] = []      # other pairs of lines are the same two frequencies
     for _, sigma, mu in found:
         for kappa2 in [sign * sigma + 0.5 * k * mu for sign in (1, -1) for k in (-3, -1, 1, 3)]:
+            apart = [max(abs(0.5 * mu - a), abs(kappa2 - b)) for a, b in seen]
+            if min(apart, default=np.inf) * np.ptp(light.t) < SAME:
+                continue
+            seen.append((0.5 * mu, kappa2))
             there = shapes.bodies(shape, zero, 0.5 * mu, np.full(len(shape), kappa2))[2]
             which.append(there)
             nus.append(np.full(len(there), 0.5 * mu))
