@@ -56,7 +56,7 @@ sphinx_gallery_conf = {
     "plot_gallery": RUN, "within_subsection_order": "FileNameSortKey", "remove_config_comments": True,
     "download_all_examples": False, "show_signature": False, "write_computation_times": False,
     "show_memory": False, "min_reported_time": 1000, "reset_modules": ("_site.reset_matplotlib",),
-    "abort_on_example_error": True, "image_srcset": ["2x"], "nested_sections": False,
+    "abort_on_example_error": True, "image_srcset": ["2x"], "thumbnail_size": (640, 448), "nested_sections": False,
 }
 
 # The bibliography

@@ -12,8 +12,8 @@ from pathlib import Path
 
 from browser import Browser
 
-PAGES = ("index", "tutorials/racket", "theory/jacobi_theta", "which_method")
-WIDTHS = (1280, 390)
+PAGES = ("index", "playground", "evidence/index", "tutorials/racket", "theory/jacobi_theta", "which_method")
+WIDTHS = (1400, 390)
 
 
 def take(site: Path, page: str, width: int, theme: str, folder: Path) -> list[str]:

@@ -255,7 +255,7 @@ class Rotation:
         """
         return _kernels.as_euler(seq, self._quat, arrays.require_bool(degrees, "degrees"))
 
-    def gimbal_lock(self, seq: str) -> NDArray[np.bool_] | bool:
+    def gimbal_lock(self, seq: str) -> NDArray[np.bool_] | Any:
         """Where only the sum or the difference of the outer Euler angles is determined; a bool for one rotation.
 
         That is where the middle angle is within 9e-16 rad (4 units of rounding) of its pole: 0 or pi for "ZXZ",
@@ -264,7 +264,7 @@ class Rotation:
         locked = _kernels.gimbal_lock(seq, self._quat)
         return bool(locked) if self.single else locked
 
-    def magnitude(self) -> FloatArray | float:
+    def magnitude(self) -> FloatArray | Any:
         """The angle of the rotation, in [0, pi] [rad]; a float for one rotation."""
         angle = _kernels.magnitude(self._quat)
         return float(angle) if self.single else angle
@@ -322,7 +322,7 @@ class Rotation:
         """2 asin of the root of the mean of sin^2(angle from `mean` / 2) [rad]: of small angles, their rms."""
         return arrays.spread(self._quat, weights)
 
-    def approx_equal(self, other: Any, atol: float | None = None, degrees: bool = False) -> NDArray[np.bool_] | bool:
+    def approx_equal(self, other: Any, atol: float | None = None, degrees: bool = False) -> NDArray[np.bool_] | Any:
         """Whether the angle between the two is below `atol`, 1e-8 rad unless given; `degrees` alone gives a warning."""
         if arrays.require_bool(degrees, "degrees") and atol is None:
             warnings.warn("degrees: must be used with atol, which is 1e-8 rad now", UserWarning, stacklevel=2)

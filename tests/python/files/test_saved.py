@@ -47,6 +47,9 @@ def test_a_saved_motion_is_the_same_and_repeats(tmp_path, suffix, what, options)
         assert (other.status, other.message, other.proved_span) == (motion.status, motion.message, motion.proved_span)
         assert np.array_equal([other.error, other.asked], [motion.error, motion.asked], equal_nan=True)
     assert again.stats == motion.stats and again.drift == motion.drift and again.success == motion.success
+    assert again == motion and hash(again) == hash(motion)
+    again.__dict__["omega"] = np.nextafter(motion.omega, 9.0)
+    assert again != motion
 
 
 def test_events_and_a_plan_are_saved(tmp_path):
@@ -66,6 +69,10 @@ def test_many_saved_motions_are_the_same_and_repeat(tmp_path, suffix):
                     ph.solve_many([scene("S5"), scene("S7"), scene("S10")], accuracy=1e-7)):
         motions.save(path)
         again = ph.load(path)
+        assert again == motions and hash(again) == hash(motions)
+        again.omega[0, 0, 0] = np.nextafter(again.omega[0, 0, 0], 9.0)
+        assert again != motions
+        again = ph.load(path)
         repeated = ph.solve_many(again.scenes, **again.options)
         for other in (again, repeated):
             for name in ("omega", "attitude", "error", "steps", "success", "lanes", "t_reached"):
@@ -82,6 +89,22 @@ def test_a_saved_ensemble_has_the_same_sums(tmp_path):
     assert np.array_equal(again.states([4999]).omega, run.states([4999]).omega)
     with pytest.raises(ph.InvalidInput, match="path: must end in .npz"):
         run.save(tmp_path / "sums.zarr")
+
+
+def test_an_ensemble_is_drawn_and_shown_as_a_table(tmp_path):
+    pytest.importorskip("matplotlib")
+    run = ph.ensemble(ensembles.write(tmp_path, ensembles.FREE), executor=0, count=500)
+    figure = run.plot()
+    assert [axes.get_ylabel().split(" [")[0].split(" of the")[0] for axes in figure.axes].count("angle") == 1
+    assert len(figure.axes) == len(run.summary) and figure._repr_png_()[:4] == b"\x89PNG"
+    (axes,) = run.plot("angle").axes
+    median = next(line for line in axes.lines if line.get_label() == "median")
+    order = np.argsort(run.times)
+    assert np.array_equal(median.get_ydata(), run.summary["angle"].quantile(0.5).value[order])
+    for wrong, why in ((("nothing",), "must be one of"), ((), "point")):
+        with pytest.raises(ph.InvalidInput, match=why):
+            run.plot(*wrong, point=0 if wrong else 7)
+    assert "500 of 500" in run._repr_html_() and "<b>Ensemble</b>" in run._repr_html_()
 
 
 def test_tables_have_all_samples():

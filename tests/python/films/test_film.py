@@ -135,6 +135,18 @@ def test_the_page_holds_the_motion_and_asks_for_nothing():
     assert "<iframe srcdoc=" in film._repr_html_() and film._repr_html_().count("<") == 2
 
 
+def test_a_film_has_the_title_that_is_given_and_the_arrow_of_a_constant_momentum():
+    film = RACKET.animate(6.0, title="A <racket>")
+    text = film.to_html()
+    assert film.title == "A <racket>" and "<h1>A &lt;racket&gt;</h1>" in text and ", and L</figcaption>" in text
+    assert page_of(film)["momentum"] is not None and film.keeps_momentum
+    held = TOP.animate(6.0)
+    assert held.title == "HeavyTop" and page_of(held)["momentum"] is None
+    assert ", and L</figcaption>" not in held.to_html() and not held.keeps_momentum
+    with pytest.raises(ph.InvalidInput, match="title"):
+        RACKET.animate(6.0, title=3)
+
+
 def test_what_cannot_be_shown_is_refused(tmp_path):
     bare = ph.solve(scene(BLOCK, want="omega"))
     with pytest.raises(ph.InvalidInput, match="must have the attitude"):

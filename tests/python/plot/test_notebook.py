@@ -80,6 +80,33 @@ def test_a_tensor_a_closed_form_and_a_diagnosis():
     assert {"✗ Diagnosis", wrong.findings[0].code, wrong.findings[0].text} <= set(texts(wrong))
 
 
+def test_a_scene_mass_properties_and_rotations():
+    scene = ph.Scene.load("S5")
+    found = texts(scene)
+    assert found[0] == "Scene" and "S5" in found and repr(scene.torques[0]) in found and "omega, attitude" in found
+    body = ph.shapes.box(12.0, (0.3, 0.2, 0.1))
+    assert {"MassProperties", "12", "(0, 0, 0)", "(0.2, 0.4, 0.52)"} <= set(texts(body))
+    turn = ph.Rotation.from_euler("ZXZ", [90, 0, 0], degrees=True)
+    assert {"Rotation", "90", "(0, 0, 1)"} <= set(texts(turn))
+    assert any("30 rotations, the first 10" in text for text in texts(ph.Rotation.random(30, rng=1)))
+    assert "" not in texts(ph.Rotation.identity()) and "0" in texts(ph.Rotation.identity())
+
+
+def test_many_motions_and_a_fit():
+    scene = ph.Scene.load("S5")
+    motions = ph.solve_many([scene] * 12, accuracy=1e-6)
+    found = texts(motions)
+    assert found[0] == "Motions" and found.count("taylor") == 10 and "12 bodies, 12 with success" in " ".join(found)
+    times = np.linspace(0, 5, 40)
+    rates = ph.FreeMotion(BLOCK, (1, 2, 3)).at(times)[0]
+    noise = 1e-3 * np.random.default_rng(1).normal(size=rates.shape)
+    fit = ph.fit(ph.measured.Rates(times, rates + noise, 1e-3))
+    found = " ".join(texts(fit))
+    assert found.startswith("✓ FitResult") and all(name in found for name in fit.parameters)
+    assert fit.message in found and "not observable" in found
+    assert np.allclose(fit.moments / fit.moments.max(), np.array(BLOCK) / max(BLOCK), rtol=0.05)
+
+
 def test_names_cannot_break_the_notebook():
     scene = ph.Scene(inertia=BLOCK, omega=(1, 2, 3), times=[1.0], name="<script>alert(1)</script>")
     for thing in (ph.solve(scene), ph.plan(scene)):

@@ -10,6 +10,7 @@ import types
 import urllib.parse
 from pathlib import Path
 
+import browser  # tests/support
 import pytest
 
 import polhode as ph
@@ -135,3 +136,28 @@ def test_lists_of_the_reference_are_whole(site):
                         ("torques", [r["key"] for r in ph.torques.records()])):
         text = (folder / f"reference/{page}.html").read_text(encoding="utf-8")
         assert not [name for name in names if f">{name}<" not in text and f"{name}&quot;" not in text], page
+
+
+FIRST = """(() => {   // what the first screen shows
+  const box = document.querySelector('.turning').getBoundingClientRect();
+  const stills = [...document.querySelectorAll('.turning img')];
+  return [box.top, box.bottom, stills.filter(image => image.naturalWidth > 0).length,
+          document.querySelectorAll('.doors a').length, document.documentElement.scrollWidth];
+})()"""
+
+
+@pytest.mark.skipif(browser.find() is None, reason="no Chromium: apt install chromium")
+def test_the_first_picture_is_on_the_first_screen(site, tmp_path):
+    _, folder = site
+    with browser.Browser((folder / "index.html").as_uri(), 1400, 900) as tab:
+        tab.wait("document.readyState === 'complete'")
+        for width in (1400, 390):
+            for theme in ("light", "dark"):
+                tab.ask("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1,
+                        mobile=width < 600)
+                tab.run(f"document.body.dataset.theme = '{theme}'")
+                top, bottom, stills, doors, wide = tab.run(FIRST)
+                assert 0 < top < bottom <= 900 and stills >= 1 and doors == 3 and wide <= width, (width, theme)
+                tab.picture(tmp_path / f"index-{theme}-{width}.png", whole=False)
+        assert tab.errors == [] and [url for url in tab.requests if not url.startswith(("file:", "data:"))] == []
+    assert (folder / "_static/film.html").exists()
