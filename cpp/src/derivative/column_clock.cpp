@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "derivative/column_run.hpp"
-#include "derivative/sample_target.hpp"
 #include "method/clock/clock.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/core/interrupt.hpp"

@@ -7,7 +7,6 @@
 #include "method/samples.hpp"
 #include "derivative/changing_columns.hpp"
 #include "derivative/column_motion.hpp"
-#include "derivative/sample_target.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/core/interrupt.hpp"
 #include "polhode/formula/sides.hpp"

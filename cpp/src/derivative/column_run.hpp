@@ -7,23 +7,13 @@
 #include <vector>
 
 #include "derivative/column_motion.hpp"
+#include "derivative/column_samples.hpp"
 #include "derivative/column_terms.hpp"
 #include "polhode/scene/parameter.hpp"
 #include "polhode/derivative/sensitivity.hpp"
 #include "solve/ground/pieces.hpp"
 
 namespace polhode {
-
-/// The motion of a scene and its columns at the scene's times, from one run.
-struct ColumnSamples {
-  std::vector<double> omega, attitude;   ///< (n, 3) and (n, 4)
-  std::vector<double> d_omega, theta;     ///< (n, 3, columns) in body axes
-  std::vector<double> d_states;          ///< (n, states, columns)
-  std::vector<std::size_t> samples;      ///< those that were computed
-  std::vector<int> scale;                ///< of each sample: its columns are 2^scale times these
-  std::string uncertain = {};            ///< what the branches of controllers leave open, in words
-  long steps = 0;
-};
 
 /// What a run through controllers needs besides.
 struct LoopOptions {

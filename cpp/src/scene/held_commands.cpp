@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "polhode/core/error.hpp"
-#include "polhode/formula/expression.hpp"
 #include "polhode/scene/parameter.hpp"
+#include "polhode/torque/formula.hpp"
 
 namespace polhode {
 

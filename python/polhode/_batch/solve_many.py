@@ -164,7 +164,7 @@ def _starts_of(scene: Scene, starts: dict[str, Any]) -> tuple[dict[str, Floats],
             f"solve_many: with one scene must get starts of one number of bodies, got {sorted(sizes) or 'none'}")
     bodies = sizes.pop()
     rows: dict[str, Floats | None] = {
-        name: np.ascontiguousarray(np.broadcast_to(given.get(name, own), (bodies, own.size)))
+        name: np.ascontiguousarray(np.broadcast_to(given.get(name, own), (bodies, own.shape[-1])))
         for name, own in (("inertia", given.get("inertia")), ("omega", scene.omega), ("attitude", scene.attitude))
         if own is not None}
     return given, {name: rows.get(name, given.get(name)) for name in starts}, bodies
