@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from .._orbit.sunlight import rewrap
 from .._scene.scene import Scene
 from ..torques import Custom, During
 
@@ -23,7 +22,7 @@ def to_formulas(scene: Scene) -> Scene:
     """Return the scene with each torque as a formula of its own law, which `solve` does not replace."""
     def write(torque: Torque) -> Torque:
         if isinstance(torque, During):
-            return rewrap(torque, write(torque.torque))
+            return During(write(torque.torque), torque.windows)
         lasting: Any = torque
         return lasting.as_formula(scene.inertia)
 
