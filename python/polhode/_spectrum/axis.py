@@ -21,7 +21,7 @@ from ..measured import Axis
 from .curve import PHASES, carried, fourier
 from .scan import BLOCK, Array, grid, largest_eigenvalue, peaks, periodogram, project, refine
 from .shapes import Shapes, attitudes_of, relabelled, table, variants
-from .zoom import Complex, Sums, series_of, zoom
+from .zoom import NEAR, Complex, Sums, series_of, zoom
 
 NUTATIONS = 5      # minima of each kind that are followed
 PART = 0.3         # of the median of what is left: other minima are none
@@ -158,8 +158,8 @@ def _bodies(t: Array, weight: Array, X: Array, l: Array, along: Array, known: Ar
             kappa2 = refine(partial(periodogram, t, line), float(f), step)
             found.append((float(sums.met(*_series(curve), nu, kappa2).max()), int(k), kappa2))
     moments, omega, followed = [np.zeros((0, 3))], [np.zeros((0, 3))], list[tuple[int, float]]()
-    for _, k, kappa2 in sorted(found, reverse=True):
-        if len(followed) == CELLS:
+    for score, k, kappa2 in sorted(found, reverse=True):
+        if len(followed) == CELLS or score < NEAR * float((X * X).sum()):
             break
         if any(k == other and abs(kappa2 - f) * np.ptp(t) < 1 for other, f in followed):
             continue
