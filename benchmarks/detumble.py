@@ -115,7 +115,7 @@ def make_scenes(bodies, orbits, degree, every=60.0):
             parameters={"gain": gain / T, "bias": (one + two) / 2, "duty": 0.6, "rise": 0.01 / T, "most": most,
                         "residual": residual},
             measure=ph.Measure(field_noise=noise, seed=7))
-        scenes.append(ph.Scene(inertia=J, omega=(np.pi, np.pi, np.pi), attitude=(1, 0, 0, 0), controllers=[controller],
+        scenes.append(ph.Scene(inertia=J, omega=(np.pi, np.pi, np.pi), attitude=ph.Rotation.from_quat((1, 0, 0, 0), scalar_first=False), controllers=[controller],
                                times=times, want=("omega",)))
     return scenes
 
