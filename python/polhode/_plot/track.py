@@ -13,6 +13,7 @@ from .._core import InvalidInput, angular_momentum, drift, energy
 from .._scene.scene import Scene
 from .._solve.motion import Floats, Motion
 from .._solve.solve import solve
+from .._solve.ticks import Ticks
 
 TURNS = 40        # a curve longer than this many turns is drawn up to there, or it covers itself
 FINE = 0.05       # radians of rotation between two points of a curve
@@ -41,6 +42,7 @@ class Track(NamedTuple):
     curve: Curve
     source: str
     states: Floats = NONE   # of formulas and rotors
+    ticks: tuple[Ticks, ...] = ()   # of controllers
 
     @property
     def angular_momentum(self) -> Floats:
@@ -99,7 +101,8 @@ def of_motion(motion: Motion) -> Track:
         raise InvalidInput("plot: the motion holds no samples")
     assert motion.omega is not None
     return Track(motion.scene, motion.t, motion.omega, motion.attitude, motion.drift, find_curve(motion),
-                 f"{len(motion)} samples by {motion.plan.method}", motion._state_rows())
+                 f"{len(motion)} samples by {motion.plan.method}", motion._state_rows(),
+                 motion.ticks)
 
 
 def of_closed_form(form: Any, scene: Scene, t: Floats) -> Track:
