@@ -232,11 +232,8 @@ class Motion:
         error = None if self.sensitivity is None else self.sensitivity.error
         if self.sensitivity is None or error is None or not len(error) or math.isnan(self.asked):
             return ""
-        missed = int(np.sum(~(error <= self.asked)))
-        if not missed:
-            return ""
-        if self.sensitivity.uncertain:
-            return f"the sensitivity is not certain: {self.sensitivity.uncertain}"
+        if not (missed := int(np.sum(~(error <= self.asked)))) or (why := self.sensitivity.uncertain):
+            return f"the sensitivity is not certain: {why}" if missed else ""
         worst = int(np.argmax(np.nan_to_num(error, nan=np.inf)))
         return (f"the sensitivity misses the accuracy of {self.asked:.3g} in {missed} of {len(error)} columns; the "
                 f"largest error is {error[worst]:.2g}, of {self.sensitivity.columns[worst]}")
