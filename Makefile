@@ -15,7 +15,7 @@ inputs := build/.names $(shell find CMakeLists.txt pyproject.toml cpp python/CMa
             tests/cpp/CMakeLists.txt scenes -type f 2>/dev/null)
 
 .PHONY: help help-all demo test format same-bits check-long install module clang sanitize valgrind fuzz mutants \
-        aarch64 debian13 free-threaded wheels wings stubs docs docs-pictures browser web web-check web-pictures clean
+        aarch64 debian13 free-threaded wheels forge wings stubs docs docs-pictures browser web web-check web-pictures clean
 .NOTPARALLEL:
 # An environment whose Python has gone is made anew.
 ifneq ($(shell $(VENV)/bin/python -c 'import pip; print("there")' 2>/dev/null),there)
@@ -116,6 +116,9 @@ free-threaded: ## the Python tests by Python 3.13 without its lock, in the same 
 
 wheels: ## a wheel for each Python at hand, repaired, checked, tested in a bare environment; the sdist
 	@.ci/wheels
+
+forge: $(VENV)/.demo ## linters of workflows, forms and CITATION.cff
+	@.ci/forge
 
 wings: install ## deletes each wing in a copy, and imports and tests the rest: a minute
 	@$(PYTHON) .ci/wings

@@ -91,7 +91,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--each", type=int, default=8)
     parser.add_argument("--only", default="", help="one fault, or a part of all such as 1/3")
-    parser.add_argument("--json", type=pathlib.Path)
+    parser.add_argument("--json", type=pathlib.Path, help="a file that gets a line for each run")
     given = parser.parse_args()
     part, _, parts = given.only.partition("/")
     own = spoiled.FAULTS[int(part) :: int(parts)] if parts else (given.only,) if given.only else spoiled.FAULTS
@@ -99,6 +99,9 @@ def main():
     records = []
     for record in faults(given.seed, given.each, causes):
         records.append(record)
+        if given.json:
+            with given.json.open("a") as file:
+                file.write(json.dumps(record) + "\n")
         if record["verdict"] != "right" or record["size"] is False:
             print(record, file=sys.stderr, flush=True)
     print(table(records))
@@ -109,8 +112,6 @@ def main():
         f"\n{right} of {total} right, {sum(r['verdict'] == 'wrong' for r in records)} wrong; "
         f"{sum(sized)} of {len(sized)} sizes within 20 %"
     )
-    if given.json:
-        given.json.write_text(json.dumps(records, indent=1))
 
 
 if __name__ == "__main__":

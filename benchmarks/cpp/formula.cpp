@@ -90,7 +90,7 @@ int main() {
                     std::copy_n(seen.data(), 3, vectors + 4 * n);
                   }
                   if (series.terms().gradient) {
-                    const auto [radius, tangent] = series.see_orbit(0.0, series.start());
+                    const auto [radius, tangent] = series.compute_orbit_axes(0.0, series.start());
                     std::copy_n(radius.data(), 3, vectors + 4 * n);
                     std::copy_n(tangent.data(), 3, vectors + 4 * (n + 1));
                   }

@@ -10,12 +10,10 @@
 namespace polhode::python {
 namespace {
 
-py::dict solve_batch(const py::list& scenes, const py::object& moments, const py::object& omega,
-                     const py::object& attitude, std::size_t bodies, std::size_t times, const py::object& omega_out,
-                     const py::object& attitude_out, const py::dict& given, int threads, bool refuse) {
+py::dict solve_batch(const ManyScenes& many, std::size_t bodies, std::size_t times, const py::object& omega_out,
+                     const py::object& attitude_out, const py::dict& given, int threads, bool refuse,
+                     const std::vector<std::uint64_t>& numbers) {
   const SolveOptions options = to_solve_options(given);
-
-  const ManyScenes many(scenes, moments, omega, attitude);
   const MakeScene make_scene = many.maker();
   const auto target = [](const py::object& array) {
     return array.is_none() ? nullptr : array.cast<py::array_t<double, py::array::c_style>>().mutable_data();
@@ -24,7 +22,7 @@ py::dict solve_batch(const py::list& scenes, const py::object& moments, const py
   std::vector<ManyResult> results;
   {
     const WithoutGil nogil;
-    results = solve_many(bodies, times, make_scene, options, out_w, out_q, threads, refuse);
+    results = solve_many(bodies, times, make_scene, options, out_w, out_q, threads, refuse, numbers);
   }
   py::list status, message, methods;
   const auto n = static_cast<py::ssize_t>(bodies);
@@ -59,9 +57,15 @@ py::dict solve_batch(const py::list& scenes, const py::object& moments, const py
 }  // namespace
 
 void bind_batch_solve_many(py::module_& m) {
-  m.def("_solve_many", &solve_batch, py::arg("scenes"), py::arg("moments"), py::arg("omega"), py::arg("attitude"),
-        py::arg("bodies"), py::arg("times"), py::arg("omega_out"), py::arg("attitude_out"), py::arg("options"),
-        py::arg("threads"), py::arg("refuse"));
+  // Arrays of starts may be None, as those of the scene.
+  py::class_<ManyScenes>(m, "_ManyScenes", "The scenes of many bodies.")
+      .def(py::init<const py::list&, const py::object&, const py::object&, const py::object&, const py::object&,
+                    const py::object&>(),
+           py::arg("scenes"), py::arg("moments"), py::arg("omega"), py::arg("attitude"), py::arg("t0"),
+           py::arg("times"), py::keep_alive<1, 2>());
+  m.def("_solve_many", &solve_batch, py::arg("many"), py::arg("bodies"), py::arg("times"), py::arg("omega_out"),
+        py::arg("attitude_out"), py::arg("options"), py::arg("threads"), py::arg("refuse"),
+        py::arg("numbers") = std::vector<std::uint64_t>());
 }
 
 }  // namespace polhode::python

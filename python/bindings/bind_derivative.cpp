@@ -27,14 +27,16 @@ struct FoundSensitivity {
   Array omega, attitude, d_omega, d_attitude, d_states;
   std::vector<std::string> columns;
   py::object error;   // None without a certificate
+  std::vector<int> scale;
+  std::string uncertain;
   long steps;
   int runs;
 };
 
 FoundSensitivity sensitivity_of(const Scene& scene, const std::vector<std::string>& groups, double accuracy,
-                         bool certify, const std::string& side, long max_steps) {
-  const SensitivityOptions options{
-      .accuracy = accuracy, .certify = certify, .side = to_rotation_side(side), .max_steps = max_steps};
+                                bool certify, const std::string& side, long max_steps, bool rescale, std::uint64_t body) {
+  const SensitivityOptions options{.accuracy = accuracy, .certify = certify, .side = to_rotation_side(side),
+                                   .max_steps = max_steps, .body = body, .rescale = rescale};
   MotionSensitivity found;
   {
     const WithoutGil nogil;
@@ -48,23 +50,24 @@ FoundSensitivity sensitivity_of(const Scene& scene, const std::vector<std::strin
           .d_states = Array({n, static_cast<py::ssize_t>(scene.count_states()), width}, found.d_states.data()),
           .columns = found.columns,
           .error = found.error.empty() ? py::none() : py::object(Array(width, found.error.data())),
+          .scale = found.scale,
+          .uncertain = found.uncertain,
           .steps = found.steps,
           .runs = found.runs};
 }
 
 /// Of many bodies, in the rows of arrays of (bodies, ...); rows of a failed body are NaN.
-py::dict sensitivities_of(const py::list& scenes, const py::object& moments, const py::object& omega,
-                          const py::object& attitude, std::size_t bodies, std::size_t times,
+py::dict sensitivities_of(const ManyScenes& many, std::size_t bodies, std::size_t times,
                           const std::vector<std::string>& groups, double accuracy, bool certify,
-                          const std::string& side, long max_steps, int threads, bool refuse) {
+                          const std::string& side, long max_steps, int threads, bool refuse,
+                          const std::vector<std::uint64_t>& numbers) {
   const SensitivityOptions options{
       .accuracy = accuracy, .certify = certify, .side = to_rotation_side(side), .max_steps = max_steps};
-  const ManyScenes many(scenes, moments, omega, attitude);
   const MakeScene make_scene = many.maker();
   std::vector<ManySensitivity> all;
   {
     const WithoutGil nogil;
-    all = compute_sensitivities(bodies, make_scene, groups, options, threads, refuse);
+    all = compute_sensitivities(bodies, make_scene, groups, options, threads, refuse, numbers);
   }
   std::vector<std::string> columns;
   std::size_t states = 0;
@@ -118,6 +121,8 @@ void bind_solve_sensitivity(py::module_& m) {
       .def_readonly("d_states", &FoundSensitivity::d_states)
       .def_readonly("columns", &FoundSensitivity::columns)
       .def_readonly("error", &FoundSensitivity::error)
+      .def_readonly("scale", &FoundSensitivity::scale)
+      .def_readonly("uncertain", &FoundSensitivity::uncertain)
       .def_readonly("steps", &FoundSensitivity::steps)
       .def_readonly("runs", &FoundSensitivity::runs);
   m.def("_parameter_names", [](const Scene& scene, const std::string& group) {
@@ -126,11 +131,11 @@ void bind_solve_sensitivity(py::module_& m) {
     return names;
   }, py::arg("scene"), py::arg("group"));
   m.def("sensitivity", &sensitivity_of, py::arg("scene"), py::arg("groups"), py::arg("accuracy"), py::arg("certify"),
-        py::arg("side"), py::arg("max_steps"),
+        py::arg("side"), py::arg("max_steps"), py::arg("rescale") = false, py::arg("body") = 0,
         "The motion of a scene and its derivatives.");
-  m.def("_sensitivities", &sensitivities_of, py::arg("scenes"), py::arg("moments"), py::arg("omega"),
-        py::arg("attitude"), py::arg("bodies"), py::arg("times"), py::arg("groups"), py::arg("accuracy"),
-        py::arg("certify"), py::arg("side"), py::arg("max_steps"), py::arg("threads"), py::arg("refuse"));
+  m.def("_sensitivities", &sensitivities_of, py::arg("many"), py::arg("bodies"), py::arg("times"), py::arg("groups"),
+        py::arg("accuracy"), py::arg("certify"), py::arg("side"), py::arg("max_steps"), py::arg("threads"),
+        py::arg("refuse"), py::arg("numbers") = std::vector<std::uint64_t>());
 }
 
 }  // namespace polhode::python

@@ -51,6 +51,20 @@ py::typing::Tuple<Array, Array> states_at(const Orbit& orbit, py::handle t) {
   return py::make_tuple(r, v);
 }
 
+Array find_eclipses(const Orbit& orbit, py::handle sun, py::handle shadow, py::handle begin, py::handle end) {
+  const Vector3d towards = to_vector3(sun, "sun");
+  const double radius = to_real(shadow, "shadow"), first = to_real(begin, "begin"), last = to_real(end, "end");
+  std::vector<Eclipse> found;
+  {
+    const WithoutGil nogil;
+    found = orbit.find_eclipses(towards, radius, first, last);
+  }
+  Array pairs({static_cast<py::ssize_t>(found.size()), static_cast<py::ssize_t>(2)});
+  double* to = pairs.mutable_data();
+  for (const Eclipse& one : found) *to++ = one.begin, *to++ = one.end;
+  return pairs;
+}
+
 template <class Rows>
 Array from_rows(const Rows& rows) {
   Array array({static_cast<py::ssize_t>(rows.size()), static_cast<py::ssize_t>(3)});
@@ -118,6 +132,7 @@ void bind_orbit(py::module_& m) {
         return Orbit::table({times.data(), times.data() + times.size()}, to_rows(r, "r"), to_rows(v, "v"), mu);
       })
       .def("at", &states_at)
+      .def("eclipses", &find_eclipses)
       .def_property_readonly("kind", [](const Orbit& orbit) { return std::string(to_text(orbit.kind())); })
       .def_property_readonly("mu", &Orbit::mu)
       .def_property_readonly("e", &Orbit::e)

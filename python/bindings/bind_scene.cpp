@@ -2,6 +2,8 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
+
 #include "bind_clock.hpp"
 #include "bind_torque.hpp"
 #include "convert.hpp"
@@ -40,6 +42,50 @@ Array view(const std::vector<double>& values, const py::object& base) {
   Array array(py::array::ShapeContainer{static_cast<py::ssize_t>(values.size())}, values.data(), base);
   array.attr("flags").attr("writeable") = false;
   return array;
+}
+
+/// The sum of the torques at one state, or row by row; single values hold for all rows.
+Array torque_of(const Scene& scene, const py::object& t, const py::object& omega, const py::object& attitude,
+                const py::object& states) {
+  std::vector<AnyTorque> torques = scene.given_torques();
+  if (!states.is_none()) set_starts(torques, scene.states(), to_state_numbers(scene.states(), states));
+  const SeveralTorques sum{torques};
+  const bool rotation = !PyType_Check(attitude.ptr()) && py::hasattr(attitude, "as_quat");
+  const py::object quats = rotation ? py::object(attitude.attr("as_quat")()) : attitude;
+  const Array at = to_array(t, "t"), w = to_array(omega, "omega"), q = to_array(quats, "attitude");
+  if (at.ndim() == 0 && w.ndim() < 2 && q.ndim() < 2) {
+    const Vector3d rates = to_vector3(omega, "omega");
+    const Quat unit = to_attitude(attitude, "attitude");
+    const double all[4] = {unit.x, unit.y, unit.z, unit.w}, time = to_real(t, "t");
+    Vector3d tau = Vector3d::Zero();
+    sum.add(TorqueInput{time, rates.data(), all, scene.inertia_B(time)}, tau.data());
+    return from_vector3(tau);
+  }
+  py::ssize_t n = -1;
+  const auto count = [&](const Array& array, py::ssize_t axes, py::ssize_t width, const char* name) {
+    const bool fits = array.ndim() == axes || array.ndim() == axes - 1;
+    if (!fits || (axes == 2 && array.shape(array.ndim() - 1) != width) ||
+        (array.ndim() == axes && n >= 0 && array.shape(0) != n))
+      throw InvalidInput(name, "one row, or as many as the other arrays",
+                         "shape " + std::string(py::str(array.attr("shape"))));
+    if (array.ndim() == axes) n = array.shape(0);
+    require_finite(array, name);
+  };
+  count(at, 1, 1, "t"), count(w, 2, 3, "omega"), count(q, 2, 4, "attitude");
+  Array found({n, py::ssize_t{3}});
+  for (py::ssize_t i = 0; i < n; ++i) {
+    const auto row = [i](const Array& array, py::ssize_t axes, py::ssize_t width) {
+      return array.data() + (array.ndim() == axes ? i * width : 0);
+    };
+    const double* given = row(q, 2, 4);
+    const Quat unit = make_attitude({given[0], given[1], given[2], given[3]});
+    const double all[4] = {unit.x, unit.y, unit.z, unit.w}, time = *row(at, 1, 1);
+    double* tau = found.mutable_data() + 3 * i;
+    std::fill_n(tau, 3, 0.0);
+    sum.add(TorqueInput{time, row(w, 2, 3), all, scene.inertia_B(time)}, tau);
+    if (i % 4096 == 4095 && PyErr_CheckSignals() != 0) throw py::error_already_set();
+  }
+  return found;
 }
 
 }  // namespace
@@ -128,24 +174,23 @@ void bind_scene(py::module_& m) {
         }
         return all;
       }, "dict: the starts of the states that formulas have, by name.")
-      .def("torque", [](const Scene& scene, const py::object& t, const py::object& omega, const py::object& attitude,
-                        const py::object& states) {
-        const Vector3d w = to_vector3(omega, "omega");
-        const Quat unit = to_attitude(attitude, "attitude");
-        const double q[4] = {unit.x, unit.y, unit.z, unit.w};
-        Vector3d tau = Vector3d::Zero();
-        const Matrix3d I_B = scene.inertia_B(to_real(t, "t"));
-        std::vector<AnyTorque> torques = scene.given_torques();
-        if (!states.is_none()) set_starts(torques, scene.states(), to_state_numbers(scene.states(), states));
-        SeveralTorques{torques}.add(TorqueInput{to_real(t, "t"), w.data(), q, I_B}, tau.data());
-        return from_vector3(tau);
-      }, py::arg("t"), py::arg("omega"), py::arg("attitude"), py::arg("states") = py::none(),
-           "Return the sum of the torques at one state.\n\n" POLHODE_STATE_DOC R"doc(states : dict, optional
+      .def("torque", &torque_of, py::arg("t"), py::arg("omega"), py::arg("attitude"), py::arg("states") = py::none(),
+           R"doc(Return the sum of the torques at one state, or at many.
+
+Parameters
+----------
+t : float, or array_like of shape (n,)
+    Time [s].
+omega : array_like, shape (3,) or (n, 3)
+    Rates in body axes [rad/s].
+attitude : array_like, shape (4,) or (n, 4)
+    Unit quaternions (x, y, z, w).
+states : dict, optional
     Numbers of the formulas' states by name; the starts if left out.
 
 Returns
 -------
-ndarray, shape (3,)
+ndarray, shape (3,) or (n, 3)
     In body axes [N m], without the torques of rotors.
 )doc")
       .def_property_readonly("t0", &Scene::t0)

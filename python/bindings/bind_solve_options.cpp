@@ -64,6 +64,7 @@ constexpr Option all_options[] = {
     {"formulation", [](py::handle value, SolveOptions& to) { to.formulation = to_formulation(value); }},
     {"events", [](py::handle value, SolveOptions& to) { to.events = to_events(value); }},
     {"progress", [](py::handle value, SolveOptions& to) { to.progress = make_progress(value); }},
+    {"body", [](py::handle value, SolveOptions& to) { to.body = value.cast<std::uint64_t>(); }},
     {"leave_out", [](py::handle value, SolveOptions& to) { to.leave_out = value.cast<bool>(); }},
     {"cost_factors",
      [](py::handle value, SolveOptions& to) { to.cost_factors = &value.cast<const Factors&>().by_name; }},

@@ -7,6 +7,7 @@
 #include "gil.hpp"
 #include "polhode/core/error.hpp"
 #include "polhode/spectrum/lines.hpp"
+#include "polhode/spectrum/quadratics.hpp"
 
 namespace polhode::python {
 namespace {
@@ -51,12 +52,29 @@ Array periodogram(const Array& t, const Array& z, std::size_t count, const GridO
   return out;
 }
 
+py::tuple match_quadratics(const Array& t, const Array& y, const Array& weight, const Array& curves,
+                           std::size_t phases, const std::vector<std::size_t>& which, const Array& f, const Array& g,
+                           std::size_t shifts, const Array& functions, bool scale, bool offset) {
+  std::vector<spectrum::Trial> trials;
+  for (std::size_t k = 0; k < which.size(); ++k) trials.push_back({which[k], f.data()[k], g.data()[k]});
+  const std::array<py::ssize_t, 2> shape{static_cast<py::ssize_t>(which.size()), static_cast<py::ssize_t>(shifts)};
+  Array cost(shape), found(shape);
+  double *const cost_data = cost.mutable_data(), *const found_data = found.mutable_data();
+  {
+    const WithoutGil nogil;
+    spectrum::match_quadratics({to_span(t), to_span(y), to_span(weight), 1}, {to_span(curves), phases}, trials, shifts,
+                               to_span(functions), {scale, offset}, cost_data, found_data);
+  }
+  return py::make_tuple(cost, found);
+}
+
 }  // namespace
 
 // Of `polhode._spectrum`, which checks what it gives.
 void bind_spectrum(py::module_& m) {
   m.def("_project_lines", &project);
   m.def("_periodogram", &periodogram);
+  m.def("_match_quadratics", &match_quadratics);
 }
 
 }  // namespace polhode::python

@@ -31,7 +31,7 @@ def wrong(owner: str, key: str, names: tuple[str, ...]) -> str:
     """Return the message about a keyword that is not among the names."""
     import difflib  # for the error alone
 
-    names = tuple(name for name in names if name != "self")
+    names = tuple(name for name in names if name not in ("self", "cls"))
     near = difflib.get_close_matches(key, names, 1, 0.5)
     hint = f", did you mean {near[0]!r}?" if near else f"; it has {', '.join(names)}"
     return f"{owner}: has no keyword {key!r}{hint}"

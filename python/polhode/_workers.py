@@ -10,18 +10,21 @@ import contextlib
 import importlib
 import os
 import pickle
-import select
+import queue
 import signal
 import struct
 import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterable
-from typing import IO, Any
+from collections.abc import Callable, Iterable, Sequence
+from typing import IO, Any, TypeVar
 
 BEAT = 1.0        # seconds between signs of life
 PROGRESS = 0.01   # seconds of CPU that make one
+UNREAD = 16       # pieces of a process's answers that are read ahead
+
+_news = threading.Condition()   # something has come from a process
 
 
 def command(module: str) -> tuple[str, ...]:
@@ -33,15 +36,34 @@ class Worker(subprocess.Popen[bytes]):
     """A process that answers messages. Ctrl-C is for the one that started it, whose end is its end too."""
 
     def __init__(self, *command: str) -> None:
-        super().__init__(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True)
+        super().__init__(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True,
+                         creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0))
         self.alive = time.monotonic()   # when it last got anywhere: a sleep without end beats as well
         self._cpu = self._mark = 0.0    # seconds it has used: as of its last beat, and at its last answer
         self._rest = b""
+        self._chunks: queue.Queue[bytes] = queue.Queue(UNREAD)
+        self._over = False              # nothing more is wanted of it
+        # Windows cannot wait for several pipes, so each has a thread that reads it.
+        threading.Thread(target=self._pump, daemon=True).start()
 
-    def fileno(self) -> int:
-        """What `select` waits for."""
+    def _pump(self) -> None:
+        """Pass on what the process says; the last piece is empty."""
         assert self.stdout is not None
-        return self.stdout.fileno()
+        with self.stdout as stream:
+            chunk = b"first"
+            while chunk:
+                chunk = os.read(stream.fileno(), 1 << 20)
+                while not self._over:
+                    with contextlib.suppress(queue.Full):
+                        self._chunks.put(chunk, timeout=BEAT)
+                        break
+                with _news:
+                    _news.notify_all()
+
+    @property
+    def ready(self) -> bool:
+        """Whether `receive` returns at once."""
+        return not self._chunks.empty()
 
     @property
     def spent(self) -> float:
@@ -57,9 +79,14 @@ class Worker(subprocess.Popen[bytes]):
 
     def receive(self, patience: float = 0.0) -> list[tuple[str, Any]] | None:
         """What has come in so many seconds at most, which may be nothing; None when the process has ended."""
-        if not select.select([self], [], [], patience)[0]:
+        try:
+            chunk = self._chunks.get(timeout=patience) if patience > 0 else self._chunks.get_nowait()
+        except queue.Empty:
             return []
-        chunk = os.read(self.fileno(), 1 << 20)
+        if not chunk:
+            with contextlib.suppress(queue.Full):
+                self._chunks.put_nowait(chunk)   # for the next call
+            return None
         self._rest += chunk
         messages = []
         while (end := _end(self._rest)) <= len(self._rest):
@@ -71,19 +98,29 @@ class Worker(subprocess.Popen[bytes]):
             if kind != "beat" or content > self._cpu + PROGRESS:
                 self.alive = time.monotonic()
             self._cpu = content if kind == "beat" else self._cpu
-        return messages if chunk else None
+        return messages
 
     def end(self, kill: bool = True) -> str:
         """End it, or wait for its own end, and say how it went."""
         if kill:
             self.kill()
         code = self.wait()
-        for stream in (self.stdin, self.stdout):
-            assert stream is not None
-            with contextlib.suppress(BrokenPipeError):   # what was not sent to one that is gone
-                stream.close()
+        self._over = True
+        assert self.stdin is not None
+        with contextlib.suppress(BrokenPipeError):   # what was not sent to one that is gone
+            self.stdin.close()
         how = f"by signal {-code} ({signal.Signals(-code).name})" if code < 0 else f"with status {code}"
         return f"ended its process {how}"
+
+
+AnyWorker = TypeVar("AnyWorker", bound=Worker)
+
+
+def wait(workers: Sequence[AnyWorker], patience: float) -> list[AnyWorker]:
+    """Return those that have said something, at the latest after so many seconds."""
+    with _news:
+        _news.wait_for(lambda: any(worker.ready for worker in workers), patience)
+    return [worker for worker in workers if worker.ready]
 
 
 def _write(stream: IO[bytes], message: Any) -> None:

@@ -12,7 +12,8 @@ namespace polhode {
 
 std::vector<ManySensitivity> compute_sensitivities(std::size_t n, const MakeScene& make_scene,
                                                    const std::vector<std::string>& groups,
-                                                   const SensitivityOptions& options, int threads, bool refuse) {
+                                                   const SensitivityOptions& options, int threads, bool refuse,
+                                                   std::span<const std::uint64_t> numbers) {
   std::vector<ManySensitivity> all(n);
   std::atomic<std::size_t> next{0};
   std::atomic<bool> stopped{false};
@@ -25,7 +26,9 @@ std::vector<ManySensitivity> compute_sensitivities(std::size_t n, const MakeScen
         const std::optional<Scene> scene = make_one(make_scene, body, refuse, fail);
         if (!scene) return;
         try {
-          all[body].found = compute_sensitivity(*scene, groups, options);
+          SensitivityOptions own = options;
+          own.body = numbers.empty() ? options.body + body : numbers[body];
+          all[body].found = compute_sensitivity(*scene, groups, own);
         } catch (const IntegrationFailure& error) {
           fail(error.what());
         }

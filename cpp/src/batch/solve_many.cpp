@@ -50,7 +50,7 @@ const LaneMethod* find_lane_method(const SolveOptions& options) {
 
 std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeScene& make_scene,
                                    const SolveOptions& options, double* omega, double* attitude, int threads,
-                                   bool refuse) {
+                                   bool refuse, std::span<const std::uint64_t> numbers) {
   std::vector<ManyResult> results(n);
   if (options.dense || !options.events.empty()) {
     throw InvalidInput("solve_many", "used without dense output and events", "one of them", "solve() has them");
@@ -69,6 +69,7 @@ std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeS
   };
   SolveOptions single = options;
   single.progress = go_on;
+  single.keep_ticks = false;
 
   std::vector<unsigned char> stored(n, 0);
   const auto store = [&](std::size_t body, const Scene& scene, const Motion& motion, bool lane) {
@@ -104,7 +105,10 @@ std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeS
       guarded(body, [&] {
         if (!go_on(0.0, 0.0)) return;   // a closed form ends before it asks
         const std::optional<Scene> scene = make(body);
-        if (scene) store(body, *scene, solve(*scene, single), false);
+        if (!scene) return;
+        SolveOptions own = single;
+        own.body = numbers.empty() ? options.body + body : numbers[body];
+        store(body, *scene, solve(*scene, own), false);
       });
     }
   };
@@ -124,7 +128,7 @@ std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeS
           if (!made) return;
           Scene scene = resolve_formulas(*made, AsCustom::no, recognitions);
           check_options(scene, options);
-          if (has_windows(scene) || !lanes->accepts(scene)) return;
+          if (!scene.controllers().empty() || has_windows(scene) || !lanes->accepts(scene)) return;
           if (scene.torque_sum().acting > 0) require_finite_start(scene);
           jobs.push_back(std::make_unique<LaneJob>(std::move(scene), *lanes, jobs.empty() ? nullptr : jobs.back().get()));
           bodies.push_back(body), in_lanes[body] = 1;

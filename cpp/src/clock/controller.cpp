@@ -118,6 +118,12 @@ Controller::Controller(ControllerParts parts) : parts_(std::move(parts)) {
 }
 
 formula::Program Controller::program() const {
+  const formula::Program open = open_program();
+  const formula::Program program = formula::bind_parameters(open, formula::list_values(open.parameters));
+  return formula::rewrite(formula::expand_rotations(program));
+}
+
+formula::Program Controller::open_program() const {
   if (!is_traced()) throw InvalidInput("Controller", "a law that is a formula", "a function");
   formula::Program program;
   try {
@@ -132,9 +138,8 @@ formula::Program Controller::program() const {
     replace("Formula.", ""), replace("formula.", "");
     throw InvalidInput("Controller." + text);
   }
-  program = formula::bind_parameters(program, formula::list_values(program.parameters));
   program.outputs.erase(program.outputs.begin(), program.outputs.begin() + 3);
-  return formula::rewrite(formula::expand_rotations(program));
+  return program;
 }
 
 Controller Controller::with_held(std::vector<std::string> names) const {

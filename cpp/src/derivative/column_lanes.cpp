@@ -12,7 +12,13 @@ ColumnLanes::ColumnLanes(std::size_t size, std::size_t count, const Matrix3d& R_
     : size_(size), count_(count), R_BP_(R_BP), rotated_(rotated) {
   for (auto* octets : {&arrived_, &arrived_low_, &start_, &start_low_}) octets->resize(size_ * groups());
   series_.resize(size_ * groups());
-  const Matrix3d R_PB = R_BP.transpose();
+  write(columns);
+}
+
+void ColumnLanes::write(const std::vector<double>& columns) {
+  const std::size_t count = count_;
+  const Matrix3d R_PB = R_BP_.transpose();
+  std::fill(arrived_low_.begin(), arrived_low_.end(), Octet{});
   for (std::size_t c = 0; c < count; ++c) {
     Octet* own = arrived_.data() + size_ * (c / 8);
     for (std::size_t half = 0; half < 6; half += 3) {

@@ -36,6 +36,8 @@ class ColumnLanes {
   double measure(int row, double rate) const;
   /// Ends the step at s units of time of the last series.
   void advance(double s);
+  /// Sets those at the end of the step, from (size, count).
+  void write(const std::vector<double>& columns);
   /// The columns at n such times within the step, as (n, size, count).
   void evaluate(const double* s, std::size_t n, double* out) const;
   /// Those at the end of the step, as (size, count).

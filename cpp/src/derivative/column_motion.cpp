@@ -40,6 +40,19 @@ class SeriesMotion final : public ColumnMotion {
     state.t = stepper_.t();
     columns = series_.columns().columns();
   }
+  void change(const Vector3d& jump, const std::vector<double>& states, const std::vector<double>& columns) override {
+    double *y = stepper_.state(), *carry = stepper_.carry();
+    if (!jump.isZero(0.0)) {
+      double moved[ode::series_width] = {jump[0], jump[1], jump[2]};
+      series_.body().pack_error(moved);
+      for (int i = 0; i < 4; ++i) y[i] += moved[i];
+    }
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      if (y[ode::series_width + i] == states[i]) continue;
+      y[ode::series_width + i] = states[i], carry[ode::series_width + i] = 0.0;
+    }
+    series_.columns().write(columns);
+  }
 
  private:
   /// Times of the last step in units of its series.

@@ -21,6 +21,8 @@ class ColumnMotion {
   virtual void sample(const double* times, std::size_t n, double* omega, double* attitude, double* columns) = 0;
   /// The same at the end of the last step.
   virtual void end(State& state, std::vector<double>& columns) const = 0;
+  /// Changes omega by a jump, and writes the numbers of states and the columns, between two steps.
+  virtual void change(const Vector3d& jump, const std::vector<double>& states, const std::vector<double>& columns) = 0;
 };
 
 /// @param columns    at the start, (numbers of a column, columns)

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "derivative/column_motion.hpp"
+#include "derivative/column_samples.hpp"
 #include "derivative/column_terms.hpp"
 #include "polhode/scene/parameter.hpp"
 #include "polhode/derivative/sensitivity.hpp"
@@ -12,20 +15,19 @@
 
 namespace polhode {
 
-/// The motion of a scene and its columns at the scene's times, from one run.
-struct ColumnSamples {
-  std::vector<double> omega, attitude;   ///< (n, 3) and (n, 4)
-  std::vector<double> d_omega, theta;     ///< (n, 3, columns) in body axes
-  std::vector<double> d_states;          ///< (n, states, columns)
-  std::vector<std::size_t> samples;      ///< those that were computed
-  long steps = 0;
+/// What a run through controllers needs besides.
+struct LoopOptions {
+  double accuracy;      ///< of the motion, which decides what branch of a law is certain
+  std::uint64_t body;   ///< whose number decides the draws
+  bool rescale;         ///< multiply columns that leave float64's range by powers of two
 };
 
 /// Integrates the columns of a scene through its pieces.
 class ColumnRun {
  public:
   /// @param side  of the small rotations of the start
-  ColumnRun(const Scene& scene, const std::vector<SceneParameter>& parameters, RotationSide side);
+  ColumnRun(const Scene& scene, const std::vector<SceneParameter>& parameters, RotationSide side,
+            const LoopOptions& loop);
 
   /// @param most  compute about so many samples in each direction of time, the last among them; 0: all
   /// @throws IntegrationFailure if it does not reach its end
@@ -36,6 +38,9 @@ class ColumnRun {
 
   void follow(const std::vector<Piece>& pieces, const std::vector<std::size_t>& order, double rtol, long max_steps,
               ColumnSamples& out) const;
+  /// The same from tick to tick of a scene with controllers.
+  void follow_clock(const Piece& piece, const std::vector<std::size_t>& order, double rtol, long max_steps,
+                    ColumnSamples& out) const;
   void start_momenta(const SceneParameter& by, const std::function<void(int state, double slope)>& add) const;
   std::vector<double> start_columns() const;
   std::vector<bool> find_rotating(const Piece& piece) const;
@@ -53,6 +58,7 @@ class ColumnRun {
   const Scene& scene_;
   const std::vector<SceneParameter>& parameters_;
   RotationSide side_;
+  LoopOptions loop_;
   Pieces pieces_;
   std::size_t states_;                   ///< numbers of the states of formulas
   Matrix3d J_inverse_;

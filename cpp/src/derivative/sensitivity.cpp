@@ -151,7 +151,8 @@ MotionSensitivity integrate_columns(const Scene& given, const std::vector<SceneP
                                     const SensitivityOptions& options) {
   const Scene scene = resolve(given, parameters);
   require_formulas(scene);
-  const ColumnRun columns(scene, parameters, options.side);
+  const double certain = std::max(options.accuracy, 1e-13);   // of the motion beside columns
+  const ColumnRun columns(scene, parameters, options.side, {certain, options.body, options.rescale});
   // The error of a column grows with the turns, as that of a state does.
   const double turns = std::min(std::max(1.0, compute_facts(scene).turns), 1e6);
   double rtol = std::max(0.25 * options.accuracy / turns, least_tolerance / finer);
@@ -178,6 +179,8 @@ MotionSensitivity integrate_columns(const Scene& given, const std::vector<SceneP
   found.omega = std::move(last.omega), found.attitude = std::move(last.attitude);
   found.d_omega = std::move(last.d_omega), found.d_attitude = std::move(last.theta);
   found.d_states = std::move(last.d_states);
+  found.scale = std::move(last.scale), found.uncertain = std::move(last.uncertain);
+  if (!found.uncertain.empty()) std::fill(found.error.begin(), found.error.end(), std::numeric_limits<double>::infinity());
   if (options.side == RotationSide::space) rotate_to_space(found.attitude, parameters.size(), found.d_attitude);
   return found;
 }

@@ -83,6 +83,32 @@ void Packing::find_levels(const Tape& tape) {
   }
 }
 
+namespace {
+
+/// Finds out how the used lanes move, and gives the others what makes it simple.
+/// @param may_read  whether a lane that is not used may read a place
+template <class MayRead>
+void simplify(Pick& pick, const std::vector<bool>& used, const MayRead& may_read) {
+  const auto first = static_cast<std::size_t>(std::find(used.begin(), used.end(), true) - used.begin());
+  if (first == used.size()) return;
+  const std::int32_t octet = pick.offset[first] / 8 * 8;
+  bool stays = true, spreads = true;
+  for (std::size_t i = 0; i < 8; ++i) {
+    const auto own = static_cast<std::int32_t>(octet + static_cast<std::int32_t>(i));
+    stays = stays && (used[i] ? pick.offset[i] == own : may_read(own));
+    spreads = spreads && (!used[i] || pick.offset[i] == pick.offset[first]);
+  }
+  if (!stays && !spreads) return;
+  pick.move = stays ? Pick::Move::none : Pick::Move::spread;
+  for (std::size_t i = 0; i < 8; ++i) {
+    pick.offset[i] = stays ? octet + static_cast<std::int32_t>(i) : pick.offset[first];
+    pick.index[i] = pick.offset[i] % 8;
+  }
+  pick.first = pick.second = octet;
+}
+
+}  // namespace
+
 std::vector<Pick> pick_operands(const std::vector<int>& offsets) {
   std::set<int> rest;
   int any = 0;
@@ -104,6 +130,10 @@ std::vector<Pick> pick_operands(const std::vector<int>& offsets) {
     }
     picks.push_back(pick);
   }
+  if (picks.size() != 1) return picks;
+  std::vector<bool> used(8, false);
+  for (std::size_t i = 0; i < offsets.size(); ++i) used[i] = offsets[i] >= 0;
+  simplify(picks.front(), used, [](int) { return true; });
   return picks;
 }
 
@@ -156,6 +186,9 @@ std::vector<Pick> pick_terms(std::vector<Form*> lanes, const Packing& packing) {
       const int offset = choice.pick.offset[i];
       choice.pick.index[i] = offset % 8 + (offset / 8 == first ? 0 : 8);
     }
+    std::vector<bool> used(8, false);
+    for (const auto& [lane, term] : choice.taken) used[lane] = true;
+    simplify(choice.pick, used, [&](int offset) { return packing.is_taken(offset); });
     choices.push_back(std::move(choice));
   }
   const auto latest = [](const Choice& c) { return std::max(c.pick.first, c.pick.second); };

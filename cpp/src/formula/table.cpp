@@ -77,12 +77,13 @@ class Writer {
     stage.kind = group.kind, stage.octet = octet, stage.store = parts_.stores++;
     std::vector<int> first, second, left, right;
     for (std::size_t lane = 0; lane < 8; ++lane) {
-      // Free lanes do what the first one does.
+      // Free lanes have the constants of the first one. Their operands are whatever costs least: nobody reads them.
       const int index = tape_.slots()[slot(begin + lane < end ? begin + lane : begin)].index;
       const Recurrence& op = tape_.operations()[static_cast<std::size_t>(index)];
       const auto place = [&](int operand) { return packing_.offset_of(operand); };
-      first.push_back(place(op.first)), second.push_back(place(op.second));
-      left.push_back(place(op.left)), right.push_back(place(op.right));
+      const auto bring = [&](int operand) { return begin + lane < end ? place(operand) : -1; };
+      first.push_back(bring(op.first)), second.push_back(bring(op.second));
+      left.push_back(bring(op.left)), right.push_back(bring(op.right));
       stage.operations[lane] = index;
       stage.a[lane] = place(op.a), stage.b[lane] = op.b >= 0 ? place(op.b) : place(op.a);
       stage.weighted[lane] = op.left_weighted ? 1.0 : 0.0, stage.divided[lane] = op.divided ? 1.0 : 0.0;

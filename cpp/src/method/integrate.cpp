@@ -21,23 +21,6 @@ State to_state(const Unpack& unpack, const ExtraStates& extra, double t, const d
   return state;
 }
 
-std::vector<ode::Event> make_events(std::span<const SceneEvent> events, const Unpack& unpack,
-                                    const ExtraStates& extra) {
-  std::vector<ode::Event> converted;
-  for (const SceneEvent& event : events) {
-    converted.push_back({[&](double t, const double* y) {
-                      const double value = event.function(to_state(unpack, extra, t, y));
-                      if (std::isnan(value)) {
-                        throw InvalidInput("the event's function", "a number",
-                                           "nan at t = " + polhode::to_text(t) + " s");
-                      }
-                      return value;
-                    },
-                    event.direction, event.terminal});
-  }
-  return converted;
-}
-
 /// Copies the rows of one direction of time into the trajectory.
 class SampleRows {
  public:
@@ -129,6 +112,22 @@ std::string explain_underflow(const Scene& scene, const State& state) {
 
 }  // namespace
 
+std::vector<ode::Event> make_events(std::span<const SceneEvent> events, const ToState& to_state) {
+  std::vector<ode::Event> converted;
+  for (const SceneEvent& event : events) {
+    converted.push_back({[&event, to_state](double t, const double* y) {
+                      const double value = event.function(to_state(t, y));
+                      if (std::isnan(value)) {
+                        throw InvalidInput("the event's function", "a number",
+                                           "nan at t = " + polhode::to_text(t) + " s");
+                      }
+                      return value;
+                    },
+                    event.direction, event.terminal});
+  }
+  return converted;
+}
+
 EndingText describe_ending(ode::Ending ending, double t, long max_steps) {
   const std::string at = polhode::to_text(t) + " s", when = " at t = " + at;
   using ode::Ending;
@@ -171,7 +170,8 @@ Trajectory integrate(const Scene& scene, const RunOptions& options, const double
   trajectory.unpack = unpack;
   trajectory.has_dense = options.dense;
 
-  const std::vector<ode::Event> events = make_events(options.events, unpack, extra);
+  const std::vector<ode::Event> events = make_events(
+      options.events, [&](double t, const double* y) { return to_state(unpack, extra, t, y); });
   std::vector<unsigned char> reached(times.size(), 0);
   // Returns false if the run must not continue in the other direction.
   const auto integrate_direction = [&](const std::vector<std::size_t>& order, ode::DenseOutput& dense) {

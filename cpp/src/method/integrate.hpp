@@ -1,7 +1,10 @@
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "polhode/method/run_options.hpp"
 #include "polhode/method/trajectory.hpp"
@@ -21,6 +24,13 @@ Unpack by_rows(UnpackOne unpack_one) {
 
 /// Makes a stepper from the start state towards t_end.
 using MakeStepper = std::function<std::unique_ptr<ode::Stepper>(const double* y0, double t_end)>;
+
+/// The state that a row of numbers is.
+using ToState = std::function<State(double t, const double* y)>;
+
+/// The events of a scene as functions of rows. They refer to `events`.
+/// @throws InvalidInput from a function that gives NaN
+std::vector<ode::Event> make_events(std::span<const SceneEvent> events, const ToState& to_state);
 
 /// How a run ended, in words.
 struct EndingText {

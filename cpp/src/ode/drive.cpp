@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
+
+#include "polhode/ode/event_search.hpp"
 
 namespace polhode::ode {
 namespace {
@@ -81,8 +84,7 @@ DriveResult drive(Stepper& stepper, std::span<const double> times, const Sink& s
   const double last = times.back();
   const bool forward = last >= stepper.t();
   if (options.dense) result.dense = DenseOutput(stepper.segment_size(), stepper.evaluate());
-  std::vector<EventTracker> trackers;
-  for (const Event& event : options.events) trackers.emplace_back(event, stepper.t(), stepper.y());
+  EventSearch search(options.events, stepper.t(), stepper.y());
 
   std::size_t next = 0;
   while (next < times.size() && times[next] == stepper.t()) {
@@ -90,10 +92,8 @@ DriveResult drive(Stepper& stepper, std::span<const double> times, const Sink& s
     ++next;
   }
   Heartbeat heartbeat(options.progress);
-  double y[64];
   constexpr std::size_t batch_size = 64;
   std::vector<double> rows(batch_size * static_cast<std::size_t>(stepper.dimension()));
-  const auto at = [&](double t, double* out) { stepper.interpolate(t, out); };
 
   const long first_step = stepper.counts().steps;
   Pace pace(stepper, last, options.max_steps);
@@ -113,40 +113,9 @@ DriveResult drive(Stepper& stepper, std::span<const double> times, const Sink& s
     }
     double reached = stepper.t();
 
-    // Each step is searched in a few pieces, so that two zeros within one step are both found.
-    if (!trackers.empty()) {
-      constexpr int pieces = 8;
-      const double t0 = stepper.t_old(), h = stepper.t() - t0;
-      std::vector<EventHit> hits;
-      bool ended = false;
-      for (int piece = 1; piece <= pieces && !ended; ++piece) {
-        const double t = piece == pieces ? stepper.t() : t0 + h * (static_cast<double>(piece) / pieces);
-        stepper.interpolate(t, y);
-        std::vector<EventHit> found;
-        for (std::size_t i = 0; i < trackers.size(); ++i) {
-          double root = 0.0;
-          if (trackers[i].crosses(t, y, at, stepper.event_count(), root)) {
-            std::vector<double> state(static_cast<std::size_t>(stepper.dimension()));
-            stepper.interpolate(root, state.data());
-            found.push_back({static_cast<int>(i), root, std::move(state)});
-          }
-        }
-        std::stable_sort(found.begin(), found.end(), [forward](const EventHit& a, const EventHit& b) {
-          return forward ? a.t < b.t : a.t > b.t;
-        });
-        for (EventHit& hit : found) {
-          const bool terminal = options.events[static_cast<std::size_t>(hit.event)].terminal;
-          if (terminal) {
-            reached = hit.t;
-            ended = true;
-          }
-          hits.push_back(std::move(hit));
-          if (ended) break;
-        }
-      }
-      for (EventHit& hit : hits) result.hits.push_back(std::move(hit));
-      if (ended) result.ending = Ending::event;
-    }
+    EventSearch::Found found = search.step(stepper);
+    std::move(found.hits.begin(), found.hits.end(), std::back_inserter(result.hits));
+    if (found.ended) reached = found.t, result.ending = Ending::event;
 
     if (options.dense) result.dense.append(stepper.t_old(), stepper.t(), stepper.segment());
     std::size_t end = next;

@@ -8,6 +8,7 @@
 
 #include "polhode/core/error.hpp"
 #include "polhode/scene/parameter.hpp"
+#include "polhode/torque/formula.hpp"
 
 namespace polhode {
 
@@ -16,7 +17,36 @@ void require_free_name(const SceneParts& parts, const std::string& name) {
     throw InvalidInput("scene.torques", "without a state of the name " + name, name, "it is a momentum in the body");
 }
 
+/// The torque times a state that is held.
+torques::Formula make_held_window(const torques::During& during, const std::string& state, const SceneParts& parts,
+                                  const std::string& where) {
+  if (std::holds_alternative<torques::Custom>(during.torque()))
+    throw InvalidInput(where, "no Custom torque beside controllers", "one",
+                       "it has no Taylor series; write it as a Formula");
+  formula::Program law = make_law(to_any(during.torque()), parts.inertia_B.matrix());
+  if (!law.states.empty())
+    throw InvalidInput(where, "without windows beside controllers, as a formula with states is", "windows",
+                       "what its states do between windows is not known");
+  law.states.push_back({state, {during.acts_at(parts.t0) ? 1.0 : 0.0}});
+  const formula::Expr held(law.graph, law.graph.state(formula::first_extra));
+  for (std::size_t i = 0; i < 3; ++i) law.outputs[i] = (held * formula::Expr(law.graph, law.outputs[i])).form();
+  law.outputs.push_back(formula::Form(0.0));
+  return torques::Formula(law, false);
+}
+
+void hold_windows(SceneParts& parts) {
+  for (std::size_t i = 0; i < parts.torques.size(); ++i) {
+    const auto* during = std::get_if<torques::During>(&parts.torques[i]);
+    if (during == nullptr) continue;
+    const std::string where = "scene.torques[" + std::to_string(i) + "]", state = "window_" + std::to_string(i);
+    require_free_name(parts, state);
+    parts.held_windows.push_back({i, state, *during});
+    parts.torques[i] = make_held_window(*during, state, parts, where);
+  }
+}
+
 void add_controllers(SceneParts& parts) {
+  if (!parts.controllers.empty()) hold_windows(parts);
   for (std::size_t i = 0; i < parts.controllers.size(); ++i) {
     Controller& controller = parts.controllers[i];
     if (!controller.held().empty()) continue;

@@ -159,6 +159,29 @@ std::vector<SceneParameter> find_rotor_parameters(const Scene& scene, std::strin
   return found;
 }
 
+std::vector<SceneParameter> find_controller_parameters(const Scene& scene, std::string_view group, const GroupName& name) {
+  const std::vector<Controller>& controllers = scene.controllers();
+  if (!name.index || *name.index >= controllers.size())
+    refuse(group, "of a controller from 'controllers.0' on, of which the scene has " + std::to_string(controllers.size()));
+  const ControllerLaw& law = controllers[*name.index].parts().law;
+  const std::string prefix = "controllers." + std::to_string(*name.index) + "." + std::string(name.field);
+  std::vector<SceneParameter> found;
+  std::string known;
+  const auto add = [&](const std::vector<formula::Input>& inputs, Of of) {
+    int number = 0;
+    for (const formula::Input& input : inputs) {
+      known += (known.empty() ? "'" : ", '") + input.name + "'";
+      const auto count = static_cast<int>(input.values.size());
+      for (int c = 0; c < count; ++c, ++number)
+        if (input.name == name.field) found.push_back({of, *name.index, 0, number, prefix + name_part(c, count)});
+    }
+  };
+  add(law.parameters, Of::controller), add(law.states, Of::controller_state);
+  if (found.empty())
+    refuse(group, "a parameter or a state of the controller's law, which has " + (known.empty() ? "none" : known));
+  return found;
+}
+
 std::vector<SceneParameter> find_state(const Scene& scene, std::string_view group, const GroupName& name) {
   const formula::Place place = formula::find_place(scene.states(), name.field);
   if (place.first < 0) {
@@ -202,6 +225,7 @@ std::vector<SceneParameter> find_parameters(const Scene& scene, std::string_view
   }
   const GroupName name = split(group);
   if (name.what == "rotors" || name.what == "rotor") return find_rotor_parameters(scene, group, name);
+  if (name.what == "controllers") return find_controller_parameters(scene, group, name);
   if (name.what == "damper") return find_damper_parameters(scene, group, name.field);
   if (name.what == "states") return find_state(scene, group, name);
   return find_torque_parameters(scene, group, name);

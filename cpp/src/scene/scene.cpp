@@ -259,12 +259,19 @@ std::vector<AnyTorque> Scene::given_torques() const {
   std::vector<AnyTorque> given;
   for (const AnyTorque& torque : torques())
     if (!is_drive(*this, torque) && !is_held(*this, torque)) given.push_back(torque);
+  for (const HeldWindow& held : held_windows()) given[held.torque] = held.during;   // given torques come first
   return given;
 }
 
 std::vector<Rotor> Scene::given_rotors() const {
   std::vector<Rotor> given;
   for (const Rotor& rotor : rotors()) given.push_back(rotor.as_given());
+  return given;
+}
+
+std::vector<Controller> Scene::given_controllers() const {
+  std::vector<Controller> given;
+  for (const Controller& controller : controllers()) given.push_back(controller.with_held({}));
   return given;
 }
 

@@ -14,13 +14,13 @@ from .. import _core, _export
 from .._attitude.arrays import require_bool, require_text, to_items
 from .._keywords import checked
 from .._scene.plain import to_plain
-from .._scene.scene import Scene, refuse_controllers
+from .._scene.scene import Scene
 from .._scene.wanted import At, MotionAt, MotionOm, Om, Wanted
 from .._sensitivity.driven import check_groups, split_states
 from .._sensitivity.sensitivity import Sensitivity
 from .._solve.motion import Floats
 from .._solve.record import same_record
-from .._solve.solve import check_max_steps
+from .._solve.solve import check_max_steps, to_body
 from .broadcast import WIDTHS, check_errors, check_threads, to_attitudes, to_rows
 
 
@@ -80,6 +80,9 @@ class Motions(Wanted[MotionOm, MotionAt]):
 
     def _times(self) -> Floats:
         """The sample times: (times,), or (bodies, times) if the scenes have their own."""
+        if "times" in self.options:
+            own: Floats = self.options["times"]
+            return own
         if isinstance(self.scenes, Scene):
             return self.scenes.times
         rows = np.array([scene.times for scene in self.scenes])
@@ -144,6 +147,38 @@ def _rows(value: Any, width: int, name: str) -> Floats:
     return array
 
 
+def _starts_of(scene: Scene, starts: dict[str, Any]) -> tuple[dict[str, Floats], dict[str, Floats | None], int]:
+    """Return what was given as arrays, the same as rows of bodies or None, and the number of bodies."""
+    given: dict[str, Floats] = {}
+    for name, width in (("inertia", 3), ("omega", 3), ("attitude", 4)):
+        if starts[name] is not None:
+            given[name] = _rows(starts[name], width, name)
+    for name, axes in (("t0", ("bodies",)), ("times", ("bodies", "samples"))):
+        if starts[name] is not None:
+            given[name] = np.ascontiguousarray(to_rows(starts[name], name, None))
+            if given[name].ndim != len(axes) or 0 in given[name].shape[1:]:
+                raise _core.InvalidInput(f"{name}: must be of shape ({', '.join(axes)}), got {given[name].shape}")
+    sizes = {array.shape[0] for name, array in given.items() if array.ndim == 2 or name == "t0"}
+    if len(sizes) != 1:
+        raise _core.InvalidInput(
+            f"solve_many: with one scene must get starts of one number of bodies, got {sorted(sizes) or 'none'}")
+    bodies = sizes.pop()
+    rows: dict[str, Floats | None] = {
+        name: np.ascontiguousarray(np.broadcast_to(given.get(name, own), (bodies, own.shape[-1])))
+        for name, own in (("inertia", given.get("inertia")), ("omega", scene.omega), ("attitude", scene.attitude))
+        if own is not None}
+    return given, {name: rows.get(name, given.get(name)) for name in starts}, bodies
+
+
+def _numbers(numbers: Iterable[int] | None, bodies: int) -> list[int]:
+    if numbers is None:
+        return []
+    found = [to_body(number) for number in to_items(numbers, "numbers", "whole numbers")]
+    if len(found) != bodies:
+        raise _core.InvalidInput(f"numbers: must be one for each body, {bodies}, got {len(found)}")
+    return found
+
+
 @checked
 def solve_many(
     scenes: Scene[Om, At] | Iterable[Scene[Om, At]],
@@ -151,6 +186,8 @@ def solve_many(
     inertia: npt.ArrayLike | None = None,
     omega: npt.ArrayLike | None = None,
     attitude: Any = None,
+    t0: npt.ArrayLike | None = None,
+    times: npt.ArrayLike | None = None,
     accuracy: float | None = None,
     method: str | None = None,
     rtol: float | None = None,
@@ -162,6 +199,7 @@ def solve_many(
     errors: str = "raise",
     sensitivity: str | Sequence[str] | None = None,
     side: str = "space",
+    numbers: Iterable[int] | None = None,
 ) -> Motions[Om, At]:
     """Solve many scenes, or one scene from many starts.
 
@@ -181,6 +219,10 @@ def solve_many(
         With one scene: the starts' angular velocities in body axes [rad/s].
     attitude : array_like, shape (bodies, 4), or Rotation, optional
         With one scene: the starts' attitudes (x, y, z, w). Shapes (3,) and (4,) hold for all bodies.
+    t0 : array_like, shape (bodies,), optional
+        With one scene: the times of the starts [s].
+    times : array_like, shape (bodies, samples), optional
+        With one scene: the sample times of each body [s].
     accuracy, method, rtol, atol, step, max_steps, leave_out
         As in `solve`, for each body.
     threads : int, optional
@@ -191,6 +233,8 @@ def solve_many(
     sensitivity, side
         As in `solve`, for each body: what the motions are differentiated by, for `Motions.sensitivity`. Scenes with
         `accuracy`, or 1e-9, and all times; without `rtol`, `atol` and `step`.
+    numbers : iterable of int, optional
+        The numbers of the bodies, which decide what their controllers draw; 0, 1, 2 and so on if left out.
 
     Returns
     -------
@@ -202,25 +246,15 @@ def solve_many(
     InvalidInput
         For everything that `solve` refuses, with the number of the body. See `errors` for impossible starts.
     """
-    starts: tuple[Floats | None, Floats | None, Floats | None] = (None, None, None)
+    starts = {"inertia": inertia, "omega": omega, "attitude": attitude, "t0": t0, "times": times}
     given: dict[str, Any] = {}
+    rows: dict[str, Floats | None] = dict.fromkeys(starts)
     if isinstance(scenes, Scene):
-        arrays = {}
-        for name, value, width in (("inertia", inertia, 3), ("omega", omega, 3), ("attitude", attitude, 4)):
-            if value is not None:
-                arrays[name] = given[name] = _rows(value, width, name)
-        sizes = {array.shape[0] for array in arrays.values() if array.ndim == 2}
-        if len(sizes) != 1:
-            raise _core.InvalidInput(
-                f"solve_many: with one scene must get starts of one number of bodies, got {sorted(sizes) or 'none'}")
-        bodies = sizes.pop()
-        full = {name: np.ascontiguousarray(np.broadcast_to(arrays.get(name, own), (bodies, own.size)))
-                for name, own in (("omega", scenes.omega), ("attitude", scenes.attitude))}
-        moments = np.ascontiguousarray(np.broadcast_to(arrays["inertia"], (bodies, 3))) if "inertia" in arrays else None
-        listed, starts = [scenes], (moments, full["omega"], full["attitude"])
+        given, rows, bodies = _starts_of(scenes, starts)
+        listed = [scenes]
     else:
         listed = list(to_items(scenes, "scenes", "a Scene or several"))
-        for name, value in (("inertia", inertia), ("omega", omega), ("attitude", attitude)):
+        for name, value in starts.items():
             if value is not None:
                 raise _core.InvalidInput(f"{name}: must be left out with a scene for each body, which has its own")
         bodies = len(listed)
@@ -229,8 +263,12 @@ def solve_many(
                 raise _core.InvalidInput(f"scenes[{i}]: must be a polhode.Scene, got {type(scene).__name__}")
             if scene.times.size != listed[0].times.size or scene.want != listed[0].want:
                 raise _core.InvalidInput(f"scenes[{i}]: must have as many times as scenes[0] and the same want")
-    for scene in listed:
-        refuse_controllers(scene, "solve_many")
+    for i, scene in enumerate(listed):
+        for k, controller in enumerate(scene.controllers):
+            if controller.function is not None:
+                raise _core.InvalidInput(f"scenes[{i}].controllers[{k}]: must be traced among many bodies, got "
+                                         "trace=False; Python would be called at each tick of each body")
+    own = _numbers(numbers, bodies)
     require_text(method, "method")
     groups = None if sensitivity is None else check_groups(sensitivity, side)
     for name, number in (("rtol", rtol), ("atol", atol), ("step", step)):
@@ -238,21 +276,22 @@ def solve_many(
             raise _core.InvalidInput(f"{name}: must be left out with sensitivity=, which has an accuracy, "
                                      f"got {number!r}")
     workers, refuse = check_threads(threads), check_errors(errors)
-    times = listed[0].times.size if listed else 0
+    count = rows["times"].shape[1] if rows["times"] is not None else listed[0].times.size if listed else 0
+    many = _core._ManyScenes(listed, *rows.values())
     want = listed[0].want if listed else ("omega", "attitude")
-    out: dict[str, Any] = {name: np.empty((bodies, times, width)) if name in want else None
+    out: dict[str, Any] = {name: np.empty((bodies, count, width)) if name in want else None
                            for name, width in WIDTHS.items()}
     options = {"accuracy": accuracy, "method": method, "rtol": rtol, "atol": atol, "step": step,
                "max_steps": check_max_steps(max_steps), "leave_out": require_bool(leave_out, "leave_out")}
-    found = _core._solve_many(listed, *starts, bodies, times, out["omega"], out["attitude"], options, workers,
-                               refuse)
+    found = _core._solve_many(many, bodies, count, out["omega"], out["attitude"], options, workers, refuse, own)
     given |= {name: value for name, value in options.items()
               if value is not None and value != 10_000_000 and value is not True}
     given |= {} if refuse else {"errors": "nan"}
+    given |= {"numbers": own} if own else {}
     derivatives = None
     if groups and bodies:
-        made = _core._sensitivities(listed, *starts, bodies, times, groups, 1e-9 if accuracy is None else accuracy,
-                                    True, side, check_max_steps(max_steps), workers, refuse)
+        made = _core._sensitivities(many, bodies, count, groups, 1e-9 if accuracy is None else accuracy, True,
+                                     side, check_max_steps(max_steps), workers, refuse, own)
         found["message"] = tuple(f"{message}; no derivatives: {failure}" if failure else message
                                  for message, failure in zip(found["message"], made["failures"], strict=True))
         d_states = split_states(listed[0], made["d_states"])

@@ -20,7 +20,7 @@ Path = tuple[Any, ...]   # keys and indices that lead to a number of a scene fil
 NUMBERS = {"uniform": 2, "normal": 2, "log_uniform": 2, "truncated_normal": 4}   # parameters of one component
 ROTATIONS = ("normal", "normal_deg")
 WORDS = {*NUMBERS, "sphere", "normal_deg"}
-DRAWN = ("body", "start", "torques", "rotors")   # the tables whose numbers may be drawn
+DRAWN = ("body", "start", "torques", "rotors", "controllers")   # the tables whose numbers may be drawn
 RELATIVE = "_relative"
 
 
@@ -143,7 +143,8 @@ def _width(path: Path, data: dict[str, Any]) -> int:
         kinds_of = {parameter["name"]: parameter["kind"] for record in torques.records() if record["key"] == kind
                     for parameter in record["parameters"]}
         return 3 if key == "diagonal" or kinds_of.get(key) == "vector" else 0
-    if table == "torques" and {"parameters", "states"} & set(path):   # of a formula: as many as its own lists have
+    # Of a formula: as many as its own lists have.
+    if table in ("torques", "controllers") and {"parameters", "states"} & set(path):
         drawn = get(data, path)
         lists = [value for entry in drawn.values() if isinstance(entry, list) for value in entry]
         return 3 if "sphere" in drawn else max((len(value) for value in lists if isinstance(value, list)), default=0)

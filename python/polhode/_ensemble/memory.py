@@ -19,6 +19,8 @@ def keep() -> bool:
     """
     if "MALLOC_TRIM_THRESHOLD_" not in os.environ or "MALLOC_MMAP_THRESHOLD_" in os.environ:
         return False
+    if os.name != "posix":   # CDLL(None) is the process itself on POSIX alone
+        return False
     mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
     if mallopt is None:
         return False

@@ -25,7 +25,7 @@ from .distributions import Quantity
 
 MOST_BODIES = 4_000_000_000      # of a point: counts of a histogram have 32 bits
 MOST_POINTS = 100_000            # of a sweep
-SCENE = ("body", "start", "torques", "rotors", "times")
+SCENE = ("body", "start", "orbits", "torques", "rotors", "controllers", "times")
 OPTIONS = ("accuracy", "method", "rtol", "atol", "step", "max_steps")
 
 
@@ -151,7 +151,8 @@ def ensemble_model() -> Any:
                  count=(Annotated[int, Field(ge=1, le=MOST_BODIES)], ...),
                  seed=(Annotated[int, Field(ge=0, lt=2**64)], ...), draw=(Literal["by-body"], ...),
                  body=(table, ...), start=(table, ...), times=(table, ...),
-                 torques=(list[table], []), rotors=(list[table], []),
+                 orbits=(dict[str, table], {}), torques=(list[table], []), rotors=(list[table], []),
+                 controllers=(list[table], []),
                  solve=(solve, solve()), store=(store, store()), summary=(list[summary] | None, None),
                  sweep=(dict[str, swept], {}))
 

@@ -42,7 +42,8 @@ def is_free(recipe: EnsembleRecipe, point: Point) -> bool:
     """Return True if the closed form of free bodies serves: no torque, no rotor, and no method asked of it."""
     nominal = point.nominal
     changes = nominal.changing is not None or nominal.momentum is not None
-    return not (nominal.torques or nominal.rotors or changes) and not set(recipe.options) - {"accuracy"}
+    acting = nominal.torques or nominal.rotors or nominal.controllers
+    return not (acting or changes) and not set(recipe.options) - {"accuracy"}
 
 
 def check_options(recipe: EnsembleRecipe) -> None:
@@ -127,12 +128,13 @@ def _solved(recipe: EnsembleRecipe, point: Point, bodies: Bodies) -> States:
             omega, attitude = start_of(point, bodies)
             moments = None if isinstance(bodies.inertia, (InertiaTensor, list)) else bodies.inertia[rows]
             motions = solve_many(point.nominal, inertia=moments, omega=omega[rows], attitude=attitude[rows],
-                                 threads=1, errors="nan", **recipe.options) if rows.size else None
+                                 threads=1, errors="nan", numbers=rows + bodies.first,
+                                 **recipe.options) if rows.size else None
         else:
             made = scenes(point, bodies)
             rows = np.array([i for i, scene in enumerate(made) if scene is not None], dtype=np.int64)
             motions = solve_many([scene for scene in made if scene is not None], threads=1, errors="nan",
-                                 **recipe.options)
+                                 numbers=rows + bodies.first, **recipe.options)
     if motions is not None:
         found.omega[rows], found.attitude[rows] = motions.omega, motions.attitude
         ends = [STATUS.index(status) for status in motions.status]

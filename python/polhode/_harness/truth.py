@@ -83,7 +83,8 @@ def _stored(scene: Scene) -> Truth | None:
     floors = json.loads((folder / "floors.json").read_text())[scene.name]
     floor = max(floors["omega"], floors["attitude"])
     text = ("extrapolated midpoint steps of 32 digits, in momenta and in rates" if scene.changing
-            else "113-bit Taylor series, confirmed by collocation")
+            else "113-bit extrapolated midpoint steps of momenta, confirmed by collocation of rates"
+            if scene.name in ("S13", "S15") else "113-bit Taylor series, confirmed by collocation")
     return Truth(omega, attitude, "stored", text, 3e-16, floor, start_rate(scene))
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Iterator
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -31,6 +32,7 @@ class Scope:
         self.middle = 0.5 * (track.data.t[0] + track.data.t[-1])
         self.spread = float(track.data.t[-1] - track.data.t[0])
         self.grid = (len(track.index), track.length)
+        self.known: dict[Any, Array] = {}  # what several causes share
 
     @cached_property
     def end(self) -> State:
@@ -52,6 +54,17 @@ class Scope:
         """Return what one more torque makes of the steps."""
         law = dataclasses.replace(self.law, extra=extra)
         return difference(self.rough, extrapolated(law.field, self.t, self.dt, self.starts, self.levels))
+
+    def rates(self, steps: int) -> list[Array]:
+        """Return the exact rates at both ends of all steps, and at the ends of equal parts within."""
+        inside = self.shared(steps, lambda: np.array(self.law.rates_inside(self.t, self.dt, self.starts, steps)))
+        return [self.starts[0], *inside, self.end[0]]
+
+    def shared(self, key: Any, make: Callable[[], Array]) -> Array:
+        """Return what `make` gave first for this key."""
+        if key not in self.known:
+            self.known[key] = make()
+        return self.known[key]
 
     def samples(self) -> tuple[Array, State]:
         """The times and states of all samples, flat."""
@@ -135,9 +148,12 @@ def _tensor_push(scope: Scope, c: Array, logs: slice, tilt: slice) -> Array:
     size[: len(c[logs])], angle[: len(c[tilt])] = c[logs], c[tilt]
     if np.max(np.abs(size)) > 20:
         return np.full((len(scope.t), 6), np.nan)
-    law = dataclasses.replace(scope.law, matrix=changed_tensor(scope.law.matrix, size, angle))
+    return scope.shared((*size, *angle), lambda: _of_tensor(scope, changed_tensor(scope.law.matrix, size, angle)))
+
+
+def _of_tensor(scope: Scope, matrix: Array) -> Array:
     try:
-        return difference(scope.end, law.flow(scope.t, scope.dt, scope.starts))
+        return difference(scope.end, dataclasses.replace(scope.law, matrix=matrix).flow(scope.t, scope.dt, scope.starts))
     except InvalidInput:  # no such body
         return np.full((len(scope.t), 6), np.nan)
 
@@ -158,10 +174,7 @@ def _method(name: str) -> Push:
 
 def _attitude_method(place: float) -> Push:
     def push(scope: Scope, count: Array) -> Array:
-        steps = int(count[0])
-        inside = [scope.law.flow(scope.t, scope.dt * (k / steps), scope.starts)[0] for k in range(1, steps)]
-        rates = [scope.starts[0], *inside, scope.end[0]]
-        rotated = methods.rotate_by_rates(place, rates, scope.dt, scope.starts[1])
+        rotated = methods.rotate_by_rates(place, scope.rates(int(count[0])), scope.dt, scope.starts[1])
         return difference(scope.end, (scope.end[0], rotated))
 
     return push

@@ -32,12 +32,24 @@ def to_data(samples: Samples) -> Data:
         return Data(t, omega, samples.attitude, has_omega=False)
     if samples.attitude is None:
         steps = exponential(0.5 * (samples.omega[1:] + samples.omega[:-1]) * np.diff(t)[:, None])
-        attitude = np.empty((len(t), 4))
-        attitude[0] = [0, 0, 0, 1]
-        for k, step in enumerate(steps):
-            attitude[k + 1] = multiply(attitude[k], step)
+        attitude = products(np.concatenate([[[0.0, 0.0, 0.0, 1.0]], steps]))
         return Data(t, samples.omega, attitude, has_attitude=False)
     return Data(t, samples.omega, samples.attitude)
+
+
+def products(steps: Array) -> Array:
+    """Return the products of the first one, two, three ... rotations: in blocks, and then of whole blocks."""
+    count = len(steps)
+    width = max(1, int(math.sqrt(count)))
+    rows = -(-count // width)
+    padded = np.concatenate([steps, np.tile([0.0, 0.0, 0.0, 1.0], (rows * width - count, 1))])
+    blocks = padded.reshape(rows, width, 4)
+    for k in range(1, width):
+        blocks[:, k] = multiply(blocks[:, k - 1], blocks[:, k])
+    for k in range(1, rows):
+        blocks[k] = multiply(blocks[k - 1, -1], blocks[k])
+    out: Array = blocks.reshape(-1, 4)[:count]
+    return out / np.linalg.norm(out, axis=1, keepdims=True)
 
 
 def follows(samples: Samples, law: Law) -> bool:

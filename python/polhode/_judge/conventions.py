@@ -24,11 +24,11 @@ FAR = 1.0  # rad between samples, from which means by cubics say little
 LONG = 1.5  # rad between samples, beyond which no longer intervals are tried: turns by more than pi look like others
 SURE = 0.05  # rho of a reading that is believed even so
 RESOLUTION = 1e-4  # of rho: the error of means by cubics
-SIGNED = tuple(
+SIGNED = np.array([
     np.eye(3)[list(order)] * np.array(signs)[:, None]
     for order in itertools.permutations(range(3))
     for signs in itertools.product((1.0, -1.0), repeat=3)
-)
+])
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -69,6 +69,10 @@ def _departures(axes: Array) -> int:
     return int(not np.array_equal(order, np.arange(3))) + (0 if flips == 0 else 1 if flips in (1, 3) else 2)
 
 
+CHANGES = tuple(map(_departures, SIGNED))
+KNOWN = np.array(list(FACTORS))
+
+
 def readings(samples: Samples, attitude: Array, stride: int) -> list[Reading]:
     """Return all readings with their best factor, at every `stride`-th sample."""
     assert samples.omega is not None
@@ -88,16 +92,17 @@ def readings(samples: Samples, attitude: Array, stride: int) -> list[Reading]:
             square = float(np.sum(rate * rate))
             if not square or not power:
                 continue
-            for axes in SIGNED:
-                factor = float(np.sum(total * axes)) / power
-                if factor <= 0:
+            factors = np.sum(total * SIGNED, axis=(1, 2)) / power
+            for k in np.flatnonzero(factors > 0):
+                factor = float(factors[k])
+                off = np.abs(np.log(factor / KNOWN))
+                nearest = int(np.argmin(off))
+                if off[nearest] > math.log(1.2):
                     continue
-                known = min(FACTORS, key=lambda f: abs(math.log(factor / f)))
-                if abs(math.log(factor / known)) > math.log(1.2):
-                    continue
+                known = float(KNOWN[nearest])
                 rho = math.sqrt(max(0.0, 1 - factor * factor * power / square))
-                departures = abs(shifted) + reverse + (space != samples.space) + _departures(axes) + (known != 1.0)
-                out.append(Reading(shifted, reverse, space, axes, known, rho, departures, factor))
+                departures = abs(shifted) + reverse + (space != samples.space) + CHANGES[k] + (known != 1.0)
+                out.append(Reading(shifted, reverse, space, SIGNED[k], known, rho, departures, factor))
     return out
 
 

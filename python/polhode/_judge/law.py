@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
+from functools import cached_property
 
 import numpy as np
 
 from .._batch.closed_forms import free_motion
 from .._batch.solve_many import solve_many
-from .._core import InertiaTensor
+from .._core import InertiaTensor, Rotor
 from .._scene.scene import Scene
 from .._sensitivity.free import free_sensitivity
 from ..torques import Custom
 from .states import Array, State, difference, displace, rms
 
 Field = Callable[[Array, Array, Array], State]
-GROUPS = ("omega", "attitude", "inertia", "axes")
+ACCURACY = 1e-13
 
 
 def _tensor(matrix: Array) -> InertiaTensor:
@@ -36,6 +37,19 @@ class Law:
     gyro: float = 1.0
     extra: Callable[[Array, Array, Array], Array] | None = None
 
+    @staticmethod
+    def of_scene(scene: Scene) -> Law:
+        """Return the law of a scene. A free rotor keeps its momentum, whatever start a step has: it is told as held."""
+        matrix: Array = scene.inertia.matrix
+        if not scene.torques and not scene.rotors:
+            return Law(matrix)
+        if any(rotor.free for rotor in scene.rotors):
+            rotors = [Rotor(rotor.axis, momentum=_momentum(rotor, scene.omega), during=rotor.during)
+                      for rotor in scene.rotors]
+            matrix = scene.carrier_inertia.matrix
+            scene = scene.replace(rotors=rotors, inertia=_tensor(matrix))
+        return Law(matrix, scene)
+
     @property
     def free(self) -> bool:
         """True for a body without torques and rotors."""
@@ -51,15 +65,17 @@ class Law:
         torque = np.zeros_like(omega)
         momentum = omega @ self.matrix
         if self.scene is not None:
-            size = np.linalg.norm(attitude, axis=1)
-            good = (size > 0) & (size < 1e100) & np.all(np.abs(omega) < 1e100, axis=1)
-            torque[~good] = np.nan  # a trial that ran away
-            rows = zip(np.broadcast_to(t, size.shape)[good], omega[good], attitude[good] / size[good, None])
-            torque[good] = np.reshape([self.scene.torque(*row) for row in rows], (-1, 3))
-            momentum = momentum + self.scene.rotor_momentum if self.scene.rotors else momentum
+            if self.scene.torques:
+                size = np.sqrt(np.einsum("ni,ni->n", attitude, attitude))
+                good = (size > 0) & (size < 1e100) & (np.abs(omega).max(axis=1) < 1e100)
+                at, some = np.broadcast_to(t, size.shape), slice(None) if good.all() else good
+                torque[~good] = np.nan  # a trial that ran away
+                torque[some] = self.scene.torque(at[some], omega[some], attitude[some] / size[some, None])
+            for rotor in self.scene.rotors:
+                momentum = momentum + _rotates(rotor, t)[..., None] * (_momentum(rotor, self.scene.omega) * rotor.axis)
         if self.extra is not None:
             torque += self.extra(t, omega, attitude)
-        slope = (self.gyro * cross(momentum, omega) + torque) @ np.linalg.inv(self.matrix)
+        slope = (self.gyro * cross(momentum, omega) + torque) @ self._inverse
         vector, scalar = attitude[:, :3], attitude[:, 3:]
         rates = np.concatenate([scalar * omega + cross(vector, omega), -np.sum(vector * omega, 1, keepdims=True)], 1)
         return slope, 0.5 * rates
@@ -71,25 +87,41 @@ class Law:
         if self.scene is None:
             found: State = free_motion(_tensor(self.matrix), state[0], state[1], dt)
             return found
-        body, none = _tensor(self.matrix), np.flatnonzero(dt)
-        scenes = [
-            self.scene.replace(
-                inertia=body,
-                omega=state[0][k],
-                attitude=state[1][k],
-                t0=t[k],
-                times=[t[k] + dt[k]],
-                want=("omega", "attitude"),
-            )
-            for k in none
-        ]
         omega, attitude = state[0].copy(), state[1].copy()
-        if scenes:
-            method = "dop853" if any(isinstance(torque, Custom) for torque in self.scene.torques) else "taylor"
-            done = solve_many(scenes, rtol=1e-13, method=method)
-            assert done.attitude is not None and done.omega is not None
-            omega[none], attitude[none] = done.omega[:, 0], done.attitude[:, 0]
+        some = np.flatnonzero(dt)
+        if len(some):
+            done = self._solved(t[some], dt[some, None], (omega[some], attitude[some]))
+            omega[some], attitude[some] = done[0][:, 0], done[1][:, 0]
         return omega, attitude
+
+    def rates_inside(self, t: Array, dt: Array, state: State, steps: int) -> list[Array]:
+        """Return the rates at the ends of equal steps within each `dt`, without the last."""
+        parts = np.arange(1, steps) / steps
+        if self.plain and self.scene is not None and steps > 1 and np.all(dt):
+            return list(np.moveaxis(self._solved(t, dt[:, None] * parts, state)[0], 1, 0))
+        return [self.flow(t, dt * part, state)[0] for part in parts]
+
+    def _solved(self, t: Array, dt: Array, state: State) -> State:
+        """Return the scene's states at `t` + `dt`, shape (n, k), for each start."""
+        threads = None if self._method == "taylor" else 1  # functions of Python run one at a time
+        done = solve_many(self._body, omega=state[0], attitude=state[1], t0=t, times=t[:, None] + dt, rtol=ACCURACY,
+                          method=self._method, threads=threads)
+        assert done.attitude is not None and done.omega is not None
+        return done.omega, done.attitude
+
+    @cached_property
+    def _inverse(self) -> Array:
+        return np.linalg.inv(self.matrix)
+
+    @cached_property
+    def _body(self) -> Scene:
+        """The scene with the inertia of this law."""
+        assert self.scene is not None
+        return self.scene.replace(inertia=_tensor(self.matrix), want=("omega", "attitude"))
+
+    @cached_property
+    def _method(self) -> str:
+        return "dop853" if any(isinstance(torque, Custom) for torque in self._body.torques) else "taylor"
 
     def slopes(self, t: Array, dt: Array, state: State) -> tuple[State, Array]:
         """Return the flow, and its derivatives by the start, shape (n, 6, 6)."""
@@ -98,23 +130,40 @@ class Law:
                 _tensor(self.matrix), state[0], state[1], dt, wrt=("omega", "attitude"), side="body"
             )
             return (found.omega, found.attitude), found.transition
-        end = self.flow(t, dt, state)
         size = 1e-6 * np.array([rms(state[0]) or 1.0] * 3 + [1.0] * 3)
-        columns = []
-        for k in range(6):
-            step = np.zeros(6)
-            step[k] = size[k]
-            columns.append(
-                difference(end, self.flow(t, dt, displace(state, np.broadcast_to(step, (len(t), 6))))) / size[k]
-            )
-        return end, np.stack(columns, axis=-1)
+        steps = np.concatenate([np.zeros((1, 6)), np.diag(size)])[:, None]  # the start itself, and six beside it
+        starts = displace((np.tile(state[0], (7, 1, 1)), np.tile(state[1], (7, 1, 1))),
+                          np.broadcast_to(steps, (7, len(state[0]), 6)))
+        done = self.flow(np.tile(t, 7), np.tile(dt, 7), (starts[0].reshape(-1, 3), starts[1].reshape(-1, 4)))
+        ends = done[0].reshape(7, -1, 3), done[1].reshape(7, -1, 4)
+        end = ends[0][0], ends[1][0]
+        change = difference(end, (ends[0][1:], ends[1][1:])) / size[:, None, None]
+        return end, np.moveaxis(change, 0, -1)
+
+
+def _momentum(rotor: Rotor, omega: Array) -> float:
+    """Return the momentum of a rotor about its axis: relative to the body if it is held, absolute if it is free."""
+    if rotor.momentum is not None:
+        return float(rotor.momentum)
+    return float(rotor.inertia * (rotor.speed + (rotor.axis @ omega if rotor.free else 0.0)))
+
+
+def _rotates(rotor: Rotor, t: Array) -> Array:
+    """Return 1 for the times at which a rotor rotates, 0 for the others."""
+    if rotor.during is None:
+        return np.ones(np.shape(t))
+    windows = np.reshape(rotor.during, (-1, 2))
+    inside: Array = np.any([(begin <= t) & (t < end) for begin, end in windows], axis=0) if len(windows) else 0 * t
+    return inside * 1.0
 
 
 def cross(a: Array, b: Array) -> Array:
     """Return vector products of rows, faster than NumPy's for few rows."""
-    x, y, z = a[:, 0], a[:, 1], a[:, 2]
-    u, v, w = b[:, 0], b[:, 1], b[:, 2]
-    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=1)
+    x, y, z = a.T
+    u, v, w = b.T
+    out = np.empty((len(a), 3))
+    out[:, 0], out[:, 1], out[:, 2] = y * w - z * v, z * u - x * w, x * v - y * u
+    return out
 
 
 def extrapolated(field: Field, t: Array, dt: Array, state: State, levels: int = 6) -> State:

@@ -2,21 +2,37 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 
 import numpy as np
 
 from .law import Law, cross, extrapolated
-from .states import Array, State, exponential, multiply
+from .states import Array, State, conjugate, exponential, multiply, to_body
 
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class InSpace:
+    """A law whose rates are in space axes."""
+
+    law: Law
+
+    def field(self, t: Array, omega: Array, attitude: Array) -> State:
+        """Return the derivatives of rates and quaternions, as `Law.field` does."""
+        unit = attitude / np.linalg.norm(attitude, axis=1, keepdims=True)
+        slope, rates = self.law.field(t, to_body(unit, omega), attitude)
+        return to_body(conjugate(unit), slope), rates
+
+
+Field = Law | InSpace
 Step = Callable[[Law, Array, Array, Array], Array]
 
 
-def _slope(law: Law, t: Array, y: Array) -> Array:
+def _slope(law: Field, t: Array, y: Array) -> Array:
     return np.concatenate(law.field(t, y[:, :3], y[:, 3:]), axis=1)
 
 
-def _euler(law: Law, t: Array, h: Array, y: Array) -> Array:
+def _euler(law: Field, t: Array, h: Array, y: Array) -> Array:
     return y + h[:, None] * _slope(law, t, y)
 
 
@@ -26,7 +42,7 @@ def _semi_implicit(law: Law, t: Array, h: Array, y: Array) -> Array:
     return np.concatenate([rates, y[:, 3:] + h[:, None] * law.field(t, rates, y[:, 3:])[1]], axis=1)
 
 
-def _heun(law: Law, t: Array, h: Array, y: Array) -> Array:
+def _heun(law: Field, t: Array, h: Array, y: Array) -> Array:
     first = _slope(law, t, y)
     return y + 0.5 * h[:, None] * (first + _slope(law, t + h, y + h[:, None] * first))
 
@@ -45,7 +61,7 @@ def _implicit_midpoint(law: Law, t: Array, h: Array, y: Array) -> Array:
     return end
 
 
-def _rk3(law: Law, t: Array, h: Array, y: Array) -> Array:
+def _rk3(law: Field, t: Array, h: Array, y: Array) -> Array:
     """Kutta's third-order rule."""
     s = h[:, None]
     a = _slope(law, t, y)
@@ -67,6 +83,24 @@ def _rotated_euler(law: Law, t: Array, h: Array, y: Array) -> Array:
     """The rates by Euler's rule; the old rates turn the attitude."""
     slope = law.field(t, y[:, :3], y[:, 3:])[0]
     return np.concatenate([y[:, :3] + h[:, None] * slope, _rotate(h, y[:, :3], y)], axis=1)
+
+
+def _rotated_by_mean(law: Law, t: Array, h: Array, y: Array) -> Array:
+    """The rates by Euler's rule; the mean of the old and the new rates turns the attitude."""
+    rates = y[:, :3] + h[:, None] * law.field(t, y[:, :3], y[:, 3:])[0]
+    return np.concatenate([rates, _rotate(h, 0.5 * (y[:, :3] + rates), y)], axis=1)
+
+
+def _in_space(rule: Callable[[Field, Array, Array, Array], Array]) -> Step:
+    """Return the same rule for rates in space axes."""
+
+    def step(law: Law, t: Array, h: Array, y: Array) -> Array:
+        start = np.concatenate([to_body(conjugate(y[:, 3:]), y[:, :3]), y[:, 3:]], axis=1)
+        end = rule(InSpace(law), t, h, start)
+        unit = end[:, 3:] / np.linalg.norm(end[:, 3:], axis=1, keepdims=True)
+        return np.concatenate([to_body(unit, end[:, :3]), unit], axis=1)
+
+    return step
 
 
 def _rotated_semi_implicit(law: Law, t: Array, h: Array, y: Array) -> Array:
@@ -157,6 +191,10 @@ STEPS: dict[str, tuple[Step | None, int]] = {
     "Euler, momentum restored": (_same_momentum, 1),
     "midpoint of the momentum": (_rotated_midpoint, 2),
     "RK4, turned": (_rotated_rk4, 4),
+    "Euler, turned by mean rates": (_rotated_by_mean, 1),
+    "Euler in space axes": (_in_space(_euler), 1),
+    "Heun in space axes": (_in_space(_heun), 2),
+    "RK3 in space axes": (_in_space(_rk3), 3),
 }
 ATTITUDES = {"old rate": (0.0, 1), "new rate": (1.0, 1), "mean rate": (0.5, 2)}
 

@@ -19,6 +19,9 @@ ROUNDING, TRIALS = 3e-15, 4
 DIGIT = 1.7  # the step of the last digit over the floor that it sets
 # What the errors of a method may look like, and which part of them stays as a pattern then.
 IMITATED, PATTERN = ("lag", "clock", "units of rates", "inertia", "damping", "kinematics"), 0.005
+# An unknown method of a high order looks like one of a low order with many steps in a sample; one of the same order does
+# with as many steps as it has.
+NEAR_STEPS = 4
 # Causes that are one and the same for some motions; the first is named, the other stands in its rivals.
 EQUIVALENT = {("clock", "units of rates"), ("lag", "kinematics")}
 
@@ -40,6 +43,7 @@ class Verdict:
     after: float = 0.0
     alone: Numbers = ()  # rms of each channel with the best start alone
     floor: Numbers = ()  # below which nothing shows
+    whole: float = 0.0  # `before` in the longest segments, where shorter ones decided
 
     @property
     def explained(self) -> float:
@@ -71,13 +75,14 @@ def raised(track: Track, floor: Numbers) -> Numbers:
 def weigh(track: Track, floor: Numbers, sigma: Numbers | None, known: bool) -> Verdict:
     """Score all causes along one motion, refine the best, and say what the numbers allow."""
     floor = raised(track, floor)
-    scores = rank(track, list(catalogue(track, known)), floor, sigma)
+    scope = Scope(track)
+    scores = rank(scope, list(catalogue(track, known)), floor, sigma)
     none, rest = scores[0], scores[1:]
     before, low = np.sqrt(3 * np.array(none.rest)), np.array(floor)
     if np.all(before < DIGIT * low):
         return Verdict("fine", track, rest, floor=floor)
     hopeful = [s for s in rest[:REFINED] if s.gain > 0.5 * GAIN]
-    exact = [refine(track, s, floor, sigma) for s in hopeful]
+    exact = [refine(scope, s, floor, sigma) for s in hopeful]
     for score in exact:
         score.gain = score.likelihood - none.likelihood
     ranking = sorted([*exact, *[s for s in rest if s not in hopeful]], key=lambda s: -s.gain)
@@ -94,14 +99,18 @@ def weigh(track: Track, floor: Numbers, sigma: Numbers | None, known: bool) -> V
         verdict.kind = "unexplained"
     elif margin < MARGIN and not _equivalent(best, rivals):
         verdict.kind = "cannot tell"
-    elif _like_a_method(best, track, lead, alone[lead], float(after[lead]), floor[lead]):
+    elif not _leaves_a_pattern(best, track, lead, alone[lead], float(after[lead]), floor[lead]):
+        pass
+    elif best.held > NEAR_STEPS:
+        verdict.kind = "unexplained"
+    elif best.cause is not None and best.cause.name in IMITATED:
         verdict.kind, verdict.rivals = "cannot tell", tuple(dict.fromkeys((*rivals, "integrator")))
     return verdict
 
 
-def _like_a_method(best: Score, track: Track, channel: int, before: float, after: float, floor: float) -> bool:
-    """Return True if a cause that an unknown method of integration may imitate leaves a pattern."""
-    if best.cause is None or best.cause.name not in IMITATED or after < max(PATTERN * before, 30 * floor):
+def _leaves_a_pattern(best: Score, track: Track, channel: int, before: float, after: float, floor: float) -> bool:
+    """Return True if a cause leaves more than a small part, and not as noise: another method may be at work."""
+    if after < max(PATTERN * before, 30 * floor):
         return False
     shown = best.track or track
     return whiteness(shown.flat(shown.residual)[:, track.data.channels[channel][0]]) < 0.1
@@ -151,7 +160,7 @@ def decide(
         if verdict.kind != "unexplained" or track.length <= 8:
             break
         track = fit(data, law, track.length // 2)
-        verdict = weigh(track, floor, sigma, known)
+        verdict = dataclasses.replace(weigh(track, floor, sigma, known), whole=first.before)
         if verdict.kind == "fine":
             break
     return first if verdict.kind in ("fine", "unexplained") else verdict
@@ -166,10 +175,11 @@ def second(verdict: Verdict, floor: Numbers, sigma: Numbers | None, known: bool)
     rest = np.sqrt(np.array(first.rest) * 3)
     if np.all(rest < 5 * np.array(floor)):
         return None
-    push, show = slopes(own, Scope(track), first.c) if not own.substeps else pattern(own, Scope(track))
+    scope = Scope(track)
+    push, show = slopes(own, scope, first.c) if not own.substeps else pattern(own, scope)
     nuisance = carry(track.phi, push) + show
     causes = [c for c in catalogue(track, known) if c.name != own.name and (own.name, c.name) not in EQUIVALENT]
-    none, *others = rank(track, causes, floor, sigma, nuisance)
+    none, *others = rank(scope, causes, floor, sigma, nuisance)
     if not others or others[0].gain < 2 * GAIN:
         return None
     best, rivals, margin = _leader(others)

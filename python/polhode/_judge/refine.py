@@ -12,31 +12,33 @@ from .shooting import Track, carry
 from .states import Array, difference, displace, rms
 
 MOST_SUBSTEPS = 48
+SETTLED = 1e-3  # of what is left: a smaller change moves no likelihood by a hundredth of a nat
 
 
-def refine(track: Track, score: Score, floor: Numbers, sigma: Numbers | None = None, rounds: int = 8) -> Score:
+def refine(first: Scope, score: Score, floor: Numbers, sigma: Numbers | None = None, rounds: int = 8) -> Score:
     """Return the score of the exact faulty model; that of the first order where it cannot be run."""
     cause = score.cause
     assert cause is not None
     if not cause.substeps:
-        return _run(track, cause, score.c, floor, sigma, rounds, 0) or score
+        return _run(first, cause, score.c, floor, sigma, rounds, 0) or score
     wanted = cause.substeps / score.c[0] ** (1 / cause.order)
     counts = sorted({max(1, int(np.floor(wanted))), max(1, int(np.ceil(wanted)))})
-    done = [found for count in counts if (found := _run(track, cause, np.zeros(0), floor, sigma, rounds, count))]
+    done = [found for count in counts if (found := _run(first, cause, np.zeros(0), floor, sigma, rounds, count))]
     return max(done, key=lambda s: s.likelihood, default=score)
 
 
 def _run(
-    track: Track, cause: Cause, c: Array, floor: Numbers, sigma: Numbers | None, rounds: int, held: int
+    first: Scope, cause: Cause, c: Array, floor: Numbers, sigma: Numbers | None, rounds: int, held: int
 ) -> Score | None:
+    track = first.track
     now = dataclasses.replace(track)
     segments, length = now.index.shape
     seen = now.data.omega[now.index], now.data.attitude[now.index]
     count, last, phi, carried = 3 * int(now.new.sum()), np.inf, track.phi, track.carried
     found: Rated | None = None
     c = c.copy()
-    for _ in range(rounds):
-        scope = Scope(now)
+    for number in range(rounds):
+        scope = Scope(now) if number else first
         if held:
             run = min(held, MOST_SUBSTEPS)
             push = (
@@ -69,7 +71,7 @@ def _run(
         size = max(rms(change[..., :3]) / now.data.scale, rms(change[..., 3:]))
         if not np.isfinite(size) or size > 10:
             return None
-        if size < 1e-13 or (size < 1e-9 and size > 0.3 * last):
+        if size < max(1e-13, SETTLED * min(found.rest) ** 0.5) or (size < 1e-9 and size > 0.3 * last):
             break
         if size > 1e-2:
             phi = now.law.slopes(*now.steps, now.starts)[1].reshape(segments, length - 1, 6, 6)

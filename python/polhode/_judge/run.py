@@ -75,11 +75,8 @@ def judge(
         raise InvalidInput("inertia: must be left out with scene, which has one; got both")
     if scene is not None and not isinstance(scene, Scene):
         raise InvalidInput(f"scene: must be a polhode.Scene, got {type(scene).__name__}")
-    if scene is not None and (scene.changing is not None or scene.momentum is not None):
-        raise InvalidInput("scene: must have a body of constant inertia and momentum, got one that changes")
-    if scene is not None and (scene.damper is not None
-                              or any(name.startswith("rotor_momentum_") for name in scene.states)):
-        raise InvalidInput("scene: must have no damper and no motors or friction of rotors, got one with them")
+    if scene is not None:
+        _refuse(scene)
     if not (isinstance(tolerance, (int, float)) and 0 <= tolerance < 1e300):
         raise InvalidInput(f"tolerance: must be a number from 0 up, got {tolerance!r}")
     deviations = None if sigma is None else numbers([sigma] if isinstance(sigma, (int, float)) else sigma, "sigma", ())
@@ -92,6 +89,21 @@ def judge(
     if samples is None:
         return _unread(np.asarray(t, float), findings)
     return Work(samples, findings, body, scene, float(tolerance), deviations).run()
+
+
+def _refuse(scene: Scene) -> None:
+    """Refuse scenes whose motion has more states than rates and attitude: samples do not show these."""
+    for there, what in (
+        (scene.changing is not None or scene.momentum is not None, "a body of constant inertia and momentum, "
+         "got one that changes"),
+        (scene.damper is not None, "no damper, got one"),
+        (bool(scene.controllers), "no controllers, whose outputs samples do not show, got some"),
+        (any(name.startswith("rotor_momentum_") for name in scene.states), "no motors or friction of rotors, "
+         "got some"),
+        (bool(scene.states), f"no formulas with states of their own, got {', '.join(scene.states)}"),
+    ):
+        if there:
+            raise InvalidInput(f"scene: must have {what}")
 
 
 def _body(inertia: Any, scene: Scene | None) -> Array | None:

@@ -95,13 +95,13 @@ def _errors(stacked: Array) -> Array:
 
 
 def rank(
-    track: Track, causes: list[Cause], floor: Numbers, sigma: Numbers | None = None, nuisance: Array | None = None
+    scope: Scope, causes: list[Cause], floor: Numbers, sigma: Numbers | None = None, nuisance: Array | None = None
 ) -> list[Score]:
     """Score all causes at first order; the first entry is the start alone, the rest are sorted by likelihood.
 
     `nuisance` are columns (S, M, 6, c) that every cause has beside its own.
     """
-    scope = Scope(track)
+    track = scope.track
     pushes, shows = zip(*(pattern(cause, scope) for cause in causes), strict=True) if causes else ((), ())
     widths = [cause.count for cause in causes]
     always = nuisance if nuisance is not None else np.zeros((*track.omega.shape[:2], 6, 0))

@@ -49,11 +49,6 @@ class Table:
             self.names = next((named for text in said if (named := self._names_in(text))), [])
         if len(self.rows) < 2:
             raise InvalidInput(f"{file}: must have at least 2 rows of numbers, got {len(self.rows)}")
-        if len(self.rows) > MOST_ROWS:
-            raise InvalidInput(
-                f"{file}: must have at most {MOST_ROWS} rows, got {len(self.rows)}; keep one of "
-                f"{-(-len(self.rows) // MOST_ROWS)}"
-            )
         self.width = len(self.cells(self.rows[0]))
 
     def cells(self, row: str) -> list[str]:
@@ -119,6 +114,10 @@ class Table:
 def _split(file: pathlib.Path) -> tuple[list[str], list[int], list[str]]:
     """Return the rows that are no comments, their lines, and the comments before the first row, the last one first."""
     data = _files.read(file, MOST)
+    if (count := data.count(b"\n")) > MOST_ROWS:
+        raise InvalidInput(
+            f"{file}: must have at most {MOST_ROWS} lines, got {count}; keep one row of {-(-count // MOST_ROWS)}"
+        )
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:

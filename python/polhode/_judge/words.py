@@ -82,7 +82,7 @@ def describe(score: Score, data: Data) -> str:
 
 def tell(verdict: Verdict, data: Data, evidence: dict[str, Any]) -> Finding:
     """Return the finding of a verdict that something is wrong."""
-    effect, explained = verdict.before, max(0.0, verdict.explained)
+    effect, explained = max(verdict.before, verdict.whole), max(0.0, verdict.explained)
     channel = "rad" if data.has_attitude else "of the rates"
     common: dict[str, Any] = {
         "effect": effect,
@@ -90,7 +90,7 @@ def tell(verdict: Verdict, data: Data, evidence: dict[str, Any]) -> Finding:
         "margin": verdict.margin,
         "evidence": evidence | {"gain": verdict.best.gain if verdict.best else 0.0},
     }
-    tail = f"; explains {_part(explained)} of {effect:.2g} {channel}"
+    tail = f"; explains {_part(explained)} of {verdict.before:.2g} {channel}"
     assert verdict.best is not None and verdict.best.cause is not None
     name = verdict.best.cause.name
     size, sigma, more = size_of(verdict.best, data)

@@ -23,7 +23,7 @@ from .start import check_start
 from .states import Array, rms
 from .words import invariants, tell, unexplained
 
-MOST, MOST_DRIVEN = 2000, 400
+MOST, MOST_DRIVEN = 2000, 800
 FEWEST, SHORTEST = 8, 0.2  # samples, and turns
 GAP = 20.0  # rad
 
@@ -93,7 +93,7 @@ class Work:
 
     def _law_of(self, matrix: Array | None) -> Law:
         if self.scene is not None:
-            return Law(self.scene.inertia.matrix, self.scene if self.scene.torques or self.scene.rotors else None)
+            return Law.of_scene(self.scene)
         assert matrix is not None
         return Law(matrix)
 

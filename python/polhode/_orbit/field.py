@@ -16,6 +16,7 @@ from .._core.torques import Formula
 from .._formula.symbols import Symbol, joined
 from .._keywords import checked
 from ..formula import to_body
+from .named import make_named, register
 from .orbit import Orbit
 
 Array = npt.NDArray[np.float64]
@@ -218,6 +219,7 @@ def Dipole(moment: npt.ArrayLike | Callable[..., Any], field: MagneticField, **p
         except (TypeError, ValueError):
             raise InvalidInput("Dipole.moment: must be callable as moment(t, omega, attitude, field, p), got "
                                f"{getattr(function, '__name__', type(function).__name__)}") from None
+        own = None
     else:
         own = to_any(moment, "Dipole.moment").astype(float)
         if own.shape != (3,) or parameters:
@@ -232,4 +234,8 @@ def Dipole(moment: npt.ArrayLike | Callable[..., Any], field: MagneticField, **p
         seen = to_body(attitude, field.at(t))
         return np.cross(function(t, omega, attitude, seen, p), seen)
 
-    return Formula(torque, **parameters)
+    formula = Formula(torque, **parameters)
+    return formula if own is None else make_named("dipole", formula, {"moment": own.tolist(), "field": field})
+
+
+register("dipole", Dipole)

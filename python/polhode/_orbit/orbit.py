@@ -148,6 +148,36 @@ class Orbit:
         r, v = self._core.at(t)
         return r, v
 
+    @checked
+    def eclipses(self, sun: npt.ArrayLike, shadow: float, begin: float, end: float) -> Array:
+        """Return when the orbit is in the shadow of the central body.
+
+        The shadow is a cylinder: it is dark where r.s < 0 and abs(r)^2 - (r.s)^2 < shadow^2, with s the direction of
+        `sun`.
+
+        Parameters
+        ----------
+        sun : array_like, shape (3,)
+            Towards the sun, in space axes, of any length.
+        shadow : float
+            The radius of the shadow, that of the central body [m].
+        begin, end : float
+            The span [s].
+
+        Returns
+        -------
+        ndarray, shape (n, 2)
+            The times at which each shadow that meets the span is entered and left [s], rounded once. They may lie
+            outside the span. An orbit that is dark from its beginning, or to its end, has an infinite time there.
+
+        Raises
+        ------
+        InvalidInput
+            For a shadow that is larger than the least distance of the orbit, a sun 0, and times outside a table.
+        """
+        pairs: Array = self._core.eclipses(sun, shadow, begin, end)
+        return pairs
+
     @property
     def kind(self) -> str:
         """'circular', 'elliptic', 'parabolic', 'hyperbolic', 'radial' or 'table'."""

@@ -6,14 +6,17 @@ import dataclasses
 from collections.abc import Iterable
 from typing import Any
 
+import numpy as np
 import numpy.typing as npt
 
 from .. import _core
 from .._attitude.arrays import to_any, to_items, to_number
 from .._core import InvalidInput
-from .._core.torques import Formula
+from .._core.torques import During, Formula
 from .._keywords import checked
+from .named import make_named, register
 from .orbit import Orbit
+from .sunlight import make_sunlit
 
 
 @dataclasses.dataclass(frozen=True)
@@ -36,7 +39,7 @@ class Plate:
     Raises
     ------
     InvalidInput
-        For a negative area, a normal 0, and shares that are negative or above 1 together.
+        For a negative area, a normal 0, numbers that are not finite, and shares that are negative or above 1 together.
     """
 
     area: float
@@ -52,9 +55,11 @@ class Plate:
             row = to_any(getattr(self, name), f"Plate.{name}").astype(float)
             if row.shape != (3,):
                 raise InvalidInput(f"Plate.{name}: must be of shape (3,), got {row.shape}")
+            if not np.isfinite(row).all():
+                raise InvalidInput(f"Plate.{name}: must be finite, got {row[~np.isfinite(row)][0]}")
             object.__setattr__(self, name, tuple(row.tolist()))
-        if not self.area >= 0.0:
-            raise InvalidInput(f"Plate.area: must be at least 0, got {self.area}")
+        if not 0.0 <= self.area < np.inf:
+            raise InvalidInput(f"Plate.area: must be at least 0 and finite, got {self.area}")
         if not any(self.normal):
             raise InvalidInput("Plate.normal: must be not 0, got (0, 0, 0)")
         if min(self.specular, self.diffuse) < 0.0 or not self.specular + self.diffuse <= 1.0:
@@ -62,13 +67,17 @@ class Plate:
                                f"{self.specular} and {self.diffuse}")
 
 
-def _to_plates(plates: Any, name: str) -> list[tuple[Any, ...]]:
+def _to_plates(plates: Any, name: str) -> tuple[Plate, ...]:
     single = isinstance(plates, Plate) or not isinstance(plates, Iterable)
     listed = (plates,) if single else to_items(plates, f"{name}.plates", "plates")
     for plate in listed:
         if not isinstance(plate, Plate):
             raise InvalidInput(f"{name}.plates: must be Plates, got {type(plate).__name__}")
-    return [dataclasses.astuple(plate) for plate in listed]
+    return tuple(listed)
+
+
+def _to_tuples(plates: tuple[Plate, ...]) -> list[tuple[Any, ...]]:
+    return [dataclasses.astuple(plate) for plate in plates]
 
 
 @checked
@@ -104,17 +113,23 @@ def Drag(plates: Any, orbit: Orbit, coefficient: float, density: float, height_r
     """
     names = {"coefficient": coefficient, "density": density, "height_radius": height_radius,
              "scale_height": scale_height, "spin": spin}
-    numbers = [to_number(value, f"Drag.{name}") for name, value in names.items()]
-    formula: Formula = _core._make_drag(_to_plates(plates, "Drag"), orbit, *numbers)
-    return formula
+    numbers = {name: to_number(value, f"Drag.{name}") for name, value in names.items()}
+    own = _to_plates(plates, "Drag")
+    formula = _core._make_drag(_to_tuples(own), orbit, *numbers.values())
+    return make_named("drag", formula, {"plates": own, "orbit": orbit, **numbers})
+
+
+register("drag", Drag)
 
 
 @checked
-def SolarPressure(plates: Any, sun: npt.ArrayLike, pressure: float) -> Formula:   # noqa: N802
-    """Return the torque of the light on plates, a `Formula`.
+def SolarPressure(plates: Any, sun: npt.ArrayLike, pressure: float, orbit: Orbit | None = None,   # noqa: N802
+                  shadow: float | None = None) -> Formula | During:
+    """Return the torque of the light on plates, a `Formula`; with a shadow a `During` around it.
 
     With s = R^T sun and c = (n.s)_+ the force on a plate is -pressure A c ((1 - specular) s + 2 (specular c +
-    diffuse / 3) n). In a shadow the torque is left out by `During`.
+    diffuse / 3) n). It is dark where r.sun < 0 and the distance from the line to the sun is below `shadow`. All edges
+    are found from the orbit when the scene is built.
 
     Parameters
     ----------
@@ -124,16 +139,21 @@ def SolarPressure(plates: Any, sun: npt.ArrayLike, pressure: float) -> Formula: 
         Towards the sun, in space axes, of any length.
     pressure : float
         Of the light at the body [N/m^2].
+    orbit : Orbit, optional
+        With `shadow`.
+    shadow : float, optional
+        The radius of the central body's shadow, a cylinder [m].
 
     Returns
     -------
-    Formula
+    Formula or During
         [N m], body axes, with the parameter pressure.
 
     Raises
     ------
     InvalidInput
-        For no plates, a sun 0, and a pressure that is negative or not finite.
+        For no plates, a sun 0, a pressure that is negative or not finite, a shadow without an orbit, and a radius that
+        is not positive. When the scene is built, for an orbit nearer than the radius.
 
     References
     ----------
@@ -142,6 +162,15 @@ def SolarPressure(plates: Any, sun: npt.ArrayLike, pressure: float) -> Formula: 
     towards = to_any(sun, "SolarPressure.sun").astype(float)
     if towards.shape != (3,):
         raise InvalidInput(f"SolarPressure.sun: must be of shape (3,), got {towards.shape}")
-    formula: Formula = _core._make_solar_pressure(_to_plates(plates, "SolarPressure"), towards,
-                                                  to_number(pressure, "SolarPressure.pressure"))
-    return formula
+    own, number = _to_plates(plates, "SolarPressure"), to_number(pressure, "SolarPressure.pressure")
+    formula = make_named("solar_pressure", _core._make_solar_pressure(_to_tuples(own), towards, number),
+                         {"plates": own, "sun": towards.tolist(), "pressure": number})
+    if (orbit is None) != (shadow is None):
+        raise InvalidInput("SolarPressure.orbit, SolarPressure.shadow: must be given together, got "
+                           + ("orbit alone" if shadow is None else f"shadow {shadow} alone"))
+    if orbit is None:
+        return formula
+    return make_sunlit(formula, orbit, towards.tolist(), shadow)
+
+
+register("solar_pressure", SolarPressure)

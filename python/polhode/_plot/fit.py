@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._sensitivity.rotations import Array
-from ..measured import Attitudes
+from ..measured import Attitudes, Brightness, Scalar
 from . import style
 
 if TYPE_CHECKING:
@@ -16,22 +16,27 @@ if TYPE_CHECKING:
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7")
 LABELS = {"Rates": "omega [rad/s]", "Attitudes": "attitude (x, y, z, w)", "Axis": "axis in space",
-          "Direction": "direction in the body", "Scalar": "scalar"}
+          "Direction": "direction in the body", "Scalar": "scalar", "Brightness": "brightness",
+          "Acceleration": "acceleration [m/s^2]"}
 
 
 def _model_over_data(axes: Axes, found: Any) -> None:
     m = found.problem.data[0]
-    t = np.linspace(m.t.min(), m.t.max(), 1500)
-    zero = np.zeros(m.bias)
+    own_times = isinstance(m, (Scalar, Brightness))   # of what each sample has of its own, as a night
+    t = m.t if own_times else np.linspace(m.t.min(), m.t.max(), 1500)
+    own = found.bias[: m.bias]
 
     def values(times: Array) -> Array:
         p = found.predict(times)
         if isinstance(m, Attitudes):
             return np.asarray(p.attitude)
+        seen = found.problem.with_acceleration(found.state, p.omega) if m.accelerates else p.omega
+        if own_times:
+            return np.asarray(m.residual(seen, p.attitude, own)[:, 0] + m.y)[:, None]
         other = object.__new__(type(m))
         other.__dict__.update(m.__dict__)
         other.y = np.zeros((len(times), *m.y.shape[1:]))
-        return np.asarray(other.residual(p.omega, p.attitude, found.bias[: m.bias] if m.bias else zero))
+        return np.asarray(other.residual(seen, p.attitude, own))
 
     y = m.y
     if isinstance(m, Attitudes):   # the sign of a quaternion is free: that of the model

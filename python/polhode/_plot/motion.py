@@ -30,6 +30,9 @@ def _choose(track: Track, parts: tuple[str, ...]) -> list[str]:
             raise InvalidInput(f"plot: {part!r} must have the attitude; solve a scene whose want includes it")
     if parts:
         return list(parts)
+    if track.scene.controllers:
+        return ["polhode", "momentum", "rates", "commands"] if track.attitude is None else [
+            "polhode", "axis", "commands", "rates", "angles", "invariants"]
     if track.attitude is None:
         return ["polhode", "momentum", "rates", "invariants"]
     return ["polhode", "axis" if track.scene.torques else "herpolhode", "momentum", "rates", "angles", "invariants"]
@@ -100,6 +103,8 @@ def _words(track: Track) -> tuple[str, str]:
     acting = ", ".join(type(torque).__name__ for torque in scene.torques) or "no torque"
     if scene.rotors:
         acting += f"; {len(scene.rotors)} rotor" + ("s" if len(scene.rotors) > 1 else "")
+    if scene.controllers:
+        acting += f"; {len(scene.controllers)} controller" + ("s" if len(scene.controllers) > 1 else "")
     moments = ", ".join(f"{m:.4g}" for m in scene.inertia.moments)
     under = f"moments {moments} kg m²; {acting}; {track.source}"
     if not curve.whole:

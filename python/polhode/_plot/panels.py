@@ -268,9 +268,41 @@ def _invariants(axes: Any, drawing: Drawing) -> None:
     _mark_times(axes, drawing)
 
 
+UNITS = {"torque": "N m", "dipole": "A m²", "rotor_torque": "N m", "rotor_momentum": "N m s"}
+
+
+def _commands(axes: Any, drawing: Drawing) -> None:
+    """What controllers command, as it acts: from the delay after a tick to the next command, or for its width."""
+    track, palette = drawing.track, drawing.palette
+    end, most = track.curve.t[-1], 0
+    for i, (controller, ticks) in enumerate(zip(track.scene.controllers, track.ticks, strict=True)):
+        begins = ticks.t + controller.delay
+        ends = np.append(begins[1:], max(end, *begins[-1:])) if ticks.t.size else begins
+        if controller.width is not None:
+            ends = np.minimum(begins + controller.width, ends)
+        seen = begins <= end
+        t = np.stack([begins, begins, ends, ends], axis=1)[seen].ravel()
+        for k in range(ticks.command.shape[1]):
+            held = ticks.command[seen, k]
+            beside = held if controller.width is None else np.zeros_like(held)
+            name = "xyz"[k] if controller.output in ("torque", "dipole") else str(k)
+            label = name if len(track.ticks) == 1 else f"{i} {name}"
+            values = np.stack([beside, held, held, beside], axis=1).ravel()
+            axes.plot(np.minimum(t, end), values, linewidth=1.2, label=label, linestyle=("-", "--", ":")[i % 3],
+                      color=palette.lines[k % len(palette.lines)])
+        most += int(seen.sum())
+    _mark_times(axes, drawing)
+    axes.set_xlabel("t [s]")
+    axes.set_ylabel(", ".join(sorted({UNITS[one.output] for one in track.scene.controllers})))
+    axes.set_title(f"commands: {most} ticks" if track.ticks else "commands: the scene has no controller")
+    if most:
+        axes.legend(frameon=False, fontsize=8.5, ncols=6, loc="lower right", bbox_to_anchor=(1.0, 0.99),
+                    borderaxespad=0.1, handlelength=1.1, columnspacing=0.9)
+
+
 DRAW: dict[str, Callable[[Any, Drawing], None]] = {
     "polhode": _polhode, "herpolhode": _herpolhode, "momentum": _momentum, "axis": _axis, "rates": _rates,
     "attitude": _attitude, "angles": lambda axes, drawing: angles(drawing, [axes]), "energy": _energy,
-    "invariants": _invariants,
+    "invariants": _invariants, "commands": _commands,
 }
-WITHOUT_ATTITUDE = ("polhode", "momentum", "rates", "energy", "invariants")
+WITHOUT_ATTITUDE = ("polhode", "momentum", "rates", "energy", "invariants", "commands")

@@ -13,6 +13,7 @@ from .._core import InvalidInput, angular_momentum, drift, energy
 from .._scene.scene import Scene
 from .._solve.motion import Floats, Motion
 from .._solve.solve import solve
+from .._solve.ticks import Ticks
 
 TURNS = 40        # a curve longer than this many turns is drawn up to there, or it covers itself
 FINE = 0.05       # radians of rotation between two points of a curve
@@ -41,6 +42,7 @@ class Track(NamedTuple):
     curve: Curve
     source: str
     states: Floats = NONE   # of formulas and rotors
+    ticks: tuple[Ticks, ...] = ()   # of controllers
 
     @property
     def angular_momentum(self) -> Floats:
@@ -86,7 +88,7 @@ def find_curve(motion: Motion[Any, Any]) -> Curve:
         return Curve(times, *motion(times), drawn == span, np.concatenate(rows, axis=1) if rows else NONE)
     if motion.status not in ("finished", "event"):
         return Curve(t, omega, attitude, True, states)   # nothing is known beyond what there is
-    again = solve(motion.scene.replace(times=times), accuracy=1e-6)
+    again = solve(motion.scene.replace(times=times), accuracy=1e-6, body=motion.options.get("body", 0))
     if again.status != "finished" or again.omega is None:
         return Curve(t, omega, attitude, True, states)
     return Curve(times, again.omega, again.attitude, drawn == span, again._state_rows())
@@ -99,7 +101,8 @@ def of_motion(motion: Motion[Any, Any]) -> Track:
         raise InvalidInput("plot: the motion holds no samples")
     assert motion.omega is not None
     return Track(motion.scene, motion.t, motion.omega, motion.attitude, motion.drift, find_curve(motion),
-                 f"{len(motion)} samples by {motion.plan.method}", motion._state_rows())
+                 f"{len(motion)} samples by {motion.plan.method}", motion._state_rows(),
+                 motion.ticks)
 
 
 def of_closed_form(form: Any, scene: Scene, t: Floats) -> Track:

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 from functools import cache
-from typing import Any, Literal, Union
+from typing import Any, Union
 
 from .._clock.controller import Controller, Measure
 from .._core import InvalidInput
-from .._orbit.field import MagneticField
 from .._orbit.orbit import Orbit
-from .orbits import Names
+from .orbits import Names, field_model, make_field, to_field_entry
 from .validation import kinds, model
 
 KEYS = ("period", "output", "command", "update", "let", "states", "parameters", "delay", "width", "start", "limit",
@@ -22,10 +21,7 @@ def controller_model() -> Any:
     """Return the pydantic model of one controller."""
     kind = kinds()
     values: Any = Union[kind.number, kind.numbers]   # noqa: UP007
-    rows: Any = list[kind.numbers] | None   # type: ignore[name-defined]
-    numbers: Any = {name: (kind.number | None, None) for name in ("strength", "tilt", "spin", "phase", "radius")}
-    field: Any = model("Field", kind=(Literal["dipole", "gauss"], ...), orbit=(str, ...), g=(rows, None),
-                       h=(rows, None), **numbers)
+    field: Any = field_model()
     measure: Any = model("Measure", omega_noise=(kind.number, 0.0), attitude_noise=(kind.number, 0.0),
                          field_noise=(kind.number, 0.0), omega_quantum=(kind.number, 0.0), seed=(int, 0))
     return model("Controller", period=(kind.number, ...), output=(str, "torque"), command=(str, ...),
@@ -48,27 +44,13 @@ def make_controllers(entries: list[Any], orbits: dict[str, Orbit]) -> list[Contr
         given = {name: value for name, value in entry.model_dump().items() if value is not None}
         try:
             if "field" in given:
-                given["field"] = _make_field(given["field"], orbits)
+                given["field"] = make_field(given["field"], orbits)
             if "measure" in given:
                 given["measure"] = Measure(**given["measure"])
             made.append(Controller(**given))
         except InvalidInput as error:
             raise InvalidInput(f"controllers[{i}]: {error}") from None
     return made
-
-
-def _make_field(entry: dict[str, Any], orbits: dict[str, Orbit]) -> MagneticField:
-    given = {name: value for name, value in entry.items() if value is not None and name != "kind"}
-    if given["orbit"] not in orbits:
-        raise InvalidInput(f"field.orbit: must be an orbit of the file ({', '.join(orbits) or 'none'}), got "
-                           f"{given['orbit']!r}")
-    given["orbit"] = orbits[given["orbit"]]
-    make = MagneticField.dipole if entry["kind"] == "dipole" else MagneticField.gauss
-    try:
-        return make(**given)
-    except TypeError:
-        raise InvalidInput(f"field: must have the keys of MagneticField.{entry['kind']}, got "
-                           f"{', '.join(given)}") from None
 
 
 def to_entry(controller: Controller, i: int, orbits: Names) -> dict[str, Any]:
@@ -91,9 +73,8 @@ def to_entry(controller: Controller, i: int, orbits: Names) -> dict[str, Any]:
             value = {key: number for key, number in dataclasses.asdict(value).items()
                      if key != "seed"} | {"seed": Whole(value.seed)}
         entry[name] = Whole(value) if name == "rotors" else value
-    field = controller.field
-    if field is not None:
-        entry["field"] = {"kind": field._kind, **field._given, "orbit": orbits.find(field.orbit)}
+    if controller.field is not None:
+        entry["field"] = to_field_entry(controller.field, orbits)
     return entry
 
 

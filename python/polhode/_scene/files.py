@@ -14,6 +14,7 @@ import numpy as np
 from .. import _files, torques
 from .._core import Damper, InvalidInput, Rotor
 from .._orbit.orbit import Orbit
+from . import orbit_torques
 from .bodies import attitude_of, body_inertia, body_model, changing_of, place_meshes
 from .controllers import controller_model, make_controllers
 from .orbits import make_orbits, orbit_model
@@ -68,7 +69,7 @@ def scene_model() -> Any:
 def _torque_models() -> list[Any]:
     """Return the models of all torques of scene files, distinguished by `kind`."""
     kind = kinds()
-    models = []
+    models = orbit_torques.models()
     for key, records in _records_by_key().items():
         record = records[0]
         if key == "custom":
@@ -136,6 +137,10 @@ def read_toml(path: pathlib.Path) -> dict[str, Any]:
 
 
 def _torque(entry: Any, orbits: dict[str, Orbit]) -> Any:
+    if entry.kind in orbit_torques.KINDS:
+        given = entry.model_dump(exclude={"kind", "during"})
+        made = orbit_torques.make(entry.kind, given, orbits, lambda name: _find_orbit(orbits, name))
+        return made if entry.during is None else torques.During(made, entry.during)
     records = _records_by_key()[entry.kind]
     values = entry.model_dump(exclude={"kind", "diagonal", "during"})
     if len(records) > 1:

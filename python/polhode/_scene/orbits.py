@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import Any
+from typing import Any, Literal
 
 from .._core import InvalidInput
+from .._orbit.field import MagneticField
 from .._orbit.orbit import Orbit
 from .validation import kinds, model
 
@@ -39,6 +40,42 @@ def make_orbits(entries: dict[str, Any]) -> dict[str, Orbit]:
         except InvalidInput as error:
             raise InvalidInput(f"orbits.{name}: {error}") from None
     return orbits
+
+
+@cache
+def field_model() -> Any:
+    """Return the pydantic model of a magnetic field: the keys of its maker, and the name of its orbit."""
+    kind = kinds()
+    rows: Any = list[kind.numbers] | None   # type: ignore[name-defined]
+    numbers: Any = {name: (kind.number | None, None) for name in ("strength", "tilt", "spin", "phase", "radius")}
+    return model("Field", kind=(Literal["dipole", "gauss"], ...), orbit=(str, ...), g=(rows, None), h=(rows, None),
+                 **numbers)
+
+
+def make_field(entry: dict[str, Any], orbits: dict[str, Orbit]) -> MagneticField:
+    """Return the magnetic field of a checked table.
+
+    Raises
+    ------
+    InvalidInput
+        For a name that is no orbit of the file, and for the keys of another field.
+    """
+    given = {name: value for name, value in entry.items() if value is not None and name != "kind"}
+    if given["orbit"] not in orbits:
+        raise InvalidInput(f"field.orbit: must be an orbit of the file ({', '.join(orbits) or 'none'}), got "
+                           f"{given['orbit']!r}")
+    given["orbit"] = orbits[given["orbit"]]
+    make = MagneticField.dipole if entry["kind"] == "dipole" else MagneticField.gauss
+    try:
+        return make(**given)
+    except TypeError:
+        raise InvalidInput(f"field: must have the keys of MagneticField.{entry['kind']}, got "
+                           f"{', '.join(given)}") from None
+
+
+def to_field_entry(field: MagneticField, orbits: Names) -> dict[str, Any]:
+    """Return the keys of a field's table."""
+    return {"kind": field._kind, **field._given, "orbit": orbits.find(field.orbit)}
 
 
 def to_entry(orbit: Orbit) -> dict[str, Any]:

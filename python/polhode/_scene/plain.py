@@ -11,6 +11,11 @@ from .. import torques
 from .._clock.controller import Controller, Measure, _keywords
 from .._core import Changing, Damper, InertiaTensor, InvalidInput, Rotor
 from .._orbit.field import MagneticField
+from .._orbit.named import Named, restore
+from .._orbit.orbit import Orbit
+from .._orbit.plates import Plate
+from .._orbit.sunlight import Sunlit, make_sunlit
+from .orbit_torques import KINDS
 from .orbits import make_orbits
 from .scene import Scene, _restore
 
@@ -64,7 +69,13 @@ def _lost_torque(data: dict[str, Any]) -> Any:
 
 def _torque(torque: Any) -> dict[str, Any]:
     if isinstance(torque, torques.During):
-        return {**_torque(torque.torque), "during": _plain(torque.windows)}
+        if not isinstance(torque, Sunlit):
+            return {**_torque(torque.torque), "during": _plain(torque.windows)}
+        orbit, sun, shadow = torque.sunlight
+        light = {"orbit": _plain(orbit._given), "sun": list(sun), "shadow": shadow}
+        return {**_torque(torque.torque), "sunlight": light}
+    if isinstance(torque, Named):
+        return _named_torque(torque)
     name = type(torque).__name__
     if name == "Custom":
         return _own_torque(torque)
@@ -73,14 +84,56 @@ def _torque(torque: Any) -> dict[str, Any]:
     return {"kind": name, "state": _state(torque)}
 
 
+def _named_torque(torque: Named) -> dict[str, Any]:
+    """Return the kind of a torque on an orbit, and its arguments."""
+    given = dict(torque._given)
+    if "plates" in given:
+        given["plates"] = [dataclasses.asdict(plate) for plate in given["plates"]]
+    if "orbit" in given:
+        given["orbit"] = given["orbit"]._given
+    if "field" in given:
+        given["field"] = _field(given["field"])
+    return {"kind": torque._kind, "given": _plain(given)}
+
+
+def _from_named(data: dict[str, Any]) -> Any:
+    given = dict(data["given"])
+    if "plates" in given:
+        given["plates"] = [Plate(**plate) for plate in given["plates"]]
+    if "orbit" in given:
+        given["orbit"] = _from_orbit(given["orbit"])
+    if "field" in given:
+        given["field"] = _from_field(given["field"])
+    return restore(data["kind"], given)
+
+
 def _from_torque(data: dict[str, Any]) -> Any:
-    if data["kind"] not in torques.__all__ or data["kind"] in ("During", "records"):
+    if data["kind"] in KINDS:
+        torque = _from_named(data)
+    elif data["kind"] not in torques.__all__ or data["kind"] in ("During", "records"):
         raise ValueError(data["kind"])
-    if data["kind"] == "Custom":
+    elif data["kind"] == "Custom":
         torque = _lost_torque(data)
     else:
         torque = _made(getattr(torques, data["kind"]), data["state"])
+    if "sunlight" in data:
+        light = data["sunlight"]
+        return make_sunlit(torque, _from_orbit(light["orbit"]), light["sun"], light["shadow"])
     return torques.During(torque, data["during"]) if "during" in data else torque
+
+
+def _field(field: MagneticField) -> dict[str, Any]:
+    return {**field._given, "kind": field._kind, "orbit": dict(field.orbit._given)}
+
+
+def _from_field(data: dict[str, Any]) -> MagneticField:
+    given = {name: value for name, value in data.items() if name not in ("kind", "orbit")}
+    make = MagneticField.gauss if data["kind"] == "gauss" else MagneticField.dipole
+    return make(_from_orbit(data["orbit"]), **given)
+
+
+def _from_orbit(given: dict[str, Any]) -> Orbit:
+    return make_orbits({"main": _Entry(given)})["main"]
 
 
 def _controller(controller: Any, i: int) -> dict[str, Any]:
@@ -88,17 +141,14 @@ def _controller(controller: Any, i: int) -> dict[str, Any]:
         raise InvalidInput(f"scene.controllers[{i}]: must be one that a file can hold, got trace=False")
     parts = _keywords(controller._given) | {"measure": dataclasses.asdict(controller.measure)}
     if (field := controller.field) is not None:
-        parts["field"] = {**field._given, "kind": field._kind, "orbit": dict(field.orbit._given)}
+        parts["field"] = _field(field)
     return {name: _plain(value) for name, value in parts.items()}
 
 
 def _from_controller(data: dict[str, Any]) -> Controller:
     parts: dict[str, Any] = {**data, "measure": Measure(**data["measure"])}
     if "field" in parts:
-        orbit = make_orbits({"main": _Entry(parts["field"]["orbit"])})["main"]
-        given = {name: value for name, value in parts["field"].items() if name not in ("kind", "orbit")}
-        make = MagneticField.gauss if parts["field"]["kind"] == "gauss" else MagneticField.dipole
-        parts["field"] = make(orbit, **given)
+        parts["field"] = _from_field(parts["field"])
     return Controller(**parts)
 
 

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from .. import _core
 from .._attitude.arrays import to_items
 from .._keywords import checked, wrong
+from .._orbit.sunlight import resolve
 from .wanted import At, AttitudeAlone, Om, OmegaAlone, Parts, Wanted
 
 if TYPE_CHECKING:
@@ -99,7 +100,8 @@ class Scene(_core.Scene, Wanted[Om, At]):
         if not isinstance(controllers, Iterable):
             controllers = (controllers,)
         clocks = to_items(controllers, "scene.controllers", "controllers")
-        super().__init__(inertia, omega, attitude, kept, times, want, t0, name, rotors, damper, momentum,
+        acting = resolve(kept, times, t0)
+        super().__init__(inertia, omega, attitude, acting, times, want, t0, name, rotors, damper, momentum,
                          bool(leaving), clocks)
         self._torques = kept   # the compiled scene holds plain pointers to their functions
         self._controllers = clocks

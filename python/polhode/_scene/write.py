@@ -10,9 +10,13 @@ import numpy as np
 
 from .. import _core, _files, torques
 from .._core import InvalidInput
+from .._orbit.named import Named
 from .._orbit.orbit import Orbit
+from .._orbit.sunlight import Sunlit
 from .controllers import Whole
 from .controllers import to_entry as to_entry_of_controller
+from .orbit_torques import light_entry
+from .orbit_torques import to_entry as to_entry_of_named
 from .orbits import Names, to_entry
 
 if TYPE_CHECKING:
@@ -45,7 +49,12 @@ def _table(lines: list[str], head: str, entries: dict[str, Any]) -> None:
 
 def _torque(torque: Any, i: int, orbits: Names) -> dict[str, Any]:
     if isinstance(torque, torques.During):
-        return {**_torque(torque.torque, i, orbits), "during": torque.windows}
+        inner = _torque(torque.torque, i, orbits)
+        if isinstance(torque, Sunlit):
+            return inner | light_entry(torque.sunlight, orbits)
+        return inner | {"during": torque.windows}
+    if isinstance(torque, Named):
+        return to_entry_of_named(torque, orbits)
     name = type(torque).__name__
     record = next((r for r in _core.torque_records() if r["name"] == name), None)
     if record is None or name == "Custom":

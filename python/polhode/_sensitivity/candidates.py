@@ -66,8 +66,8 @@ def rates_of(state: State) -> tuple[float, float]:
 class Pool:
     """Minima, each once, as long as they are near the best."""
 
-    def __init__(self, problem: Problem) -> None:
-        self.limit = limit(problem)
+    def __init__(self, problem: Problem, within: float = WITHIN) -> None:
+        self.limit, self.within = limit(problem), within
         self.found: list[Minimum] = []
 
     def add(self, found: Minimum) -> None:
@@ -80,7 +80,7 @@ class Pool:
         else:
             self.found.append(found)
         self.found.sort(key=lambda one: one.cost)
-        self.found = [one for one in self.found if 2 * (one.cost - self.found[0].cost) <= WITHIN][:64]
+        self.found = [one for one in self.found if 2 * (one.cost - self.found[0].cost) <= self.within][:64]
 
     @property
     def best(self) -> Minimum | None:
@@ -138,3 +138,11 @@ def _same(one: State, other: State) -> bool:
     size = max(float(np.linalg.norm(one.omega)), 1e-300)
     a, b = one.moments / one.moments.max(), other.moments / other.moments.max()
     return bool(np.abs(one.omega - other.omega).max() <= 1e-3 * size and np.abs(a - b).max() <= 1e-3)
+
+
+def in_one_valley(one: State, other: State, span: float) -> bool:
+    """Return whether two bodies have the same frequencies over a span, and nearly the same moments."""
+    a, b = one.moments / one.moments.max(), other.moments / other.moments.max()
+    if np.abs(a - b).max() > 0.05:
+        return False
+    return bool(np.abs(np.array(rates_of(one)) - rates_of(other)).max() * span < 1)

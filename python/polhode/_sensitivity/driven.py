@@ -10,20 +10,30 @@ import numpy.typing as npt
 from .. import _core
 from .._attitude.arrays import is_one_of
 from .._core import InvalidInput
-from .._scene.scene import Scene, refuse_controllers
+from .._orbit.sunlight import Sunlit
+from .._scene.scene import Scene
 from .sensitivity import Sensitivity, to_names
 
 
 def differentiate(scene: Scene, names: str | Sequence[str], accuracy: float, side: str = "space",
-                  max_steps: int = 10_000_000, certify: bool = True) -> Sensitivity:
+                  max_steps: int = 10_000_000, certify: bool = True, body: int = 0) -> Sensitivity:
     """Return the motion of a scene and its derivatives at the scene's times.
 
     A free body has closed forms. Any other body has its variational equations integrated.
     """
-    refuse_controllers(scene, "sensitivity")
-    made = _core.sensitivity(scene, check_groups(names, side), accuracy, certify, side, max_steps)
+    groups = check_groups(names, side)
+    refuse_light(scene, groups)
+    made = _core.sensitivity(scene, groups, accuracy, certify, side, max_steps, body=body)
     return Sensitivity(made.omega, made.attitude, made.d_omega, made.d_attitude, tuple(made.columns), side, made.error,
-                       split_states(scene, made.d_states))
+                       split_states(scene, made.d_states), made.uncertain)
+
+
+def refuse_light(scene: Scene, groups: list[str]) -> None:
+    """Refuse columns by windows that follow from an orbit."""
+    for i, torque in enumerate(scene.torques):
+        if isinstance(torque, Sunlit) and f"torques.{i}.windows" in groups:
+            raise InvalidInput(f"sensitivity: must not be by 'torques.{i}.windows': the windows of torques.{i} follow "
+                               "from its orbit")
 
 
 def check_groups(names: str | Sequence[str], side: str) -> list[str]:

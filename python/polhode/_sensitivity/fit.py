@@ -9,8 +9,9 @@ import numpy as np
 
 from .._attitude.arrays import is_one_of, is_whole, to_items, to_number
 from .._core import IntegrationFailure, InvalidInput
-from .._scene.scene import Scene, refuse_controllers
+from .._scene.scene import Scene
 from ..measured import Attitudes, Measurement, Rates
+from ..measured import __all__ as SENSORS
 from . import robust, rotations
 from .candidates import Pool
 from .driven_problem import DrivenProblem, DrivenState
@@ -19,13 +20,14 @@ from .problem import GROUPS, Problem, State, ratios_of
 from .result import FitResult, make_result
 from .rotations import Array
 from .start import fits
-from .starts import SPANS, grown, search_at_random, search_free
+from .starts import SPANS, from_scene, grown, search_at_random, search_free
 
 
 def _to_data(data: Any) -> list[Measurement]:
     found = [data] if isinstance(data, Measurement) else list(to_items(data, "data", "measurements"))
     if not found or not all(isinstance(m, Measurement) for m in found):
-        raise InvalidInput("data: must be one or several of ph.measured.Rates, Attitudes, Axis, Direction and Scalar")
+        names = ", ".join(name for name in SENSORS if name != "Measurement")
+        raise InvalidInput(f"data: must be one or several of ph.measured.{names}")
     return found
 
 
@@ -144,7 +146,7 @@ def fit(
         'rotors.0.momentum'.
     start : {'search', 'scene'}
         'search' needs no start for a free body. With torques or rotors windows of the data grow from the scene's
-        numbers. 'scene' starts at the scene's values, with all data.
+        numbers. 'scene' starts at the scene's values with all data. Where that does not fit a free body, windows grow.
     bounds : dict, optional
         (least, most) of parameters by name, for 'omega_x' and so on, 'log_p1_p3', 'log_p2_p3', 'bias_x', and with
         torques or rotors 'log_p1' to 'log_p3' and 'torques.0.weight' or 'torques.0.arm_x'.
@@ -173,15 +175,13 @@ def fit(
 
     Notes
     -----
-    A gyroscope's scale and an offset of times are not fitted. See docs/fit.md.
+    An offset of times is not fitted. See docs/fit.md.
     """
     if scene is not None and not isinstance(scene, Scene):
         raise InvalidInput(f"scene: must be a polhode.Scene, got {type(scene).__name__}")
     if scene is not None and (scene.changing is not None or scene.momentum is not None):
         raise InvalidInput("scene: must have a body of constant inertia and momentum, got one that changes")
-    if scene is not None:
-        refuse_controllers(scene, "fit")
-    driven = scene is not None and bool(len(scene.torques) or len(scene.rotors))
+    driven = scene is not None and bool(len(scene.torques) or len(scene.rotors) or len(scene.controllers))
     measurements, groups = _to_data(data), _to_groups(fit, driven)
     if not is_one_of(loss, LOSSES):
         raise InvalidInput(f"loss: must be one of {', '.join(LOSSES)}, got {loss!r}")
@@ -195,6 +195,8 @@ def fit(
     if not is_one_of(start, ("search", "scene")) or (start == "scene" and scene is None):
         raise InvalidInput(f"start: must be 'search', or 'scene' with a scene, got {start!r}")
     state, largest, problem = _set_up(measurements, groups, scene, driven)
+    if any(m.accelerates for m in measurements) and (driven or "axes" in groups or problem.base.oblique):
+        raise InvalidInput("data: Acceleration needs a free body whose given axes are principal")
     independent = sum(m.independent for m in measurements)
     if independent < len(problem.names) or problem.t.size < 2:
         raise InvalidInput(f"data: {independent} numbers cannot give {len(problem.names)} parameters; "
@@ -210,7 +212,10 @@ def fit(
             how = search_at_random(problem, state, rng, loss, f_scale, pool, how)
         state = state if pool.best is None else pool.best.state
     low, high = _bounds(problem, bounds)
-    found = minimise(problem, state, loss=loss, scale=f_scale, low=low, high=high, most=1000)
+    if start == "scene" and not driven:
+        found = from_scene(problem, state, loss, f_scale, low, high)
+    else:
+        found = minimise(problem, state, loss=loss, scale=f_scale, low=low, high=high, most=1000)
     pool.add(found)
     if loss != "linear":
         places = robust.find_outliers(problem, found.residuals)

@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from .problem import Problem, State
 
 LOSSES = ("linear", "soft_l1", "huber", "cauchy")
+PATIENT = 25    # steps after which a slow way along a flat valley may end
+LAST = 10       # steps that gained less than LITTLE together: some hundredths of a standard deviation are left
+LITTLE = 1e-3
 
 
 def rho(squares: Array, loss: str) -> tuple[Array, Array, Array]:
@@ -67,6 +70,7 @@ def minimise(problem: Problem, state: State, *, loss: str = "linear", scale: flo
         state = state.displaced(np.where(np.isnan(now), 0.0, np.clip(now, low, high) - now), problem.slices)
     residuals, jacobian = problem.residuals_and_jacobian(state)
     cost, nfev, damping, status = cost_of(residuals, loss, scale), 1, 1e-4, 0
+    costs = [cost]
     while nfev < most:
         r, J = weighted(residuals, jacobian, loss, scale)
         normal, gradient = J.T @ J, J.T @ r
@@ -100,6 +104,10 @@ def minimise(problem: Problem, state: State, *, loss: str = "linear", scale: flo
         gain = cost - trial
         state, cost, damping = other, trial, max(damping / 10, 1e-12)
         residuals, jacobian = tried
+        costs.append(cost)
+        if len(costs) > PATIENT and costs[-1 - LAST] - cost < LITTLE:
+            status = 2
+            break
         if gain <= tolerance * cost or np.abs(step * size).max() <= 1e-9:
             status = 2
             break

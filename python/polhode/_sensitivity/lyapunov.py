@@ -10,7 +10,7 @@ import numpy as np
 from .. import _core
 from .._attitude.arrays import to_number
 from .._core import InvalidInput
-from .._scene.scene import Scene, refuse_controllers
+from .._scene.scene import Scene
 from .driven import differentiate
 from .sensitivity import Array
 
@@ -53,6 +53,21 @@ def _held(scene: Scene) -> tuple[_core.Rotor, ...]:
     return tuple(hold(rotor) for rotor in scene.rotors)
 
 
+def _of_loop(scene: Scene, length: float, parts: int, accuracy: float) -> Lyapunov:
+    """Carry a tangent vector through one run: its parts in the memory of controllers and in delays go on."""
+    times = scene.t0 + length * np.arange(1, parts + 1) / parts
+    made = _core.sensitivity(scene.replace(times=times, want=("omega", "attitude")), ["omega", "attitude"], accuracy,
+                             False, "space", 10_000_000, rescale=True)
+    rates = np.maximum.accumulate(np.linalg.norm(np.concatenate([scene.omega[None], made.omega]), axis=1))
+    rates = np.where(rates > 0, rates, parts / length)
+    vector = np.full(6, 1 / math.sqrt(6)) * np.repeat([rates[0], 1.0], 3)
+    displaced = np.concatenate([made.d_omega @ vector / rates[1:, None], made.d_attitude @ vector], axis=1)
+    with np.errstate(divide="ignore"):
+        grown = np.log(np.linalg.norm(displaced, axis=1)) + math.log(2) * np.array(made.scale)
+    log_growth = np.concatenate([[0.0], grown])
+    return Lyapunov(float(log_growth[-1] / length), np.concatenate([[0.0], times - scene.t0]), log_growth)
+
+
 def lyapunov(scene: Scene, span: float | None = None, *, accuracy: float = 1e-9) -> Lyapunov:
     """Compute the largest Lyapunov exponent of a motion over a span of time.
 
@@ -62,7 +77,9 @@ def lyapunov(scene: Scene, span: float | None = None, *, accuracy: float = 1e-9)
     Parameters
     ----------
     scene : Scene
-        With torques of the library, rotors and windows; no Custom torque. Its times matter only for the span.
+        With torques of the library, rotors, windows and controllers; no Custom torque. Its times matter only for the
+        span. The memory of controllers and the commands on their way carry a part of the tangent vector, which is not
+        in its length.
     span : float, optional
         From the start [s]; by default to the scene's last time.
     accuracy : float
@@ -84,7 +101,6 @@ def lyapunov(scene: Scene, span: float | None = None, *, accuracy: float = 1e-9)
     """
     if not isinstance(scene, Scene):
         raise InvalidInput(f"scene: must be a polhode.Scene, got {type(scene).__name__}")
-    refuse_controllers(scene, "lyapunov")
     length = float(np.max(scene.times)) - scene.t0 if span is None else to_number(span, "span")
     if not (length > 0 and math.isfinite(length)):
         raise InvalidInput(f"span: must be positive and finite, got {length}")
@@ -93,9 +109,12 @@ def lyapunov(scene: Scene, span: float | None = None, *, accuracy: float = 1e-9)
     parts = int(min(max(PARTS, length * rate / (2 * math.pi * TURN)), 1_000_000))
     if scene.changing is not None or scene.momentum is not None:
         raise InvalidInput("lyapunov: must be of a scene whose body is constant, got one that changes")
-    if scene.damper is not None or any(name.startswith("rotor_momentum_") for name in scene.states):
+    inner = scene.damper is not None or any(name.startswith("rotor_momentum_") for name in scene.states)
+    if inner and not scene.controllers:
         raise InvalidInput("lyapunov: must be of a scene without a damper and without motors or friction of rotors, "
                                  "got one with them; their momenta are states, which it does not carry")
+    if scene.controllers:
+        return _of_loop(scene, length, parts, accuracy)
     now = scene.replace(rotors=_held(scene), want=("omega", "attitude"))
     times = scene.t0 + length * np.arange(1, parts + 1) / parts
     vector, log_growth = np.full(6, 1 / math.sqrt(6)), np.zeros(parts + 1)

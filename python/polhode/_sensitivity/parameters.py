@@ -7,7 +7,9 @@ from typing import Any
 import numpy as np
 
 from .. import _core, torques
-from .._core import InvalidInput, Rotor
+from .._clock.controller import Controller
+from .._core import Damper, InvalidInput, Rotor
+from .._orbit.sunlight import rewrap
 from .._scene.scene import Scene
 from .._scene.write import list_keywords
 from .rotations import Array
@@ -19,17 +21,45 @@ def _inner(torque: Any) -> Any:
 
 def _key(torque: Any) -> str:
     """The name in scene files: 'gravity_gradient' of GravityGradient."""
-    name = type(_inner(torque)).__name__
+    inner = _inner(torque)
+    name = "Formula" if isinstance(inner, torques.Formula) else type(inner).__name__
     return "".join("_" + c.lower() if c.isupper() and k else c.lower() for k, c in enumerate(name))
 
 
+ROTOR_FIELDS = ("momentum", "inertia", "speed", "torque", "viscous", "coulomb", "max_torque", "max_speed")
+
+
 def _read(holder: Any, field: str) -> Any:
-    """The number of a torque or a rotor, or None."""
-    return holder.parameters.get(field) if isinstance(holder, torques.Formula) else getattr(holder, field, None)
+    """The number of a torque, a rotor, a damper or a controller, or None."""
+    if isinstance(holder, Controller):
+        return {**holder.parameters, **holder.states}.get(field)
+    if isinstance(holder, torques.Formula):
+        return holder.parameters.get(field)
+    if isinstance(holder, Rotor) and field not in ROTOR_FIELDS:
+        return dict(holder.parameters or {}).get(field)
+    return getattr(holder, field, None)
+
+
+def _is_fitted(what: str, holder: Any, field: str) -> bool:
+    """Whether a field is a number that is fitted."""
+    if what == "damper":
+        return field == "viscous"
+    if what == "rotors":
+        return field in ROTOR_FIELDS or field in dict(holder.parameters or {})
+    return isinstance(holder, (torques.Formula, Controller)) or field not in ("traits", "value", "windows")
+
+
+def _holders(scene: Scene) -> dict[str, tuple[Any, ...]]:
+    """What has numbers that are fitted."""
+    return {"torques": scene.torques, "rotors": scene.rotors, "controllers": scene.controllers,
+            "damper": () if scene.damper is None else (scene.damper,)}
 
 
 def find(scene: Scene, group: str) -> tuple[str, int, str]:
-    """Return ('torques', 'rotors' or 'states', number, field) of a name such as 'torques.0.weight'."""
+    """Return what a name such as 'torques.0.weight' means: ('torques', 0, 'weight').
+
+    The first is 'torques', 'rotors', 'controllers', 'damper' or 'states'.
+    """
     parts = group.split(".")
     if len(parts) == 2 and parts[0] == "states":
         owners = [k for k, torque in enumerate(scene.torques) if parts[1] in getattr(torque, "states", ())]
@@ -37,7 +67,9 @@ def find(scene: Scene, group: str) -> tuple[str, int, str]:
             raise InvalidInput(f"fit: must be a state of the scene's formulas, {', '.join(scene.states) or 'none'}, "
                                f"got {group!r}")
         return "states", owners[0], parts[1]
-    kinds = {"torques": scene.torques, "rotors": scene.rotors}
+    if len(parts) == 2 and parts[0] == "damper" and scene.damper is not None:
+        parts = ["damper", "0", parts[1]]
+    kinds = _holders(scene)
     if len(parts) == 3 and parts[0] in kinds and parts[1].isdigit() and int(parts[1]) < len(kinds[parts[0]]):
         what, index, field = parts[0], int(parts[1]), parts[2]
     else:
@@ -52,13 +84,15 @@ def find(scene: Scene, group: str) -> tuple[str, int, str]:
         index, field = among[0], parts[1]
     holder = _inner(kinds[what][index])
     value = _read(holder, field)
+    if what == "controllers":
+        if value is None:
+            raise InvalidInput(f"fit: must be a parameter or the start of a state of the controller, which has "
+                               f"{', '.join((*holder.parameters, *holder.states)) or 'none'}, got {group!r}")
+        return what, index, field
     if isinstance(holder, torques.Formula) and value is None:
         raise InvalidInput(f"fit: must be numbers of Formula, which has {', '.join(holder.parameters) or 'none'}, "
                            f"got {group!r}")
-    others = ("traits", "value", "windows")
-    fits = field in ("momentum", "inertia", "speed") if what == "rotors" else field not in others
-    fits = fits or isinstance(holder, torques.Formula)
-    if not fits or value is None or isinstance(value, str):
+    if not _is_fitted(what, holder, field) or value is None or isinstance(value, str):
         raise InvalidInput(f"fit: {group!r} is no number of {holder!r}; ends of windows are not fitted")
     return what, index, field
 
@@ -68,14 +102,14 @@ def get(scene: Scene, group: str) -> Array:
     what, index, field = find(scene, group)
     if what == "states":
         return np.array(scene.states[field], dtype=float).reshape(-1)
-    holder = _inner(getattr(scene, what)[index])
+    holder = _inner(_holders(scene)[what][index])
     return np.array(_read(holder, field), dtype=float).reshape(-1)
 
 
 def names_of(scene: Scene, group: str) -> list[str]:
     """Return the names of a group's numbers."""
     what, index, field = find(scene, group)
-    stem = f"{what}.{field}" if what == "states" else f"{what}.{index}.{field}"
+    stem = f"{what}.{field}" if what in ("states", "damper") else f"{what}.{index}.{field}"
     return [group + name.removeprefix(stem) for name in _core._parameter_names(scene, group)]
 
 
@@ -86,12 +120,21 @@ def put(scene: Scene, group: str, value: Array) -> Scene:
         start = value.reshape(np.shape(scene.states[field]))
         return scene.replace(torques=[torque.with_starts(**{field: start}) if field in getattr(torque, "states", ())
                                       else torque for torque in scene.torques])
-    items = list(getattr(scene, what))
+    items = list(_holders(scene)[what])
     holder = _inner(items[index])
     shape = np.shape(_read(holder, field))
     new: Any = value.reshape(shape) if shape else float(value[0])
+    if what == "damper":
+        return scene.replace(damper=Damper(inertia=holder.inertia, viscous=new, rates=holder.rates))
+    if what == "controllers":
+        table = "parameters" if field in holder.parameters else "states"
+        return scene.replace(controllers=[
+            one.replace(**{table: {**getattr(one, table), field: new}}) if k == index else one
+            for k, one in enumerate(items)])
     if what == "rotors":
-        made: Any = Rotor(**{**list_keywords(holder), field: new})
+        own = field in ROTOR_FIELDS
+        change = {field: new} if own else {"parameters": {**holder.parameters, field: new}}
+        made: Any = Rotor(**{**list_keywords(holder), **change})
     else:
         if isinstance(holder, torques.Formula):
             made = holder.with_parameters(**{field: new})
@@ -100,6 +143,6 @@ def put(scene: Scene, group: str, value: Array) -> Scene:
             fields = [name for name in public if not callable(getattr(holder, name))]
             made = type(holder)(**{**{name: getattr(holder, name) for name in fields}, field: new})
         if isinstance(items[index], torques.During):
-            made = torques.During(made, items[index].windows)
+            made = rewrap(items[index], made)
     items[index] = made
     return scene.replace(**{what: items})

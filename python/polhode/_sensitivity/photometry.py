@@ -19,6 +19,7 @@ Array = npt.NDArray[np.float64]
 LAWS = ("lambert", "lommel-seeliger", "geometric")
 NODES = 24       # of Gauss and Legendre along each angle of Lambert's integral: 4e-6 of the full light for axes 1, 5, 2
 FLAT = 1e-6      # of the size: a vertex so far outside of a face's plane makes a body that is not convex
+ROUGH = 8        # the same for a search: 1e-3
 AT_ONCE = 1 << 20   # numbers of an intermediate array
 
 
@@ -28,8 +29,8 @@ class Reflector(Protocol):
     def light(self, sun: Array, observer: Array) -> Array:
         """Return the light (...,) for directions (..., 3)."""
 
-    def gradients(self, sun: Array, observer: Array) -> tuple[Array, Array]:
-        """Return its derivatives by both directions, (n, 3) each."""
+    def gradients(self, sun: Array, observer: Array) -> tuple[Array, Array, Array]:
+        """Return the light (n,) and its derivatives by both directions, (n, 3) each."""
 
 
 def make_reflector(body: Any, law: str) -> Reflector:
@@ -45,10 +46,15 @@ def make_reflector(body: Any, law: str) -> Reflector:
 class Ellipsoid:
     """An ellipsoid with its semi-axes along the body axes."""
 
-    def __init__(self, axes: Array, law: str) -> None:
+    def __init__(self, axes: Array, law: str, nodes: int = NODES) -> None:
+        self.nodes = nodes
         self.C: Array = axes**-2.0
         self.size = float(np.prod(axes))
         self.law = law
+
+    def rough(self) -> Ellipsoid:
+        """Return the same body with a cheaper integral."""
+        return Ellipsoid(self.C**-0.5, self.law, ROUGH)
 
     def _forms(self, sun: Array, observer: Array) -> tuple[Array, Array, Array, Array]:
         """Return s C s, e C e, s C e, and the square of the sine term, (s C s)(e C e) - (s C e)^2."""
@@ -69,19 +75,18 @@ class Ellipsoid:
         L = np.log((a * S + A + D) * (b * S + B + D) / np.maximum(G, 1e-30 * A * B))
         return np.asarray(0.5 * np.pi * self.size * ((a * (B + D) + b * (A + D)) / W - G * L / (W * S)))
 
-    def gradients(self, sun: Array, observer: Array) -> tuple[Array, Array]:
-        """Return the derivatives by both directions.
+    def gradients(self, sun: Array, observer: Array) -> tuple[Array, Array, Array]:
+        """Return the light and its derivatives by both directions.
 
         Lommel and Seeliger's law: Muinonen and Lumme (2015), in the three forms of `_forms`.
         """
         if self.law == "lambert":
-            _, by_sun, by_observer = self._lambert(sun, observer, True)
-            return by_sun, by_observer
+            return self._lambert(sun, observer, True)
         A, B, D, G = (form[..., None] for form in self._forms(sun, observer))
         cs, ce, half = self.C * sun, self.C * observer, 0.5 * np.pi * self.size
         if self.law == "geometric":
             a = np.sqrt(A)
-            return half * (ce / a - D / (A * a) * cs), half * (ce / np.sqrt(B) + cs / a)
+            return (self.light(sun, observer), half * (ce / a - D / (A * a) * cs), half * (ce / np.sqrt(B) + cs / a))
         W = np.maximum(A + B + 2 * D, 1e-12 * (A + B))
         a, b, S = np.sqrt(A), np.sqrt(B), np.sqrt(W)
         P, Q = a * S + A + D, b * S + B + D
@@ -98,14 +103,16 @@ class Ellipsoid:
             return out
 
         zero = np.zeros_like(cs)
-        return (put(2 * cs, zero, ce, 2 * (B * cs - D * ce)), put(zero, 2 * ce, cs, 2 * (A * ce - D * cs)))
+        light = half * (N / W - G * L * power)
+        by_sun = put(2 * cs, zero, ce, 2 * (B * cs - D * ce))
+        return light[..., 0], by_sun, put(zero, 2 * ce, cs, 2 * (A * ce - D * cs))
 
     def _lambert(self, sun: Array, observer: Array, wanted: bool) -> tuple[Array, Array, Array]:
         """Integrate over the lune of the sphere that is lit and seen; its edges add nothing to the derivatives."""
         shape = sun.shape[:-1]
         s, e = (np.broadcast_to(v, (*shape, 3)).reshape(-1, 3) for v in (sun, observer))
         out = np.empty(len(s)), np.empty((len(s), 3)), np.empty((len(s), 3))
-        step = max(AT_ONCE // (3 * NODES**2), 1)
+        step = max(AT_ONCE // (3 * self.nodes**2), 1)
         for first in range(0, len(s), step):
             here = slice(first, first + step)
             for whole, part in zip(out, self._lune(s[here], e[here], wanted), strict=False):
@@ -124,8 +131,8 @@ class Ellipsoid:
         other /= np.linalg.norm(other, axis=1, keepdims=True)
         third = np.where((sine > 1e-9 * a * b)[:, None], across / np.maximum(sine, 1e-300)[:, None], other)
         second = np.cross(third, first)
-        x, weight = np.polynomial.legendre.leggauss(NODES)
-        phi = 0.5 * angle[:, None] + 0.5 * (np.pi - angle[:, None]) * x          # (n, NODES)
+        x, weight = np.polynomial.legendre.leggauss(self.nodes)
+        phi = 0.5 * angle[:, None] + 0.5 * (np.pi - angle[:, None]) * x          # (n, nodes)
         cosine = np.cos(0.5 * np.pi * x)                                         # of the latitude
         flat = np.cos(phi)[..., None] * first[:, None] + np.sin(phi)[..., None] * second[:, None]
         n = cosine[:, None] * flat[:, :, None] + np.sin(0.5 * np.pi * x)[:, None] * third[:, None, None]
@@ -177,14 +184,15 @@ class Facets:
             return np.asarray((lit * seen) @ self.area)
         return np.asarray((lit * seen / np.maximum(lit + seen, 1e-300)) @ self.area)
 
-    def gradients(self, sun: Array, observer: Array) -> tuple[Array, Array]:
-        """Return the derivatives by both directions; faces that the light begins to graze are left out."""
+    def gradients(self, sun: Array, observer: Array) -> tuple[Array, Array, Array]:
+        """Return the light and its derivatives; faces that the light begins to graze are left out of these."""
         lit, seen = self._cosines(sun, observer)
+        light = self.light(sun, observer)
         both = (lit > 0) & (seen > 0)
         weighted = self.area[:, None] * self.normal
         if self.law == "geometric":
-            return np.zeros((len(lit), 3)), both @ weighted
+            return light, np.zeros((len(lit), 3)), both @ weighted
         if self.law == "lambert":
-            return (both * seen) @ weighted, (both * lit) @ weighted
+            return light, (both * seen) @ weighted, (both * lit) @ weighted
         total = np.maximum(lit + seen, 1e-150) ** 2
-        return (both * seen**2 / total) @ weighted, (both * lit**2 / total) @ weighted
+        return light, (both * seen**2 / total) @ weighted, (both * lit**2 / total) @ weighted

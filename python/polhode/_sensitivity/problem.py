@@ -86,6 +86,20 @@ def ratios_of(moments: Array, least: float = 1e-9) -> Array:
     return out
 
 
+def own_names(data: Sequence[Measurement]) -> list[str]:
+    """Return the names of the parameters of the sensors, with the sensor's number where several have the same."""
+    stems = [measurement.own for measurement in data if measurement.own]
+    every = [name for names in stems for name in names]
+    if len(set(every)) == len(every):
+        return every
+    out = []
+    for k, names in enumerate(stems):
+        for name in names:
+            stem, part = name.rsplit("_", 1)
+            out.append(f"{stem}_{k}_{part}")
+    return out
+
+
 class Problem:
     """Residuals over sigma of all measurements, and their Jacobian, for `groups` of a state's parameters.
 
@@ -105,10 +119,10 @@ class Problem:
         for group in self.groups:
             self.slices[group] = slice(len(names), len(names) + len(known[group]))
             names += known[group]
-        count = sum(measurement.bias for measurement in self.data)
-        if count:
-            self.slices["bias"] = slice(len(names), len(names) + count)
-            names += [f"bias_{k // 3}_{'xyz'[k % 3]}" if count > 3 else f"bias_{'xyz'[k]}" for k in range(count)]
+        own = own_names(self.data)
+        if own:
+            self.slices["bias"] = slice(len(names), len(names) + len(own))
+            names += own
         self.names = tuple(names)
         times = [measurement.t for measurement in self.data]
         self.ends = np.cumsum([0, *(len(t) for t in times)])
@@ -121,9 +135,30 @@ class Problem:
         for k, measurement in enumerate(self.data):
             here = slice(self.ends[k], self.ends[k + 1])
             own = state.bias[bias : bias + measurement.bias]
-            parts.append(measurement.whiten(measurement.residual(omega[here], attitude[here], own)).ravel())
+            seen = self.with_acceleration(state, omega[here]) if measurement.accelerates else omega[here]
+            parts.append(measurement.whiten(measurement.residual(seen, attitude[here], own)).ravel())
             bias += measurement.bias
         return parts
+
+    def with_acceleration(self, state: State, omega: Array) -> Array:
+        """Return omega and the angular acceleration of Euler's equations, (n, 6)."""
+        J = state.moments
+        return np.concatenate([omega, np.cross(J * omega, omega) / J], axis=1)
+
+    def _with_its_derivatives(self, state: State, omega: Array, d_omega: Array) -> Array:
+        """Return the derivatives of both, (n, 6, k)."""
+        J = state.moments
+        d_momentum = J[:, None] * d_omega
+        if "inertia" in self.slices:
+            a, b = np.exp(np.clip(state.ratios, -80, 80))
+            d_moments = np.array([[0, b], [a, 0], [a, b]])
+            d_momentum[..., self.slices["inertia"]] += omega[:, :, None] * d_moments
+        d_alpha = (np.cross(d_momentum, omega[:, :, None], axis=1)
+                   + np.cross((J * omega)[:, :, None], d_omega, axis=1))
+        if "inertia" in self.slices:
+            alpha = np.cross(J * omega, omega) / J
+            d_alpha[..., self.slices["inertia"]] -= alpha[:, :, None] * d_moments
+        return np.concatenate([d_omega, d_alpha / J[:, None]], axis=1)
 
     def residuals(self, state: State) -> Array:
         """Residuals over sigma."""
@@ -156,13 +191,17 @@ class Problem:
     def residuals_and_jacobian(self, state: State) -> tuple[Array, Array]:
         """Residuals over sigma, and their derivatives by a step of the parameters."""
         omega, attitude, d_omega, d_attitude = self.columns(state)
-        rows, bias = [], self.slices["bias"].start if "bias" in self.slices else 0
+        rows, bias, first = [], 0, self.slices["bias"].start if "bias" in self.slices else 0
         for k, measurement in enumerate(self.data):
             here = slice(self.ends[k], self.ends[k + 1])
-            part = measurement.rows(omega[here], attitude[here], d_omega[here], d_attitude[here])
+            seen, d_seen = omega[here], d_omega[here]
+            if measurement.accelerates:
+                seen, d_seen = self.with_acceleration(state, seen), self._with_its_derivatives(state, seen, d_seen)
+            own = state.bias[bias : bias + measurement.bias]
+            part = measurement.rows(seen, attitude[here], d_seen, d_attitude[here], own)
             if measurement.bias:
                 part = part.copy()
-                part[:, :, bias : bias + 3] = np.eye(3)
+                part[:, :, first + bias : first + bias + measurement.bias] = measurement.own_rows(seen)
                 bias += measurement.bias
             rows.append(measurement.whiten(part).reshape(-1, len(self.names)))
         return np.concatenate(self._each(state, omega, attitude)), np.concatenate(rows)

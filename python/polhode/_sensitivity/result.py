@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 HIDDEN = 1e-10     # a singular value below this part of the largest is not observable
+FREE = 0.999       # of the square of a parameter's share in directions that are not observable: it is free itself
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -85,7 +86,8 @@ class FitResult:
     moments : ndarray, shape (3,)
         The moments of `inertia`: about the body axes in their order, or of a tensor the principal ones, ascending.
     cov, stderr, correlation
-        Of the parameters; small rotations stand for attitude and axes. NaN where not observable.
+        Of the parameters; small rotations stand for attitude and axes. Where a combination of numbers of one kind is
+        not observable, as a turn about one line, they are those of what is across it. What is not observable has inf.
     chi2, dof : float, int
         The sum of squared residuals over sigma, and how many independent numbers exceed the parameters.
     candidates : tuple of Candidate
@@ -145,7 +147,7 @@ class FitResult:
         problem = self.problem.with_data([], self.state)
         problem.t = times
         omega, attitude, d_omega, d_attitude = problem.columns(self.state)
-        cov = np.nan_to_num(self.cov[: len(problem.names), : len(problem.names)])
+        cov = np.where(np.isfinite(self.cov), self.cov, 0.0)[: len(problem.names), : len(problem.names)]
         return Prediction(times, omega, attitude, d_omega @ cov @ d_omega.transpose(0, 2, 1),
                           d_attitude @ cov @ d_attitude.transpose(0, 2, 1))
 
@@ -190,6 +192,8 @@ class FitResult:
 
 def moment_errors(ratios: Array, cov: Array) -> Array:
     """Return the standard errors of the moments over the largest, from the covariance of log(P1 / P3), log(P2 / P3)."""
+    if not np.isfinite(cov).all():
+        return np.full(3, np.inf)
     a, b = np.exp(np.clip(ratios, -80, 80))
     J, d = np.array([b + 1, a + 1, a + b]), np.array([[0, b], [a, 0], [a, b]])
     k = int(J.argmax())
@@ -199,24 +203,38 @@ def moment_errors(ratios: Array, cov: Array) -> Array:
 
 
 def covariance(jacobian: Array, names: tuple[str, ...]) -> tuple[Array, list[str]]:
-    """Return the covariance from the singular values of the column-scaled Jacobian, and what it does not see."""
+    """Return the covariance from the singular values of the column-scaled Jacobian, and what it does not see.
+
+    Where a direction within numbers of one kind is not seen, as a turn about one line, the covariance is that of the
+    components across it. Numbers of several kinds that are not seen together have the variance inf.
+    """
     count = jacobian.shape[1]
     size = np.linalg.norm(jacobian, axis=0)
     hidden = [f"{name}: the data do not depend on it" for name, s in zip(names, size, strict=True) if s == 0]
     seen = np.flatnonzero(size > 0)
-    cov = np.full((count, count), np.nan)
+    cov = np.zeros((count, count))
+    cov[size == 0, size == 0] = np.inf
     if not seen.size:
         return cov, hidden
     _, values, right = np.linalg.svd(jacobian[:, seen] / size[seen], full_matrices=False)
     keep = values > HIDDEN * values[0]
-    unresolved = np.zeros(seen.size, dtype=bool)
+    inverse = right[keep].T / values[keep] / size[seen][:, None]
+    found = inverse @ inverse.T
     for row in right[~keep]:
-        involved = np.abs(row) > 0.05
-        unresolved |= involved
-        hidden.append("a combination of " + ", ".join(names[k] for k in seen[involved]))
-    inverse = right[keep].T / values[keep]
-    found = inverse @ inverse.T / size[seen] / size[seen][:, None]
-    found[unresolved], found[:, unresolved] = np.nan, np.nan
+        direction = row / size[seen]
+        direction /= np.linalg.norm(direction)
+        involved = np.flatnonzero(np.abs(row) > 0.05)
+        text = "a combination of " + ", ".join(names[k] for k in seen[involved])
+        free = np.abs(row) > 0.05
+        if len({names[k].rsplit("_", 1)[0] for k in seen[involved]}) == 1:   # of one kind, with one unit
+            across = np.eye(seen.size) - np.outer(direction, direction)
+            found = across @ found @ across
+            free = direction**2 > FREE
+            parts = " ".join(f"{direction[k]:+.3g} {names[seen[k]]}" for k in involved)
+            text += f": {parts.removeprefix('+')}; the standard errors are those of what is across it"
+        hidden.append(text)
+        found[free], found[:, free] = 0.0, 0.0
+        found[free, free] = np.inf
     cov[np.ix_(seen, seen)] = found
     return cov, hidden
 
@@ -256,8 +274,9 @@ def make_result(problem: Problem, found: Minimum, scene: Scene | None, largest: 
     state = found.state
     cov, hidden = covariance(found.jacobian, problem.names)
     stderr = np.sqrt(np.diag(cov))
-    with np.errstate(invalid="ignore"):
-        correlation = cov / stderr / stderr[:, None]
+    sized = np.where(np.isfinite(stderr) & (stderr > 0), stderr, 1.0)
+    correlation = np.where(np.isfinite(cov), cov, 0.0) / sized / sized[:, None]
+    np.fill_diagonal(correlation, 1.0)
     moments = state.moments / state.moments.max() * largest
     E = rotations.to_matrix(state.axes)
     oblique = "axes" in problem.slices or bool(np.abs(state.axes[:3]).any())

@@ -81,7 +81,7 @@ def _alone(problem: Problem, pool: Pool) -> list[Minimum]:
     """Return minima of the sensors that give a motion of their own, each alone."""
     found = []
     for m in problem.data if len(problem.data) > 1 else ():
-        if not isinstance(m, (Attitudes, Axis, Direction, Rates)) or len(m) < 8 or m.bias:
+        if not isinstance(m, (Attitudes, Axis, Direction, Rates)) or len(m) < 8 or m.own:
             continue
         one = problem.with_data([m])
         for start in pool.found[:STARTS]:

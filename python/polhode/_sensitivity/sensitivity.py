@@ -52,6 +52,9 @@ class Sensitivity:
         The estimated error of each column relative to its size, where the motion was integrated with a certificate.
     d_states : dict of ndarray, shape (..., n) or (..., k, n)
         Derivatives of the states of the scene's formulas, by name; empty without any.
+    uncertain : str
+        Which branch of a controller's law is not certain, and at which tick; empty if all are. The errors are then
+        infinite.
 
     Notes
     -----
@@ -68,6 +71,7 @@ class Sensitivity:
     side: str = "space"
     error: Array | None = None
     d_states: dict[str, Array] = dataclasses.field(default_factory=dict)
+    uncertain: str = ""
 
     def column(self, name: str) -> tuple[Array, Array]:
         """Return (d omega, d attitude) of one column, each of shape (..., 3)."""

@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from .._spectrum import attitudes, axis, rates
-from ..measured import Attitudes, Axis, Measurement, Rates
+from .._spectrum import attitudes, axis, direction, rates
+from ..measured import Attitudes, Axis, Direction, Measurement, Rates
 from . import robust
-from .candidates import WITHIN, Pool, lattice
+from .candidates import WITHIN, Pool, in_one_valley, lattice
 from .least_squares import minimise
 from .problem import Problem, State, ratios_of
 from .rotations import Array
@@ -68,7 +68,10 @@ def _fit(problem: Problem, state: State, moments: Array, omega: Array, pool: Poo
         start = State(attitude[k], omega[k], ratios_of(moments[k]), state.axes, state.bias)
         tried.append(minimise(problem, start, loss=loss, scale=scale, most=SHORT, tolerance=1e-2))
     least = min(one.cost for one in tried)
-    for one in tried:
+    span = float(np.ptp(problem.t))
+    for one in sorted(tried, key=lambda one: one.cost):
+        if any(in_one_valley(one.state, other.state, span) for other in pool.found if pool.fits):
+            continue
         if one.cost <= NEAR * max(least, 0.5 * pool.limit) and one.cost < max(30 * pool.limit, 0.02 * usual):
             pool.add(minimise(problem, one.state, loss=loss, scale=scale, most=300))
 
@@ -77,6 +80,7 @@ def _fit(problem: Problem, state: State, moments: Array, omega: Array, pool: Poo
 SCANS: dict[type[Measurement], tuple[Callable[..., Iterator[tuple[float, Array, Array]]], int, float]] = {
     Attitudes: (attitudes.candidates, 8, 96.0),
     Axis: (axis.candidates, 16, 12.0),
+    Direction: (direction.candidates, 16, 12.0),
 }
 
 
@@ -92,7 +96,7 @@ def search_lines(problem: Problem, state: State, kind: type[Measurement], pool: 
     low = 0.3 / float(np.ptp(data.t))
     # bodies of one frequency are all near; vectors at random differ by sqrt(2) from the data, about
     far = 0.0
-    if isinstance(data, Axis):
+    if isinstance(data, (Axis, Direction)):
         far = 0.7 * float((data.whitener[:, 0, 0] ** 2).sum()) * float(data.known @ data.known)
     for high in _scans(data.t, highest):
         for top in attitudes.HARMONICS:

@@ -102,7 +102,7 @@ def costs_of(data: Sequence[Measurement], omega: Array, moments: Array, until: f
     others = []
     for measurement in data:
         part = measurement.part(until)
-        if not len(part):
+        if not len(part) or part.accelerates:
             continue
         weight = float(np.mean(part.whitener[:, 0, 0] ** 2))
         if isinstance(part, (Attitudes, Axis, Direction)):

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..measured import Attitudes, Axis, Direction, Measurement, Rates
-from . import robust, rotations, sparse
-from .candidates import Pool
+from . import curves, robust, rotations, sparse
+from .candidates import Pool, limit
 from .least_squares import Minimum, minimise
 from .problem import Problem, State, ratios_of
 from .rotations import Array
@@ -15,6 +15,8 @@ from .start import from_rates, grow, search, wahba
 STARTS = 12     # other ratios that are tried where the linear start does not fit
 THIN = 8.0      # log of a ratio of second moments beyond which other ratios are tried too
 SPANS = (0.1, 0.2, 0.4, 0.7, 1.0)   # growing windows, of the whole span
+GROWTH = 1.5    # of windows from a scene
+ENOUGH = 2.0    # numbers in the first window, over the parameters
 
 
 def _first_attitude(problem: Problem, state: State) -> State:
@@ -97,7 +99,28 @@ def search_free(problem: Problem, state: State, rng: np.random.Generator, loss: 
             sparse.search_lines(problem, state, kind, pool, loss, scale, fastest)
             if robust.fits(problem, pool, loss):
                 return "the frequencies of nutation and precession"
+    if curves.suits(problem):
+        curves.search_light(problem, state, pool, loss, scale, fastest)
+        if pool.found:
+            return "the two frequencies of a light curve"
     return how
+
+
+def from_scene(problem: Problem, state: State, loss: str, scale: float, low: Array | None, high: Array | None,
+               ) -> Minimum:
+    """Return the better of two minima: from the scene's values with all data at once, and with windows that grow."""
+    at_once = minimise(problem, state, loss=loss, scale=scale, low=low, high=high, most=1000)
+    if loss == "linear" and 2 * at_once.cost <= limit(problem):
+        return at_once
+    spans = np.unique(np.abs(problem.t))
+    first = int(ENOUGH * len(problem.names) * len(spans) / max(at_once.residuals.size, 1)) + 2
+    span = spans[min(first, len(spans) - 1)]
+    while span < spans[-1]:
+        window = problem.with_data([part for m in problem.data if len(part := m.part(span)) or m.bias])
+        state = minimise(window, state, loss=loss, scale=scale, low=low, high=high, most=40, tolerance=1e-4).state
+        span *= GROWTH
+    grown_up = minimise(problem, state, loss=loss, scale=scale, low=low, high=high, most=1000)
+    return min(at_once, grown_up, key=lambda one: one.cost)
 
 
 def search_at_random(problem: Problem, state: State, rng: np.random.Generator, loss: str, scale: float, pool: Pool,
@@ -105,6 +128,8 @@ def search_at_random(problem: Problem, state: State, rng: np.random.Generator, l
     """Fill the pool from motions at random where the scans found none that fits; rates have their own starts."""
     if float(np.abs(problem.t).max()) == 0 or all(isinstance(m, Rates) for m in problem.data):
         return how
+    if curves.suits(problem):   # its scans are all there is: a search at random takes minutes
+        return how or "nothing: no body with the frequencies of the light curve fits"
     before = pool.best
     search(problem, state, rng, loss, scale, pool)
     if pool.fits or pool.best is not before:

@@ -222,6 +222,8 @@ def _name(torque: Any) -> str:
     """Return the torque's class, and its number of windows."""
     if not hasattr(torque, "windows"):
         return type(torque).__name__
+    if torque.windows is None:
+        return f"{type(torque.torque).__name__} in sunlight"
     count = len(torque.windows)
     return f"{type(torque.torque).__name__} during {count} window{'' if count == 1 else 's'}"
 

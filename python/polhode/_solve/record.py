@@ -73,6 +73,8 @@ def describe_columns(motion: Motion[Any, Any]) -> str:
     missed = int(np.sum(~(error <= motion.asked)))
     if not missed:
         return ""
+    if motion.sensitivity.uncertain:
+        return f"the sensitivity is not certain: {motion.sensitivity.uncertain}"
     worst = int(np.argmax(np.nan_to_num(error, nan=np.inf)))
     return (f"the sensitivity misses the accuracy of {motion.asked:.3g} in {missed} of {len(error)} columns; the "
             f"largest error is {error[worst]:.2g}, of {motion.sensitivity.columns[worst]}")

@@ -105,6 +105,13 @@ def _check_plan(plan: Plan, scene: Scene, given: dict[str, Any], certify: bool |
 DEFAULT_STEPS = 10_000_000, 1_000_000   # of a run, and of a proof
 
 
+def to_body(body: Any) -> int:
+    """Return the number of a body."""
+    if not is_whole(body) or not 0 <= body < 2**62:
+        raise _core.InvalidInput(f"body: must be a whole number from 0 to 2^62 - 1, got {body!r}")
+    return int(body)
+
+
 def check_max_steps(max_steps: int) -> int:
     """Return the number as an int that the core can take."""
     if not is_whole(max_steps) or not -(2**63) <= max_steps < 2**63:
@@ -131,6 +138,7 @@ def solve(
     progress: Callable[[float, float], object] | bool | None = None,
     sensitivity: str | Sequence[str] | None = None,
     side: str = "space",
+    body: int = 0,
 ) -> Motion[Om, At]:
     """Compute the rotational motion of a scene at its sample times.
 
@@ -182,10 +190,12 @@ def solve(
         What to differentiate the motion by, for `motion.sensitivity`: "omega" and "attitude" (the start), "inertia"
         (principal moments), "axes" (a small rotation of the principal axes in the body), numbers of torques and rotors
         such as "torques.0.weight", "torques.1.matrix", "torques.0.windows" (the ends of windows), "rotors.0.momentum",
-        or "gravity.weight" where only one is there. Its error is relative to the size of each column. It is not
-        measured with certify=False.
+        or "gravity.weight" where only one is there, and "controllers.0.kp" (a parameter or the start of a state). Its
+        error is relative to the size of each column. It is not measured with certify=False.
     side : {"space", "body"}
         The axes of small rotations in `motion.sensitivity`.
+    body : int
+        The number of a body among many, which decides what its controllers draw: see `solve_many` and `ensemble`.
 
     Returns
     -------
@@ -207,6 +217,7 @@ def solve(
     if not isinstance(certify, str):
         certify = require_bool(certify, "certify")
     leave_out = require_bool(leave_out, "leave_out")
+    body = to_body(body)
     given: dict[str, Any] = {"accuracy": accuracy, "method": method, "rtol": rtol, "atol": atol, "step": step}
     planned = None
     if plan is not None:
@@ -228,7 +239,7 @@ def solve(
             **given, "certify": certify, "max_steps": most_steps, "dense": require_bool(dense, "dense"),
             "formulation": str(formulation), "leave_out": leave_out,
             "events": [_with_states(event, scene) for event in found] if scene.states else found,
-            "progress": callback, "cost_factors": factors()}, planned)
+            "progress": callback, "cost_factors": factors(), "body": body}, planned)
     asked: dict[str, Any] | None
     plain = method is None and formulation == "euler" and leave_out
     asked = None if plain else {"method": method, "formulation": formulation}
@@ -239,6 +250,7 @@ def solve(
     options |= {"max_steps": max_steps} if max_steps is not None else {}
     options |= {"formulation": formulation} if formulation != "euler" else {}
     options |= {} if leave_out else {"leave_out": False}
+    options |= {"body": body} if body else {}
     motion = Motion(scene, answer, asked, options)
     if sensitivity is not None:
         for name, value in (("events", found or None), ("rtol", rtol), ("atol", atol), ("step", step)):
@@ -246,7 +258,7 @@ def solve(
                 raise _core.InvalidInput(f"{name}: must be left out with sensitivity=, which has an accuracy and all "
                                          f"times, got {value!r}")
         motion.sensitivity = differentiate(scene, sensitivity, 1e-9 if accuracy is None else accuracy, side, most_steps,
-                                           bool(certify))
+                                           bool(certify), body)
     return motion
 
 

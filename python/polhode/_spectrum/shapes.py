@@ -31,12 +31,13 @@ class Shapes:
     v: Array
     bend: Array
 
-    def bodies(self, which: Array, phase: Array, nu: float, kappa2: Array) -> tuple[Array, Array, Array]:
+    def bodies(self, which: Array, phase: Array, nu: float | Array, kappa2: Array) -> tuple[Array, Array, Array]:
         """Return (moments, omega, places in the arguments) of the bodies that exist, at phases of the curves.
 
-        `which`, `phase` and `kappa2` have one number a body; `phase` counts the table's phases.
+        `which`, `phase` and `kappa2` have one number a body, `nu` one for all or one a body. `phase` counts the table's
+        phases.
         """
-        g = (kappa2 - nu * self.bend[which])[:, None] + nu * np.stack(
+        g = (kappa2 - nu * self.bend[which])[:, None] + np.reshape(nu, (-1, 1)) * np.stack(
             [self.u[which], self.v[which], np.zeros(len(which))], axis=1)
         here = np.flatnonzero(np.abs(np.sign(g).sum(axis=1)) == 3)
         moments = 1 / np.abs(g[here])
@@ -52,7 +53,27 @@ def table(angles: int, moduli: int) -> Shapes:
     """Return the table for angles of the encircled axis from the momentum, where nearest, and moduli."""
     angle = (np.arange(angles) + 0.5) * (0.5 * np.pi / angles)
     near = ((np.arange(moduli) + 0.5) / moduli) ** 2      # k'^2, denser near the separatrix
-    angle, square, s = (part.ravel() for part in np.meshgrid(angle, 1 - near, (1.0, -1.0), indexing="ij"))
+    return make_shapes(*(part.ravel() for part in np.meshgrid(angle, 1 - near, (1.0, -1.0), indexing="ij")))
+
+
+def around(centre: Array, half: Array, s: float, count: int) -> tuple[Shapes, Array]:
+    """Return shapes on a grid, count x count, about (angle, k'), and these two of each; `half` is half of the width."""
+    steps = np.linspace(-1, 1, count)
+    angle, root = np.meshgrid(np.clip(centre[0] + half[0] * steps, 1e-3, 0.5 * np.pi - 1e-3),
+                              np.clip(centre[1] + half[1] * steps, 1e-3, 1 - 1e-6), indexing="ij")
+    places = np.stack([angle.ravel(), root.ravel()], axis=1)
+    return make_shapes(places[:, 0], 1 - places[:, 1] ** 2, np.full(len(places), s)), places
+
+
+def cell_of(angles: int, moduli: int, which: int) -> tuple[Array, Array, float]:
+    """Return the centre (angle, k') of a cell of a table, half of its width, and the sign of its bodies."""
+    i, j, k = np.unravel_index(which, (angles, moduli, 2))
+    half = np.array([0.25 * np.pi / angles, 0.5 / moduli])
+    return half * np.array([2 * int(i) + 1, 2 * int(j) + 1]), half, 1.0 - 2 * int(k)
+
+
+def make_shapes(angle: Array, square: Array, s: Array) -> Shapes:
+    """Return the shapes of angles, k^2 and signs: 1 for bodies that encircle their greatest axis."""
     a1, a3 = np.sin(angle), np.cos(angle)
     r = a1**2 / (a1**2 + square * a3**2)
     K = _complete(square)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import select
 import time
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
@@ -95,7 +94,7 @@ def work(jobs: Sequence[Job], done: Done, *, processes: int = 2,
             for worker in pool:
                 if waiting and not worker.job:
                     worker.start(waiting.pop())
-            for worker in select.select(pool, [], [], 0.5)[0]:
+            for worker in _workers.wait(pool, 0.5):
                 complete = worker.take()
                 if complete is None:
                     dismiss(worker)

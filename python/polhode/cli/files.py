@@ -35,6 +35,11 @@ def _arrays(motion: Motion) -> dict[str, Any]:
     return {name: array for name, array in arrays.items() if array is not None}
 
 
+def _ticks(motion: Motion) -> list[dict[str, Any]]:
+    """Of each controller the ticks, their commands and the states behind them, by the names of `motion.ticks`."""
+    return [{"t": one.t, **one._arrays()} for one in motion.ticks]
+
+
 def to_json(motion: Motion) -> dict[str, Any]:
     """Return all parts of a motion; numbers that are not finite are null."""
     return {
@@ -45,6 +50,8 @@ def to_json(motion: Motion) -> dict[str, Any]:
         "drift": motion.drift, "stats": motion.stats,
         **({} if motion.proved_span is None else {"proved_span": list(motion.proved_span)}),
         **{name: _finite(array) for name, array in _arrays(motion).items()},
+        **({"ticks": [{name: _finite(array) for name, array in one.items()} for one in _ticks(motion)]}
+           if motion.ticks else {}),
     }
 
 
@@ -60,7 +67,8 @@ def write(path: pathlib.Path, motion: Motion) -> None:
     arrays = _arrays(motion)
     if path.suffix == ".npz":
         with _files.whole(path) as draft:
-            np.savez_compressed(draft, **arrays)
+            ticks = {f"ticks.{i}.{name}": array for i, one in enumerate(_ticks(motion)) for name, array in one.items()}
+            np.savez_compressed(draft, **arrays, **ticks)
     elif path.suffix == ".json":
         _files.write(path, json.dumps(to_json(motion)) + "\n")
     else:

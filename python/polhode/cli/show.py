@@ -129,6 +129,8 @@ def motion(result: Motion) -> None:
                 cells += _numbers(array[i])
         rows.append(cells)
     _narrow_tables(out, names, rows)
+    for i, ticks in enumerate(result.ticks):
+        _ticks(out, i, result.scene.controllers[i], ticks)
     drift = ", ".join(f"{name.replace('_', ' ')} {value:.1e}" for name, value in result.drift.items())
     counts = ", ".join(f"{value:,} {name.removesuffix('s') if value == 1 else name}"
                        for name, value in result.stats.items() if isinstance(value, int) and value)
@@ -141,6 +143,23 @@ def motion(result: Motion) -> None:
         out.print(Text(f"proof   from {begin:g} to {end:g} s; widest bounds: {', '.join(widths)}"))
     out.print(Text(f"cost    {counts}; {1e3 * result.stats['seconds']:.3g} ms"))
     out.print(Text(f"result  {'' if result.success else 'FINDING: '}{result.message}"))
+
+
+def _ticks(out: Console, i: int, controller: Any, ticks: Any) -> None:
+    """Print the first and last ticks of a controller."""
+    n = len(ticks.t)
+    out.print(Text(f"controller {i}: {n} ticks, a command of {controller.output}"))
+    arrays = {"command": ticks.command, **ticks.states}
+    columns = {name: array.reshape(n, -1) for name, array in arrays.items()}
+    names = ["tick", "t [s]"]
+    for name, array in columns.items():
+        names += [f"{name} {k}" if array.shape[1] > 1 else name for k in range(array.shape[1])]
+    rows = []
+    for k in range(n) if n <= 8 else [0, 1, 2, -1, n - 3, n - 2, n - 1]:
+        rows.append(["..."] * len(names) if k < 0 else [
+            str(k), *_numbers([ticks.t[k], *(x for array in columns.values() for x in array[k])])])
+    if rows:
+        _narrow_tables(out, names, rows)
 
 
 def calibration(factors: dict[str, float], file: str) -> None:

@@ -18,9 +18,10 @@ from .checks import Flaw, check
 from .diagnosis import diagnose
 from .equivalent import equivalent_box, equivalent_ellipsoid
 from .findings import Diagnosis, Finding
+from .swings import SwingMoment, from_bifilar, from_pendulum
 
-__all__ = ["Diagnosis", "Finding", "Flaw", "InertiaTensor", "MassProperties", "PrincipalAxes", "check", "diagnose",
-           "equivalent_box", "equivalent_ellipsoid", "principal_axes"]
+__all__ = ["Diagnosis", "Finding", "Flaw", "InertiaTensor", "MassProperties", "PrincipalAxes", "SwingMoment", "check",
+           "diagnose", "equivalent_box", "equivalent_ellipsoid", "from_bifilar", "from_pendulum", "principal_axes"]
 if _wings.is_there("robots"):
     __all__ += ["robots"]
 

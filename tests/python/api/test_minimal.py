@@ -136,6 +136,7 @@ def smoke_mass_properties():
     assert np.allclose(block.about((0, 0, 0.1)).moments, (0.32, 0.52, 0.52))
     again = ph.MassProperties.from_tensor(12.0, (0, 0, 0), block.about((0, 0, 0.1)), about=(0, 0, 0.1))
     assert np.allclose(again.inertia.moments, BLOCK) and ph.inertia.equivalent_box(12.0, again.inertia)[0].shape == (3,)
+    assert 0.24 < ph.inertia.from_pendulum((2, 0.01), 1, 0.5).moment < ph.inertia.from_bifilar(2, 1, 1, 1).moment < 0.25
     corners, faces = [(0, 0, 0), (1, 0, 0), (0, 2, 0), (0, 0, 3)], [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)]
     assert ph.MassProperties.from_mesh(corners, faces, density=2).mass == 2.0
     assert ph.shapes.volume("box", (1, 1, 1)) == 8

@@ -105,6 +105,10 @@ class Pick:
         self.__dict__.update(values)
 
 
+def real(x):
+    return x if isinstance(x, mp.mpf) else mp.mpf(float(x))
+
+
 def half_even(x):
     low = mp.floor(x)
     rest = x - low
@@ -116,12 +120,12 @@ def run(body, w, q, times, controllers, h=(), held=False, t0=0.0):
 
     `held`: the rotors' momenta are what a controller sets, and J w + h stays.
     """
-    w, q = [mp.mpf(float(x)) for x in w], [mp.mpf(float(x)) for x in q]
+    w, q = [real(x) for x in w], [real(x) for x in q]
     size = mp.sqrt(mp.fsum(x * x for x in q))
-    q, h = [x / size for x in q], [mp.mpf(float(x)) for x in h]
+    q, h = [x / size for x in q], [real(x) for x in h]
     close = lambda a, b: max(a, b) < mp.inf and abs(a - b) <= 9e-16 * max(abs(a), abs(b))
     n = len(controllers)
-    states = [{k: np.array([mp.mpf(float(x)) for x in np.ravel(v)], object) if np.ndim(v) else mp.mpf(float(v))
+    states = [{k: np.array([real(x) for x in np.ravel(v)], object) if np.ndim(v) else real(v)
                for k, v in c.get("states", {}).items()} for c in controllers]
     ticks, queue, off = [0] * n, [[] for _ in range(n)], [mp.inf] * n
     command = [[mp.mpf(0)] * c.get("count", 3) for c in controllers]
@@ -161,7 +165,7 @@ def run(body, w, q, times, controllers, h=(), held=False, t0=0.0):
             if body.inertias:
                 m.speed = np.array([hs / Is - mp.fsum(a[k] * W[k] for k in range(3)) if not held else hs / Is
                                     for hs, Is, a in zip(H, body.inertias, body.axes, strict=True)], object)
-            p = Pick(**{k: np.array(v, float).astype(object) if np.ndim(v) else mp.mpf(v) for k,
+            p = Pick(**{k: np.array([real(x) for x in v], object) if np.ndim(v) else real(v) for k,
                         v in c.get("parameters", {}).items()})
             result = c["function"](m.t, m, Pick(**states[i]), p)
             if isinstance(result, tuple):

@@ -115,6 +115,35 @@ LOOPS = {
 }
 
 
+START = ("omega_x", "omega_z", "attitude_y")
+
+
+def short(name, span, by, **more):
+    return {**LOOPS[name], "span": span, "by": by, "samples": 4, **more}
+
+
+# Of each, the columns whose truth is in slopes.json.
+SLOPES = {
+    "pd": short("pd from diagonal", 1.5, ("controllers.0.kp", "controllers.0.kd", *START, "inertia_2")),
+    "pd fast spin": short("pd fast spin", 0.5, ("controllers.0.kp", "controllers.0.kd", *START)),
+    "limit": short("limit", 1.2, ("controllers.0.kp", "controllers.0.kd", *START)),
+    "delay of 2.5 periods": short("delay of 2.5 periods", 1.3, ("controllers.0.kp", "controllers.0.kd", *START)),
+    "pid against friction": short("pid against friction", 1.2, (
+        "controllers.0.kp", "controllers.0.ki", "controllers.0.period", "controllers.0.z_y", *START)),
+    "low pass with quantum": short("low pass with quantum", 1.2, (
+        "controllers.0.a", "controllers.0.kd", "controllers.0.f_x", *START)),
+    "pulses": short("pulses", 2.1, ("controllers.0.u", "controllers.0.c", *START)),
+    "pulses with delay": short("pulses with delay", 1.9, ("controllers.0.u", "controllers.0.c", *START)),
+    "saturated law": short("saturated law", 1.2, ("controllers.0.kp", "controllers.0.most", *START)),
+    "two periods": short("two periods", 1.0, ("controllers.0.kd", "controllers.1.a", "controllers.1.kd", *START)),
+    "b cross": short("b cross", 20.0, ("controllers.0.k", *START)),
+    "b dot": short("b dot", 12.0, ("controllers.0.k", "controllers.0.period", *START)),
+    "wheels": short("wheels", 1.7, ("controllers.0.kp", "controllers.0.ks", *START)),
+    "momentum in steps": short("momentum in steps", 1.7, ("controllers.0.kp", "controllers.0.kd", "controllers.0.h_z",
+                                                          *START)),
+}
+
+
 def times(loop):
     return np.linspace(0.0, loop["span"], loop["samples"])
 

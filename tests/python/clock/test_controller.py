@@ -283,11 +283,6 @@ def test_a_law_is_text_as_well():
     (lambda: ph.solve(scene(damper(), times=(-1.0, 1.0))), "at or after t0"),
     (lambda: ph.solve(scene(damper()), method="dop853"), "method: must be left out"),
     (lambda: ph.solve(scene(damper()), 1e-6, certify="proof"), "proofs do not go through ticks"),
-    (lambda: ph.solve(scene(damper()), sensitivity=["omega"]), "controllers"),
-    (lambda: ph.lyapunov(scene(damper())), "controllers"),
-    (lambda: ph.solve(scene(damper()), events=[lambda t, w, q: w[0]]), "events: must be left out"),
-    (lambda: ph.solve(scene(damper(), torques=[ph.torques.During(ph.torques.Constant((1, 0, 0)), (0.2, 0.3))])),
-     "windows"),
 ])
 def test_bad_input_is_refused_in_one_sentence(make, words):
     with pytest.raises(ph.InvalidInput, match=words) as refusal:

@@ -148,7 +148,7 @@ def test_coverage_of_the_intervals_of_a_light_curve():
     def make(y, sigma):
         return measured.Brightness(t, y, sigma, tuple(AXES), SUN, SEEN, "lommel-seeliger", night)
 
-    light = make(np.ones(120), 1.0)._light(ph.FreeMotion(inertia, omega, q).at(t)[1])[0] * np.where(night, 1.0, 3.0)
+    light = make(np.ones(120), 1.0).model(ph.FreeMotion(inertia, omega, q).at(t)[1]) * np.where(night, 1.0, 3.0)
     truth = np.concatenate([omega, ratios_of(inertia)])
     hits = []
     for _ in range(40):

@@ -53,7 +53,7 @@ def test_the_jacobian_is_that_of_the_residuals(kinds):
     rng = np.random.default_rng(4)
     data = [seen(motion_of(), np.linspace(0, 3, 7), kind, 0.3, rng) for kind in kinds]
     if "rates" in kinds:
-        data[0].bias = 3
+        data[0] = measured.Rates(data[0].t, data[0].y, 0.02, bias=True)
     state = State(START, OMEGA, ratios_of(INERTIA), rotations.exp(np.array([0.2, -0.1, 0.4])), np.zeros(data[0].bias))
     problem = Problem(data, ("attitude", "omega", "inertia", "axes"), state)
     x = rng.normal(size=len(problem.names)) * 0.2
@@ -192,7 +192,7 @@ def test_what_the_data_cannot_tell_is_said():
     t = np.linspace(0, 2 * TURN, 100)
     found = ph.fit(seen(motion_of(), t, "rates", 0.01, rng))
     assert found.success and any(text.startswith("the attitude") for text in found.unobservable)
-    assert np.isnan(found.stderr[found.parameters.index("attitude_x")])
+    assert np.isinf(found.stderr[found.parameters.index("attitude_x")])
     top = motion_of(inertia=(0.5, 0.5, 0.3))
     found = ph.fit(seen(top, t, "rates", 0.01, rng), fit=("omega", "inertia"))
     assert found.success and any("moments 1 and 2 differ" in text for text in found.unobservable)

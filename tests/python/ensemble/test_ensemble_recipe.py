@@ -143,3 +143,23 @@ def test_histograms_that_need_too_much_memory_are_refused(tmp_path):
     assert "least and largest narrow a histogram" in str(refused.value)
     narrow = '[[summary]]\nof = "omega"\nleast = 0.0625\nlargest = 0.25\n'
     assert ph.ensemble(ensembles.write(tmp_path, ensembles.FREE + narrow, samples=1000), executor=0, count=3).done == 3
+
+
+def test_bodies_on_an_orbit_are_those_of_solve():
+    """An eccentric orbit in a recipe: a body drawn alone, by solve, is the body of the ensemble."""
+    orbits = {"main": {"mu": 3.986e14, "a": 7e6, "e": 0.1, "inclination": 0.9}}
+    own = made(orbits=orbits, torques=[{"kind": "gravity_gradient", "orbit": "main"}], summary=None,
+               body={"moments": [20.0, 40.0, 52.0]}, start={"omega": {"normal": [[2e-3, 4e-3, 6e-3], 1e-3]}},
+               times={"span": 3000.0, "samples": 4}, solve={"accuracy": 1e-9})
+    done = ph.ensemble(own, executor=0, count=None)
+    states, scene = done.states(range(3)), done.scene(2)
+    motion = ph.solve(scene, accuracy=1e-11)
+    assert type(scene.torques[0]).__name__ == "OrbitGradient"
+    assert np.abs(states.omega[2] - motion.omega).max() < 1e-9 * motion.omega_scale
+    free = ph.solve(scene.replace(torques=[]))
+    assert np.abs(free.omega - motion.omega).max() > 1e-5 * motion.omega_scale
+
+
+def test_an_orbit_that_the_recipe_does_not_have_is_refused():
+    with pytest.raises(ph.InvalidInput, match="orbit: must name a table of .orbits., got 'moon'"):
+        made(torques=[{"kind": "gravity_gradient", "orbit": "moon"}])

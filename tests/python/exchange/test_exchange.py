@@ -1,90 +1,16 @@
 """Attitudes for other programs: no reader's interpolation errs by more than the file states."""
 
 import datetime
-import decimal
 import itertools
 import pathlib
 
 import numpy as np
 import pytest
+from exchange_readers import EPOCH, angle, by_neville, draw_scene, parse_aem, run, truth
 
 import polhode as ph
 
-EPOCH = "2026-03-01T06:00:00"
 SUFFIXES = (".aem", ".a", ".bc")
-
-
-def angle(first, second):
-    """The angle between rotations, by the vector part of first^-1 second."""
-    x, w = first[:, :3], first[:, 3:]
-    y, v = second[:, :3], second[:, 3:]
-    return 2 * np.arcsin(np.minimum(1, np.linalg.norm(w * y - v * x - np.cross(x, y), axis=1)))
-
-
-def truth(scene, t):
-    order = np.argsort(t)
-    found = np.empty((len(t), 4))
-    found[order] = ph.solve(scene.replace(times=np.asarray(t)[order], want=("attitude",)), accuracy=1e-12).attitude
-    return found
-
-
-def draw_scene(k, rng):
-    """Free, symmetric, next to the separatrix, with a rotor, under gravity, with windows of torques."""
-    moments = np.sort(rng.uniform(0.5, 2, 3))
-    moments[2] = min(moments[2], 0.95 * (moments[0] + moments[1]))
-    span = 10 ** rng.uniform(0.5, 1.7)
-    q = rng.normal(size=4)
-    given = dict(inertia=moments, omega=rng.normal(size=3) * 10 ** rng.uniform(-1.5, 1), attitude=q / np.linalg.norm(q),
-                 times=[0, span])
-    kinds = [{}, {"inertia": (moments[0], moments[0], min(moments[2], 1.9 * moments[0]))},
-             {"omega": np.array([1e-3, 1, 1e-4]) * 10 ** rng.uniform(-1, 0.5)},
-             {"rotors": [ph.Rotor((0, 0, 1), momentum=rng.normal())]},
-             {"torques": [ph.torques.Gravity(weight=rng.uniform(1, 9), arm=(0.1, 0, 0.3))]},
-             {"torques": [ph.torques.During(ph.torques.Constant(rng.normal(size=3) * 0.1), [(span * 0.2, span * 0.41)]),
-                          ph.torques.Damping(0.05 * np.eye(3))]}]
-    return ph.Scene(**{**given, **kinds[k % len(kinds)]})
-
-
-def parse_aem(path):
-    """Read an AEM by a route of its own: exact decimals of times and components, one segment after the other."""
-    segments, meta, rows = [], None, None
-    for line in path.read_text().splitlines():
-        if line == "META_START":
-            meta = {"COMMENT": []}
-        elif line == "DATA_START":
-            rows = []
-        elif line == "DATA_STOP":
-            segments.append((meta, rows))
-            meta = rows = None
-        elif rows is not None:
-            at, *numbers = line.split()
-            day, clock = at.split("T")
-            hours, minutes, seconds = clock.split(":")
-            days = (datetime.date.fromisoformat(day) - datetime.date(2026, 3, 1)).days
-            assert len(seconds.partition(".")[2]) == 6
-            t = ((days * 24 + int(hours) - 6) * 60 + int(minutes)) * 60 + decimal.Decimal(seconds)
-            rows.append((t, [float(x) for x in numbers]))
-        elif meta is not None and line.startswith("COMMENT"):
-            meta["COMMENT"].append(line)
-        elif meta is not None and "=" in line:
-            key, _, value = line.partition(" = ")
-            meta[key] = value
-    return segments
-
-
-def by_neville(t, rows, at, degree):
-    """The polynomials through the nearest degree + 1 knots, by Neville's scheme."""
-    found = np.empty((len(at), 4))
-    for i, x in enumerate(at):
-        k = min(max(np.searchsorted(t, x, side="right") - 1, 0), len(t) - 2)
-        count = min(degree + 1, len(t))
-        first = min(max(k - (count // 2 - 1), 0), len(t) - count)
-        p, knots = rows[first:first + count].copy(), t[first:first + count] - x
-        for level in range(1, count):
-            for j in range(count - level):
-                p[j] = (knots[j] * p[j + 1] - knots[j + level] * p[j]) / (knots[j] - knots[j + level])
-        found[i] = p[0] / np.linalg.norm(p[0])
-    return found
 
 
 @pytest.mark.parametrize("k", range(12))
@@ -315,3 +241,10 @@ def test_a_file_is_written_whole_or_not_at_all(tmp_path):
     ph.solve(SCENE).save(link, accuracy=1e-5, epoch=EPOCH)
     assert link.is_symlink() and path.read_text().startswith("CCSDS_AEM_VERS")
     assert sorted(pathlib.Path(tmp_path).iterdir()) == [link, path]
+
+
+@pytest.mark.long
+def test_sixty_motions_in_every_kind_of_file():
+    """As `benchmarks/exchange.py` prints them, for the readers that interpolate as the file says."""
+    for (suffix, method, reader), shares in run(seed=35, count=60, leave_out=("orekit_jpype",)).items():
+        assert 0.5 < max(shares) <= 1, (suffix, method, reader)

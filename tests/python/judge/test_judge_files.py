@@ -194,7 +194,7 @@ def test_empty_cells_are_found_as_numbers_that_are_not_finite(tmp_path):
 
 def test_too_many_rows_are_refused_before_numbers_are_read(tmp_path, monkeypatch):
     monkeypatch.setattr("polhode._judge.table.MOST_ROWS", 100)
-    with pytest.raises(ph.InvalidInput, match="must have at most 100 rows, got 120; keep one of 2"):
+    with pytest.raises(ph.InvalidInput, match="must have at most 100 lines, got 121; keep one row of 2"):
         load(write(tmp_path / "run.csv", "t,wx,wy,wz", T, W))
 
 

@@ -306,6 +306,7 @@ OUT = {
         "InertiaTensor", "MassProperties", "PrincipalAxes", "shapes.", "torques.", "formula.", "generalised_forces",
         "effect",
         "inertia.check", "inertia.diagnose", "inertia.equivalent_box", "inertia.equivalent_ellipsoid",
+        "inertia.from_bifilar", "inertia.from_pendulum", "inertia.SwingMoment",
         "inertia.Diagnosis", "inertia.Finding", "inertia.Flaw"),
     "holds a result, or is an exception": (
         "AttitudeEphemeris", "FitResult", "Ensemble", "IntegrationFailure", "InvalidInput", "Judgement", "Lyapunov",

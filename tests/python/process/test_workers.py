@@ -35,7 +35,7 @@ def worker():
         made.end()
 
 
-def everything(worker, patience=30.0):
+def everything(worker, patience=300.0):   # it ends early; a busy machine takes long to start a process
     messages, end = [], time.monotonic() + patience
     while not (messages and messages[-1][0] == "end") and time.monotonic() < end:
         messages += worker.receive(1.0)

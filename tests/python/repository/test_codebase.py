@@ -27,7 +27,7 @@ MAY_USE = {
     "clock": ["core", "formula", "torque"],
     "scene": ["core", "math", "attitude", "inertia", "torque", "clock"],
     "method": ORDER[:10],
-    "solve": ORDER[:11],
+    "solve": [*ORDER[:11], "orbit"],
     "derivative": ORDER[:12],
     "reference": ORDER[:12],
     "batch": ORDER[:13],

@@ -55,11 +55,11 @@ def test_motions_are_those_of_the_equations_of_the_parts(name, accuracy):
         assert np.abs(motion.damper_rates - y[:, 3 + n:6 + n]).max() <= 20 * allowed
 
 
-@pytest.mark.parametrize("accuracy", [1e-6, 1e-9, 1e-12])
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-6, 1e-9, 1e-12])
 @pytest.mark.parametrize("name", PARTS)
 def test_the_angular_momentum_in_space_stays_and_friction_only_takes_energy(name, accuracy):
     motion = ph.solve(make(name, np.linspace(0, 20, 200)), accuracy=accuracy)
-    assert motion.success and motion.drift["angular_momentum"] <= max(1e-14, accuracy / 3)
+    assert motion.success and motion.drift["angular_momentum"] <= 1e-14
     assert ("energy_rise" in motion.drift) == (name in FRICTION)
     assert motion.drift.get("energy_rise", 0.0) <= 1e-13
 

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,9 +38,10 @@ using MakeScene = std::function<Scene(std::size_t body)>;
 /// that fails does not affect the other bodies. `options.progress` gets the number of bodies done and n; it stops the
 /// batch by returning false.
 /// @param refuse  false: where make_scene throws InvalidInput, the rows of the body become NaN; its status is "failed"
+/// @param numbers  of the bodies, which decide what controllers draw; by default 0, 1, ... from options.body on
 /// @throws InvalidInput, with the number of the body, for what solve() refuses
 std::vector<ManyResult> solve_many(std::size_t n, std::size_t times, const MakeScene& make_scene,
                                    const SolveOptions& options, double* omega, double* attitude, int threads = 0,
-                                   bool refuse = true);
+                                   bool refuse = true, std::span<const std::uint64_t> numbers = {});
 
 }  // namespace polhode

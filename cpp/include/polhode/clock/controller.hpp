@@ -96,6 +96,8 @@ class Controller {
   /// The law as a program of inputs(): one output for each of their numbers. Parameters are numbers.
   /// @throws InvalidInput for a controller with a function
   formula::Program program() const;
+  /// The same with its parameters.
+  formula::Program open_program() const;
   std::size_t count_commands() const { return parts_.law.initial.size(); }
   bool is_traced() const { return !parts_.function; }
   double tick(std::uint64_t k) const { return parts_.start + static_cast<double>(k) * parts_.period; }

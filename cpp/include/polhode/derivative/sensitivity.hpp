@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,8 @@ struct SensitivityOptions {
   bool certify = true;                ///< measure the error by a second run
   RotationSide side = RotationSide::space;    ///< of the small rotations, those of the start included
   long max_steps = 10'000'000;        ///< of one run
+  std::uint64_t body = 0;             ///< its number among many, which decides what controllers draw
+  bool rescale = false;               ///< beside controllers: multiply columns beyond float64's range by powers of two
 };
 
 /// The motion of a scene and its derivatives at the scene's times, row by row in their order.
@@ -27,6 +30,9 @@ struct MotionSensitivity {
   /// The size of a column in a sample is the larger of |d omega| / (largest |omega|) and the angle of the rotation. The
   /// error of a state's derivative is relative to its largest size in the motion.
   std::vector<double> error;
+  /// Of each sample, with `rescale`: its derivatives are 2^scale times those here. Empty without controllers.
+  std::vector<int> scale;
+  std::string uncertain = {};         ///< in words: a branch of a controller that is not certain; "" if all are
   long steps = 0;                     ///< of all runs
   int runs = 0;
 };

@@ -12,11 +12,14 @@ namespace polhode::formula {
 
 /// Eight numbers from two octets of values, and their factors.
 struct alignas(64) Pick {
+  /// Whether the numbers are an octet as it stands, or one number eight times. Kernels without AVX-512 use it.
+  enum class Move : std::int32_t { any, none, spread };
   std::array<double, 8> factor{};
   std::array<std::int64_t, 8> index{};    ///< 0 to 7: of the first octet, 8 to 15: of the second
   std::array<std::int32_t, 8> offset{};   ///< the same numbers among all values
   std::ptrdiff_t first = 0, second = 0;   ///< where the two octets begin among all values
   std::int32_t mask = 0;                  ///< lanes that are used
+  Move move = Move::any;
 };
 
 /// A row of picks: of a sum, or of one octet of operands, whose lanes may come from more than two octets.

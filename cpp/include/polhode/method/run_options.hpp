@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <span>
 
@@ -33,6 +34,8 @@ struct RunOptions {
   Formulation formulation = Formulation::euler;
   std::span<const SceneEvent> events = {};      ///< owned by the caller
   Progress progress = {};
+  std::uint64_t body = 0;                       ///< its number among many, which decides what controllers draw
+  bool keep_ticks = true;                       ///< of controllers
   ode::ErrorTrace* trace = nullptr;             ///< for methods with BodyMethod::carries_error
 };
 

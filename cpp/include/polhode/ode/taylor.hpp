@@ -143,7 +143,8 @@ class Taylor::Stepper : public ode::Stepper {
     const int W = width();
     if constexpr (SwitchedProblem<P>) {
       const double until = problem_.find_switch(time_, unit_, y_, carry_, rows_, order_, s);
-      if (std::abs(until * unit_) <= shortest()) {   // the surface is here
+      // The surface is here. A rest that is so short itself, between two ends of windows, is a step like others.
+      if (std::abs(until * unit_) <= shortest() && (until != s || problem_.has_reached())) {
         if (!problem_.has_reached()) return StepResult::underflow;
         if (++idle_ > most_idle) return StepResult::chattering;
         return Stepper::advance(t_end);

@@ -22,6 +22,11 @@ struct OrbitState {
   Vector3d r, v;
 };
 
+/// From entering a shadow until leaving it; infinite where the path is dark from its beginning, or to its end [s].
+struct Eclipse {
+  double begin, end;
+};
+
 /// A conic by its elements. One of `periapsis_distance` and `semi_major_axis` is given.
 struct OrbitElements {
   double mu;                                                                      ///< gravitational parameter [m^3/s^2]
@@ -74,6 +79,13 @@ class Orbit {
 
   /// @throws InvalidInput for a time that is not finite, outside a table, or beyond one at which a radial orbit has |r| = 0
   OrbitState at(double t) const;
+
+  /// When the path is in the shadow of the central body, a cylinder: r.s < 0 and |r|^2 - (r.s)^2 < radius^2, with s the
+  /// direction of the sun. Each shadow that meets the span, with its own edges, which are rounded once.
+  /// @param sun     towards it, space axes, of any length
+  /// @param radius  of the shadow [m]
+  /// @throws InvalidInput for an orbit that goes nearer than the radius, a sun 0, and times outside a table
+  std::vector<Eclipse> find_eclipses(const Vector3d& sun, double radius, double first, double last) const;
 
   OrbitKind kind() const;
   double mu() const;                   ///< NaN: a table without it

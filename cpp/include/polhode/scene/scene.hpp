@@ -22,6 +22,13 @@ struct Wanted {
   friend bool operator==(const Wanted&, const Wanted&) = default;
 };
 
+/// A torque in windows beside controllers: its torque times a state, which is 1 within the windows and 0 elsewhere.
+struct HeldWindow {
+  std::size_t torque;      ///< its number among all
+  std::string state;
+  torques::During during;  ///< as it was given
+};
+
 /// The parts of a scene, to be filled by name.
 struct SceneParts {
   InertiaTensor inertia_B;                       ///< about the centre of mass, or about the pivot of a body held at
@@ -40,6 +47,7 @@ struct SceneParts {
   std::optional<Changing> momentum = {};         ///< h_B of parts that move within the body [N m s]
   bool leaving = false;                          ///< matter that leaves takes its momentum along
   std::vector<Controller> controllers = {};      ///< in the order of what they do at one instant
+  std::vector<HeldWindow> held_windows = {};     ///< made where there are controllers
 };
 
 /// The inertia and the momentum of parts inside, in one piece of time of a body that changes.
@@ -88,12 +96,14 @@ class Scene {
   std::vector<AnyTorque> given_torques() const;
   std::vector<Rotor> given_rotors() const;
   std::optional<Damper> given_damper() const;
+  std::vector<Controller> given_controllers() const;
   /// No torque acts but those between the body and its rotors: the angular momentum in space is constant.
   bool is_closed() const;
   /// Rotors or a damper have momenta that are states.
   bool has_inner_states() const;
   const std::optional<Damper>& damper() const { return parts_->damper; }
   const std::vector<Controller>& controllers() const { return parts_->controllers; }
+  const std::vector<HeldWindow>& held_windows() const { return parts_->held_windows; }
   const std::vector<double>& times() const { return parts_->times; }
   const Wanted& want() const { return parts_->want; }
   const std::vector<Rotor>& rotors() const { return parts_->rotors; }

@@ -28,6 +28,8 @@ struct SolveOptions {
   bool leave_out = true;                  ///< torques that change nothing within a third of the accuracy: see effect.hpp
   const CostFactors* cost_factors = nullptr;   ///< for the choice between methods
   Progress progress = {};
+  std::uint64_t body = 0;                 ///< its number among many, which decides what controllers draw
+  bool keep_ticks = true;                 ///< of controllers, in Motion::ticks
 };
 
 /// Computes the rotational motion of a scene at its sample times.

@@ -129,6 +129,8 @@ POLHODE_INLINE Octet madd(Octet x, Octet y, Octet z) {
 }
 // Loads by offset: instructions that move numbers across halves of a register cost more.
 POLHODE_INLINE Octet take(const double* values, const Pick& pick) {
+  if (pick.move == Pick::Move::none) return load(values + pick.first);
+  if (pick.move == Pick::Move::spread) return all(values[pick.offset[0]]);
   return each([&](Member, int at) POLHODE_LAMBDA { return take_part(values, pick.offset.data() + at); });
 }
 POLHODE_INLINE Octet gather(const double* values, const Pick* picks, Range range) {

@@ -37,33 +37,38 @@ POLHODE_INLINE Quad blend(Quad a, Quad b) {
 
 #else
 
-// A vector type, which the compiler splits into registers itself: an array of four doubles costs it minutes a file.
+// Two registers of 128 bits, which every processor of today has. GCC splits longer vectors badly.
 struct Quad {
-  typedef double Vector __attribute__((vector_size(32)));
-  typedef long long Bits __attribute__((vector_size(32)));
-  Vector v;
+  typedef double Vector __attribute__((vector_size(16)));
+  typedef long long Bits __attribute__((vector_size(16)));
+  typedef double Stored __attribute__((vector_size(16), aligned(8), may_alias));   // memory that is read as doubles too
+  Vector front, back;
 };
-POLHODE_INLINE Quad set4(double a, double b, double c, double d) { return {Quad::Vector{a, b, c, d}}; }
+POLHODE_INLINE Quad set4(double a, double b, double c, double d) { return {Quad::Vector{a, b}, Quad::Vector{c, d}}; }
 POLHODE_INLINE Quad all4(double a) { return set4(a, a, a, a); }
-POLHODE_INLINE Quad load4(const double* p) { return set4(p[0], p[1], p[2], p[3]); }
+POLHODE_INLINE Quad load4(const double* p) {
+  return {*reinterpret_cast<const Quad::Stored*>(p), *reinterpret_cast<const Quad::Stored*>(p + 2)};
+}
 POLHODE_INLINE void store4(double* p, Quad a) {
-  for (int i = 0; i < 4; ++i) p[i] = a.v[i];
+  *reinterpret_cast<Quad::Stored*>(p) = a.front, *reinterpret_cast<Quad::Stored*>(p + 2) = a.back;
 }
-POLHODE_INLINE Quad operator+(Quad a, Quad b) { return {a.v + b.v}; }
-POLHODE_INLINE Quad operator-(Quad a, Quad b) { return {a.v - b.v}; }
-POLHODE_INLINE Quad operator*(Quad a, Quad b) { return {a.v * b.v}; }
-POLHODE_INLINE Quad operator/(Quad a, Quad b) { return {a.v / b.v}; }
-POLHODE_INLINE Quad operator^(Quad a, Quad signs) {
-  return {reinterpret_cast<Quad::Vector>(reinterpret_cast<Quad::Bits>(a.v) ^ reinterpret_cast<Quad::Bits>(signs.v))};
+POLHODE_INLINE Quad operator+(Quad a, Quad b) { return {a.front + b.front, a.back + b.back}; }
+POLHODE_INLINE Quad operator-(Quad a, Quad b) { return {a.front - b.front, a.back - b.back}; }
+POLHODE_INLINE Quad operator*(Quad a, Quad b) { return {a.front * b.front, a.back * b.back}; }
+POLHODE_INLINE Quad operator/(Quad a, Quad b) { return {a.front / b.front, a.back / b.back}; }
+POLHODE_INLINE Quad::Vector flip(Quad::Vector a, Quad::Vector signs) {
+  return reinterpret_cast<Quad::Vector>(reinterpret_cast<Quad::Bits>(a) ^ reinterpret_cast<Quad::Bits>(signs));
 }
+POLHODE_INLINE Quad operator^(Quad a, Quad signs) { return {flip(a.front, signs.front), flip(a.back, signs.back)}; }
 POLHODE_INLINE Quad madd(Quad a, Quad b, Quad c) { return a * b + c; }
 template <int a, int b, int c, int d>
 POLHODE_INLINE Quad permute(Quad q) {
-  return {__builtin_shufflevector(q.v, q.v, a, b, c, d)};
+  return {__builtin_shufflevector(q.front, q.back, a, b), __builtin_shufflevector(q.front, q.back, c, d)};
 }
 template <int mask>
 POLHODE_INLINE Quad blend(Quad a, Quad b) {
-  return {__builtin_shufflevector(a.v, b.v, mask & 1 ? 4 : 0, mask & 2 ? 5 : 1, mask & 4 ? 6 : 2, mask & 8 ? 7 : 3)};
+  return {__builtin_shufflevector(a.front, b.front, mask & 1 ? 2 : 0, mask & 2 ? 3 : 1),
+          __builtin_shufflevector(a.back, b.back, mask & 4 ? 2 : 0, mask & 8 ? 3 : 1)};
 }
 
 #endif
@@ -91,7 +96,11 @@ POLHODE_INLINE Octet spread(Quad q) {
 
 #else
 
+#if defined(__AVX2__)
 constexpr int octets_at_once = 2;
+#else
+constexpr int octets_at_once = 1;
+#endif
 struct Octet {
   Quad a, b;
 };

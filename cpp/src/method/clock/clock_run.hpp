@@ -5,9 +5,10 @@
 #include <memory>
 #include <vector>
 
-#include "method/clock/channel.hpp"
+#include "method/clock/clock.hpp"
 #include "method/integrate.hpp"
 #include "method/samples.hpp"
+#include "polhode/ode/event_search.hpp"
 #include "polhode/ode/tracked_taylor.hpp"
 
 namespace polhode {
@@ -23,12 +24,12 @@ class ClockRun {
         options_(options),
         series_(series),
         order_(scene.times(), scene.t0()),
-        state_(body_numbers + static_cast<std::size_t>(extra.count)),
-        before_(state_),
+        carrying_(options.trace != nullptr ? Carrying{Carry::errors, 3} : Carrying{}),
+        clock_(scene, options.body, std::vector<Carrying>(scene.controllers().size(), carrying_),
+               options.keep_ticks),
+        state_(body_numbers + static_cast<std::size_t>(extra.count), carrying_.count),
         start_(state_) {
     trajectory_.extra = extra;
-    for (std::size_t i = 0; i < scene.controllers().size(); ++i)
-      channels_.push_back(std::make_unique<Channel>(scene, i, options.trace != nullptr));
   }
 
   Trajectory run(const Unpack& unpack, const MakeStepper& make_stepper) {
@@ -45,10 +46,10 @@ class ClockRun {
     stepper_ = make_stepper(series_.start(), last_);
     if (options_.dense) trajectory_.dense_forward = ode::DenseOutput(stepper_->segment_size(), stepper_->evaluate());
     go();
-    trajectory_.t_reached = stepper_->t();
+    trajectory_.t_reached = ended_ ? reached_time_ : stepper_->t();
     trajectory_.stats += stepper_->counts();
     drop_unreached(times, reached_, trajectory_);
-    for (const auto& channel : channels_) trajectory_.ticks.push_back(channel->ticks());
+    trajectory_.ticks = clock_.ticks();
     return std::move(trajectory_);
   }
 
@@ -58,22 +59,29 @@ class ClockRun {
   using Tracked = ode::TrackedTaylor<Series>;
 
   void go() {
-    for (const auto& channel : channels_) channel->stop_at(last_);
+    clock_.stop_at(last_);
     act(stepper_->t());
     take_samples_here();
+    const auto see = [this](double t, const double* y) { return to_state(t, y); };
+    const std::vector<ode::Event> events = make_events(options_.events, see);
+    ode::EventSearch search(events, stepper_->t(), plain().state());
+    search_ = events.empty() ? nullptr : &search;
     while (next_ < order_.forward.size()) {
-      double stop = last_;
-      for (const auto& channel : channels_) stop = std::min(stop, channel->next());
+      double stop = std::min(last_, clock_.next());
       if (is_same_instant(stop, last_)) stop = last_;
       if (!step_to(stop)) return;
       act(stop);
+      if (search_ != nullptr && found_event(search.look(*stepper_, stepper_->t(), plain().state()))) {
+        take_samples_here();
+        return;
+      }
       take_samples_here();
     }
   }
 
   /// Steps to a time; false if the run ended before it.
   bool step_to(double stop) {
-    if (same_ && !options_.dense && stepper_->t() != stop && extend(stop)) {
+    if (same_ && !options_.dense && search_ == nullptr && stepper_->t() != stop && extend(stop)) {
       take_samples_within(stop);
       return stop_requested() ? end(ode::Ending::stopped) : true;
     }
@@ -82,6 +90,10 @@ class ClockRun {
       const ode::StepResult step = stepper_->advance(stop);
       if (step != ode::StepResult::accepted) return end(find_ending(step));
       if (options_.dense) trajectory_.dense_forward.append(stepper_->t_old(), stepper_->t(), stepper_->segment());
+      if (search_ != nullptr && found_event(search_->step(*stepper_))) {
+        take_samples_within(reached_time_, true);
+        return false;
+      }
       take_samples_within(stop);
       if (stop_requested()) return end(ode::Ending::stopped);
     }
@@ -112,16 +124,32 @@ class ClockRun {
     return !options_.progress(stepper_->t(), last_);
   }
 
+  /// Keeps zeros of events; true if the run ends at one.
+  bool found_event(const ode::EventSearch::Found& found) {
+    for (const ode::EventHit& hit : found.hits)
+      trajectory_.events.push_back({hit.event, to_state(hit.t, hit.y.data())});
+    if (!found.ended) return false;
+    ended_ = true, reached_time_ = found.t;
+    EndingText text = describe_ending(ode::Ending::event, found.t, options_.max_steps);
+    trajectory_.status = text.status, trajectory_.message = std::move(text.message);
+    return true;
+  }
+
+  State to_state(double t, const double* y) const {
+    State state;
+    double attitude[4];
+    state.t = t;
+    series_.unpack(y, 1, state.omega.data(), attitude);
+    state.attitude = {attitude[0], attitude[1], attitude[2], attitude[3]};
+    state.states = trajectory_.extra.of(y);
+    return state;
+  }
+
   /// All that happens at one instant.
   void act(double t) {
-    bool any = false;
-    for (const auto& channel : channels_) any = any || channel->next() <= t || is_same_instant(channel->next(), t);
-    if (!any) return;
+    if (!clock_.is_due(t)) return;
     read();
-    for (const auto& channel : channels_) channel->end_pulse(t, state_);
-    before_ = state_;
-    for (const auto& channel : channels_) channel->measure(t, before_);
-    for (const auto& channel : channels_) channel->begin_commands(t, state_);
+    clock_.act(t, state_);
     write();
   }
 
@@ -146,7 +174,7 @@ class ClockRun {
       double body[first_extra];
       std::copy_n(errors[e], first_extra, body);
       series_.unpack_error(body);
-      std::vector<double>& out = state_.errors[e];
+      std::vector<double>& out = state_.changes[e];
       for (std::size_t i = 0; i < 3; ++i) out[i] = scale * body[i];
       for (std::size_t i = 0; i < 4; ++i) out[3 + i] = scale * body[4 + i];
       for (std::size_t i = body_numbers; i < out.size(); ++i) out[i] = scale * errors[e][first_extra + i - body_numbers];
@@ -167,7 +195,7 @@ class ClockRun {
     add_kick(state_.values, start_.values, 1.0, kick);
     for (int i = 0; i < 4; ++i) y[i] += kick[i], changed = changed || kick[i] != 0.0;
     Tracked* const tracked_run = tracked();
-    same_ = !changed && (tracked_run == nullptr || state_.errors == start_.errors);
+    same_ = !changed && (tracked_run == nullptr || state_.changes == start_.changes);
     if (same_ || tracked_run == nullptr) return;
     const double scale = options_.trace->scale;
     const auto errors = tracked_run->errors();
@@ -177,10 +205,10 @@ class ClockRun {
       const bool adds = error != errors[e];
       for (std::size_t i = body_numbers; i < state_.values.size(); ++i) {
         double& one = error[first_extra + i - body_numbers];
-        one = scale * state_.errors[e][i] + (adds ? one : 0.0);
+        one = scale * state_.changes[e][i] + (adds ? one : 0.0);
       }
       double moved[first_extra] = {};
-      add_kick(state_.errors[e], start_.errors[e], scale, moved);
+      add_kick(state_.changes[e], start_.changes[e], scale, moved);
       for (int i = 0; i < 4; ++i) error[i] += moved[i];
     }
     tracked_run->restart();
@@ -193,11 +221,13 @@ class ClockRun {
     if (any) series_.pack_error(kick);
   }
 
-  void take_samples_within(double stop) {
+  /// @param event  the run ends at this time, which lies within the last step
+  void take_samples_within(double stop, bool event = false) {
     const std::vector<double>& times = scene_.times();
     std::size_t end = next_;
     const auto time = [&](std::size_t i) { return times[order_.forward[i]]; };
-    while (end < order_.forward.size() && time(end) <= stepper_->t() && !is_same_instant(time(end), stop)) ++end;
+    const double last = std::min(stepper_->t(), stop);
+    while (end < order_.forward.size() && time(end) <= last && (event || !is_same_instant(time(end), stop))) ++end;
     std::vector<double> at;
     for (; next_ < end; next_ += at.size()) {
       at.clear();
@@ -242,13 +272,17 @@ class ClockRun {
   const RunOptions& options_;
   const Series& series_;
   SampleOrder order_;
-  std::vector<std::unique_ptr<Channel>> channels_;
+  Carrying carrying_;
+  Clock clock_;
   std::unique_ptr<ode::Stepper> stepper_;
-  Carried state_, before_, start_;   ///< at an instant: with its commands, as ticks measure it, and as it was read
+  Carried state_, start_;   ///< at an instant: with its commands, and as it was read
   Trajectory trajectory_;
   std::vector<unsigned char> reached_;
   std::vector<double> rows_;
   double last_ = 0.0;
+  ode::EventSearch* search_ = nullptr;   ///< where there are events
+  bool ended_ = false;                   ///< at an event
+  double reached_time_ = 0.0;
   bool same_ = false;   ///< the last instant has changed nothing
   std::size_t next_ = 0;
   unsigned calls_ = 0;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "polhode/math/detail/interval_functions.hpp"
+#include "solve/effect/orbit_range.hpp"
 #include "solve/effect/torque_size.hpp"
 
 // A formula over all attitudes: its nodes as intervals.
@@ -32,6 +33,13 @@ Interval raise(const Interval& a, long n) {
   if (n == 0) return Interval(1.0);
   const Interval square = math::sqr(raise(a, n / 2));
   return n % 2 == 0 ? square : square * a;
+}
+
+/// From the values at both ends, so that it is bounded for wide intervals, too.
+Interval exponential(const Interval& a) {
+  if (!a.is_bounded()) return Interval::all();
+  const Interval low = math::exp(Interval(a.lower())), high = math::exp(Interval(a.upper()));
+  return high.is_bounded() ? between(low.is_bounded() ? std::max(low.lower(), 0.0) : 0.0, high.upper()) : Interval::all();
 }
 
 Interval power(const Interval& a, double exponent) {
@@ -65,7 +73,7 @@ class Values {
     switch (n.op) {
       case Op::constant: return Interval(n.constant);
       case Op::time: return between(region_.begin, region_.end);
-      case Op::ephemeris: return Interval::all();
+      case Op::ephemeris: return of_orbit(n);
       case Op::state:
         if (n.index < formula::first_attitude) return {DD(0.0), region_.most_rates_B[n.index] + region_.margin};
         return n.index < formula::first_extra ? Interval(DD(0.0), 1.0) : Interval::all();
@@ -75,7 +83,7 @@ class Values {
       case Op::divide: return operand(0) / operand(1);
       case Op::root: return math::sqrt(operand(0));
       case Op::power: return power(operand(0), n.constant);
-      case Op::exponential: return math::exp(operand(0));
+      case Op::exponential: return exponential(operand(0));
       case Op::logarithm: return math::log(operand(0));
       case Op::sine: return math::sincos(operand(0)).sin;
       case Op::cosine: return math::sincos(operand(0)).cos;
@@ -85,6 +93,16 @@ class Values {
       case Op::to_body: break;
     }
     return {DD(0.0), length(operand(0), operand(1), operand(2))};
+  }
+
+  Interval of_orbit(const Node& n) const {
+    using formula::Ephemeris;
+    const OrbitRange range = find_range(graph_.ephemeris_of(n), region_.begin, region_.end);
+    const int number = n.index % Ephemeris::size;
+    if (number < Ephemeris::velocity) return between(-range.most_distance, range.most_distance);
+    if (number < Ephemeris::distance) return between(-range.most_speed, range.most_speed);
+    if (number == Ephemeris::distance) return between(range.least_distance, range.most_distance);
+    return between(1.0 / range.most_distance, 1.0 / range.least_distance);
   }
 
   static double length(const Interval& x, const Interval& y, const Interval& z) {

@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "solve/effect/norms.hpp"
+#include "solve/effect/orbit_range.hpp"
 
 namespace polhode::effect {
 namespace {
@@ -21,6 +22,17 @@ TorqueSize size_of(const torques::GravityGradient& torque, const Region& region)
   if (fixed == 0.0 && region.gap > 0.0) return refuse("the torque is below the range of float64");
   return {.fixed = fixed};
 }
+
+#ifndef POLHODE_WITHOUT_ORBITS
+/// The same at the least distance.
+TorqueSize size_of(const torques::OrbitGradient& torque, const Region& region) {
+  const double least = find_range(torque.orbit(), region.begin, region.end).least_distance;
+  const double fixed = 1.5 * torque.orbit().mu() / least / least / least * region.gap;
+  if (!(fixed < HUGE_VAL)) return refuse("the orbit has no least distance");
+  if (fixed == 0.0 && region.gap > 0.0) return refuse("the torque is below the range of float64");
+  return {.fixed = fixed};
+}
+#endif
 
 /// -C w
 TorqueSize size_of_linear(const Matrix3d& C) {

@@ -96,10 +96,8 @@ void require_clocked(const Scene& scene, const SolveOptions& options) {
   if (options.method && *options.method != "taylor")
     refuse("method", "'" + *options.method + "'", "taylor steps from tick to tick");
   if (options.formulation != Formulation::euler) refuse("formulation", "'lagrangian'", "taylor integrates Euler's equations");
-  if (!options.events.empty())
-    refuse("events", std::to_string(options.events.size()), "zeros of functions are not sought between ticks yet");
-  if (has_windows(scene))
-    refuse("scene.torques", "windows", "torques and rotors in windows are not joined with ticks yet");
+  if (has_rotor_windows(scene))
+    refuse("scene.rotors", "windows", "a rotor that starts or stops is not joined with ticks; a controller may drive it");
   if (calls_custom(scene)) refuse("scene.torques", "a Custom torque", "it has no Taylor series; write it as a Formula");
   for (const double t : scene.times())
     if (t < scene.t0())
@@ -188,6 +186,8 @@ RunOptions to_run_options(const SolveOptions& options, const ode::Tolerances& to
           .formulation = options.formulation,
           .events = options.events,
           .progress = options.progress,
+          .body = options.body,
+          .keep_ticks = options.keep_ticks,
           .trace = trace};
 }
 

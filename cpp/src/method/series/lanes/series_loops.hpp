@@ -215,12 +215,13 @@ class Expansion {
 #ifdef __FMA__
     return madd(negative(c), step, product);
 #else
-    Quad rest;
+    double factor[4], steps[4], rest[4];
+    store4(factor, c), store4(steps, step), store4(rest, product);
     for (int i = 0; i < 4; ++i) {
-      const math::DD whole = math::two_prod(c.v[i], step.v[i]);
-      rest.v[i] = (product.v[i] - whole.hi) - whole.lo;
+      const math::DD whole = math::two_prod(factor[i], steps[i]);
+      rest[i] = (rest[i] - whole.hi) - whole.lo;
     }
-    return rest;
+    return load4(rest);
 #endif
   }
 
