@@ -129,9 +129,9 @@ class Separatrix:
         a, b, c = (float(moments[k]) for k in self.axes)
         even = self.axes in ([0, 1, 2], [1, 2, 0], [2, 0, 1])
         sign = 1.0 if even else -1.0
-        low, high = b - a, c - b
-        self.scale = math.sqrt(a * low / (c * high))
-        self.rate = sign * math.sqrt(low * high / (a * c))
+        below, above = b - a, c - b
+        self.scale = math.sqrt(a * below / (c * above))
+        self.rate = sign * math.sqrt(below * above / (a * c))
         self.middle = sign * (c - a) / (4.0 * b * self.scale)
         self.moments = a, b, c
 
