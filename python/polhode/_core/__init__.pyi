@@ -1658,7 +1658,13 @@ class _FoundSensitivity:
     def runs(self) -> int:
         ...
     @property
+    def scale(self) -> list[int]:
+        ...
+    @property
     def steps(self) -> int:
+        ...
+    @property
+    def uncertain(self) -> str:
         ...
 class _ManyScenes:
     """
@@ -1776,9 +1782,9 @@ def _periodogram(arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], 
     ...
 def _project_lines(arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg3: collections.abc.Sequence[typing.Annotated[collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], "FixedSize(2)"]], arg4: typing.Annotated[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"], arg5: typing.Annotated[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"], arg6: typing.SupportsInt | typing.SupportsIndex) -> numpy.typing.NDArray[numpy.float64]:
     ...
-def _sensitivities(many: _ManyScenes, bodies: typing.SupportsInt | typing.SupportsIndex, times: typing.SupportsInt | typing.SupportsIndex, groups: collections.abc.Sequence[str], accuracy: typing.SupportsFloat | typing.SupportsIndex, certify: bool, side: str, max_steps: typing.SupportsInt | typing.SupportsIndex, threads: typing.SupportsInt | typing.SupportsIndex, refuse: bool) -> dict[str, typing.Any]:
+def _sensitivities(many: _ManyScenes, bodies: typing.SupportsInt | typing.SupportsIndex, times: typing.SupportsInt | typing.SupportsIndex, groups: collections.abc.Sequence[str], accuracy: typing.SupportsFloat | typing.SupportsIndex, certify: bool, side: str, max_steps: typing.SupportsInt | typing.SupportsIndex, threads: typing.SupportsInt | typing.SupportsIndex, refuse: bool, numbers: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex] = []) -> dict[str, typing.Any]:
     ...
-def _solve_many(many: _ManyScenes, bodies: typing.SupportsInt | typing.SupportsIndex, times: typing.SupportsInt | typing.SupportsIndex, omega_out: typing.Any, attitude_out: typing.Any, options: dict[str, typing.Any], threads: typing.SupportsInt | typing.SupportsIndex, refuse: bool) -> dict[str, typing.Any]:
+def _solve_many(many: _ManyScenes, bodies: typing.SupportsInt | typing.SupportsIndex, times: typing.SupportsInt | typing.SupportsIndex, omega_out: typing.Any, attitude_out: typing.Any, options: dict[str, typing.Any], threads: typing.SupportsInt | typing.SupportsIndex, refuse: bool, numbers: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex] = []) -> dict[str, typing.Any]:
     ...
 def _step_d(arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg3: typing.SupportsFloat | typing.SupportsIndex, arg4: typing.Any, arg5: bool, arg6: typing.SupportsInt | typing.SupportsIndex, arg7: typing.SupportsFloat | typing.SupportsIndex, arg8: typing.SupportsFloat | typing.SupportsIndex, arg9: typing.SupportsInt | typing.SupportsIndex) -> None:
     ...
@@ -1860,7 +1866,7 @@ def require_kept(array: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     """
 def rotor_speed(arg0: Scene, arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg3: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
     ...
-def sensitivity(scene: Scene, groups: collections.abc.Sequence[str], accuracy: typing.SupportsFloat | typing.SupportsIndex, certify: bool, side: str, max_steps: typing.SupportsInt | typing.SupportsIndex) -> _FoundSensitivity:
+def sensitivity(scene: Scene, groups: collections.abc.Sequence[str], accuracy: typing.SupportsFloat | typing.SupportsIndex, certify: bool, side: str, max_steps: typing.SupportsInt | typing.SupportsIndex, rescale: bool = False, body: typing.SupportsInt | typing.SupportsIndex = 0) -> _FoundSensitivity:
     """
     The motion of a scene and its derivatives.
     """
