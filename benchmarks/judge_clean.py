@@ -22,6 +22,7 @@ DRESSES = ("as computed", "noise 1e-9", "noise 1e-6", "noise 1e-3", "noise 1e-2"
 SCENES = tuple(sorted(path.stem for path in (ROOT / "scenes").glob("*.toml") if path.stem != "S14"))
 FORMS = ("free", "symmetric", "sphere", "steady", "Lagrange", "pendulum", "damped", "gyrostat")
 MOST = 120  # samples of one run
+TOLERANCE = 1e-10
 
 
 def drawn(form, rng):
@@ -70,6 +71,8 @@ def dressed(dress, scene, rng):
             raise ph.InvalidInput("dop853 is not right here")
     else:
         motion = ph.solve(scene, 1e-12)
+    if motion.error is not None and motion.error > TOLERANCE:
+        raise ph.InvalidInput("its own error exceeds the tolerance")
     omega, attitude = motion.omega, motion.attitude
     if dress.startswith("noise"):
         case = spoiled.noisy(spoiled.Case(motion.t, attitude, omega, {}), float(dress[6:]), rng)
@@ -99,7 +102,7 @@ def runs(seed, count, only="", part=0, parts=1):
         free = not scene.torques and not scene.rotors
         words = {"inertia": scene.inertia} if free and k % 2 else {"scene": scene}
         began = time.process_time()
-        found = ph.judge(t, attitude, omega, tolerance=1e-10, **words)
+        found = ph.judge(t, attitude, omega, tolerance=TOLERANCE, **words)
         main = [f for f in found.findings if f.level != "remark"]
         yield {"k": k, "name": name, "dress": dress, "fine": found.fine, "seconds": time.process_time() - began,
                "said": str(main[0])[:140] if main else "", "turns": found.turns}  # fmt: skip

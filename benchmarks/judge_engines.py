@@ -144,7 +144,7 @@ JSBSIM = {1: "Euler", 2: "trapezoidal", 3: "AB2", 4: "AB3", 5: "AB4", 6: "Buss 1
 
 
 def jsbsim(step, span):
-    """A brick above a planet at rest, with each integrator of the rotational position and the default one of the rates."""
+    """A brick above a planet at rest, with each integrator of the attitude and the default one of the rates."""
     import jsbsim as engine
 
     with tempfile.TemporaryDirectory() as folder:
@@ -211,7 +211,8 @@ def main():
             for run in runs(given.step, given.span):
                 found = judged(run)
                 size, rest = found.deviation.attitude_rms, found.noise.attitude_rms
-                print(f"| {run.engine} | {run.setting} | {said(found, given.step)} | {size:.1e} | {rest:.1e} |", flush=True)
+                words = f"| {run.engine} | {run.setting} | {said(found, given.step)}"
+                print(f"{words} | {size:.1e} | {rest:.1e} |", flush=True)
         except ImportError:
             print(f"| {name} | is not installed ||||")
 

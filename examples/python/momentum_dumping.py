@@ -1,6 +1,6 @@
 """Three wheels hold a satellite against a constant push, and three coils take the momentum out of them.
 
-m = k B x h / |B|^2 with h the momentum of the wheels: Camillo and Markley 1980, Journal of Guidance and Control 3, 567.
+m = k h x B / |B|^2 with h the momentum of the wheels: Camillo and Markley 1980, Journal of Guidance and Control 3, 567.
 """
 
 import numpy as np
@@ -18,7 +18,7 @@ def point(t, m, s, p):
 
 
 def dump(t, m, s, p):
-    return p.k * np.cross(m.field, p.inertia * m.speed) / np.dot(m.field, m.field)
+    return p.k * np.cross(p.inertia * m.speed, m.field) / np.dot(m.field, m.field)
 
 
 def run(k):
@@ -26,7 +26,7 @@ def run(k):
     wheels = ph.Controller(0.5, point, output="rotor_torque", parameters={"kp": 0.02, "kd": 0.2})
     coils = ph.Controller(2.0, dump, output="dipole", field=field, rotors=3, limit=1.0,
                           parameters={"k": k, "inertia": WHEEL})
-    scene = ph.Scene(name="dumping", inertia=(0.9, 0.7, 0.5), omega=(0, 0, 0), rotors=rotors,
+    scene = ph.Scene(name="dumping", inertia=(0.9, 0.7, 0.5), omega=(1e-3, -5e-4, 8e-4), rotors=rotors,
                      controllers=[wheels, coils], torques=[ph.torques.Constant((2e-6, -1e-6, 1e-6), frame="space")],
                      times=np.linspace(0, orbit.period, 7))
     return ph.solve(scene, accuracy=1e-6)

@@ -57,12 +57,6 @@ py::dict solve_batch(const ManyScenes& many, std::size_t bodies, std::size_t tim
 }  // namespace
 
 void bind_batch_solve_many(py::module_& m) {
-  // Arrays of starts may be None, as those of the scene.
-  py::class_<ManyScenes>(m, "_ManyScenes", "The scenes of many bodies.")
-      .def(py::init<const py::list&, const py::object&, const py::object&, const py::object&, const py::object&,
-                    const py::object&>(),
-           py::arg("scenes"), py::arg("moments"), py::arg("omega"), py::arg("attitude"), py::arg("t0"),
-           py::arg("times"), py::keep_alive<1, 2>());
   m.def("_solve_many", &solve_batch, py::arg("many"), py::arg("bodies"), py::arg("times"), py::arg("omega_out"),
         py::arg("attitude_out"), py::arg("options"), py::arg("threads"), py::arg("refuse"),
         py::arg("numbers") = std::vector<std::uint64_t>());

@@ -133,6 +133,12 @@ void bind_solve_sensitivity(py::module_& m) {
   m.def("sensitivity", &sensitivity_of, py::arg("scene"), py::arg("groups"), py::arg("accuracy"), py::arg("certify"),
         py::arg("side"), py::arg("max_steps"), py::arg("rescale") = false, py::arg("body") = 0,
         "The motion of a scene and its derivatives.");
+  // Arrays of starts may be None, as those of the scene.
+  py::class_<ManyScenes>(m, "_ManyScenes", "The scenes of many bodies.")
+      .def(py::init<const py::list&, const py::object&, const py::object&, const py::object&, const py::object&,
+                    const py::object&>(),
+           py::arg("scenes"), py::arg("moments"), py::arg("omega"), py::arg("attitude"), py::arg("t0"),
+           py::arg("times"), py::keep_alive<1, 2>());
   m.def("_sensitivities", &sensitivities_of, py::arg("many"), py::arg("bodies"), py::arg("times"), py::arg("groups"),
         py::arg("accuracy"), py::arg("certify"), py::arg("side"), py::arg("max_steps"), py::arg("threads"),
         py::arg("refuse"), py::arg("numbers") = std::vector<std::uint64_t>());

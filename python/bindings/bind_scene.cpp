@@ -50,7 +50,8 @@ Array torque_of(const Scene& scene, const py::object& t, const py::object& omega
   std::vector<AnyTorque> torques = scene.given_torques();
   if (!states.is_none()) set_starts(torques, scene.states(), to_state_numbers(scene.states(), states));
   const SeveralTorques sum{torques};
-  const py::object quats = !PyType_Check(attitude.ptr()) && py::hasattr(attitude, "as_quat") ? py::object(attitude.attr("as_quat")()) : attitude;
+  const bool rotation = !PyType_Check(attitude.ptr()) && py::hasattr(attitude, "as_quat");
+  const py::object quats = rotation ? py::object(attitude.attr("as_quat")()) : attitude;
   const Array at = to_array(t, "t"), w = to_array(omega, "omega"), q = to_array(quats, "attitude");
   if (at.ndim() == 0 && w.ndim() < 2 && q.ndim() < 2) {
     const Vector3d rates = to_vector3(omega, "omega");

@@ -168,7 +168,7 @@ void ColumnRun::start_momenta(const SceneParameter& by, const std::function<void
     if (own && by.field == SceneParameter::speed) add(state, *rotor.inertia());
     if (own && by.field == SceneParameter::inertia)
       add(state, rotor.compute_start_momentum(scene_.omega()) / *rotor.inertia());
-    if (by.of == Of::omega) add(state, *rotor.inertia() * rotor.axis()[by.component]);
+    if (by.of == Of::omega && rotor.free()) add(state, *rotor.inertia() * rotor.axis()[by.component]);
   }
   if (scene_.damper() && by.of == Of::omega) add(find(scene_.damper()->state()) + by.component, scene_.damper()->inertia());
 }

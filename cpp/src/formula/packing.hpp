@@ -23,7 +23,7 @@ class Packing {
   /// Where a slot is among all values.
   int offset_of(int slot) const { return offsets_[static_cast<std::size_t>(slot)]; }
   int octet_of(int slot) const { return offset_of(slot) / 8; }
-  /// Whether a place has a number. Others may hold anything, NaN too.
+  /// Whether a place has a number. Others may hold NaN.
   bool is_taken(int offset) const { return std::find(offsets_.begin(), offsets_.end(), offset) != offsets_.end(); }
 
   const std::vector<Group>& groups() const { return groups_; }   ///< operations and forms, by level

@@ -77,7 +77,7 @@ class Writer {
     stage.kind = group.kind, stage.octet = octet, stage.store = parts_.stores++;
     std::vector<int> first, second, left, right;
     for (std::size_t lane = 0; lane < 8; ++lane) {
-      // Free lanes have the constants of the first one. Their operands are whatever costs least: nobody reads them.
+      // Free lanes have the constants of the first one. Their values are not read, so any operands will do.
       const int index = tape_.slots()[slot(begin + lane < end ? begin + lane : begin)].index;
       const Recurrence& op = tape_.operations()[static_cast<std::size_t>(index)];
       const auto place = [&](int operand) { return packing_.offset_of(operand); };

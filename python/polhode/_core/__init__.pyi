@@ -1447,22 +1447,22 @@ class Scene:
         """
     def torque(self, t: typing.Any, omega: typing.Any, attitude: typing.Any, states: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Return the sum of the torques at one state.
+        Return the sum of the torques at one state, or at many.
 
         Parameters
         ----------
-        t : float
+        t : float, or array_like of shape (n,)
             Time [s].
-        omega : array_like, shape (3,)
+        omega : array_like, shape (3,) or (n, 3)
             Rates in body axes [rad/s].
-        attitude : array_like, shape (4,)
-            Unit quaternion (x, y, z, w).
+        attitude : array_like, shape (4,) or (n, 4)
+            Unit quaternions (x, y, z, w).
         states : dict, optional
             Numbers of the formulas' states by name; the starts if left out.
 
         Returns
         -------
-        ndarray, shape (3,)
+        ndarray, shape (3,) or (n, 3)
             In body axes [N m], without the torques of rotors.
         """
     @property
@@ -1660,6 +1660,16 @@ class _FoundSensitivity:
     @property
     def steps(self) -> int:
         ...
+class _ManyScenes:
+    """
+    The scenes of many bodies.
+    """
+    def __init__(self, scenes: list[typing.Any], moments: typing.Any, omega: typing.Any, attitude: typing.Any, t0: typing.Any, times: typing.Any) -> None:
+        ...
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        """
+        Return what pickle makes the object from.
+        """
 class _Orbit:
     @staticmethod
     def from_elements(arg0: dict[str, typing.Any]) -> _Orbit:
@@ -1766,9 +1776,9 @@ def _periodogram(arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], 
     ...
 def _project_lines(arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg3: collections.abc.Sequence[typing.Annotated[collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], "FixedSize(2)"]], arg4: typing.Annotated[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"], arg5: typing.Annotated[collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"], arg6: typing.SupportsInt | typing.SupportsIndex) -> numpy.typing.NDArray[numpy.float64]:
     ...
-def _sensitivities(scenes: list[typing.Any], moments: typing.Any, omega: typing.Any, attitude: typing.Any, bodies: typing.SupportsInt | typing.SupportsIndex, times: typing.SupportsInt | typing.SupportsIndex, groups: collections.abc.Sequence[str], accuracy: typing.SupportsFloat | typing.SupportsIndex, certify: bool, side: str, max_steps: typing.SupportsInt | typing.SupportsIndex, threads: typing.SupportsInt | typing.SupportsIndex, refuse: bool) -> dict[str, typing.Any]:
+def _sensitivities(many: _ManyScenes, bodies: typing.SupportsInt | typing.SupportsIndex, times: typing.SupportsInt | typing.SupportsIndex, groups: collections.abc.Sequence[str], accuracy: typing.SupportsFloat | typing.SupportsIndex, certify: bool, side: str, max_steps: typing.SupportsInt | typing.SupportsIndex, threads: typing.SupportsInt | typing.SupportsIndex, refuse: bool) -> dict[str, typing.Any]:
     ...
-def _solve_many(scenes: list[typing.Any], moments: typing.Any, omega: typing.Any, attitude: typing.Any, bodies: typing.SupportsInt | typing.SupportsIndex, times: typing.SupportsInt | typing.SupportsIndex, omega_out: typing.Any, attitude_out: typing.Any, options: dict[str, typing.Any], threads: typing.SupportsInt | typing.SupportsIndex, refuse: bool) -> dict[str, typing.Any]:
+def _solve_many(many: _ManyScenes, bodies: typing.SupportsInt | typing.SupportsIndex, times: typing.SupportsInt | typing.SupportsIndex, omega_out: typing.Any, attitude_out: typing.Any, options: dict[str, typing.Any], threads: typing.SupportsInt | typing.SupportsIndex, refuse: bool) -> dict[str, typing.Any]:
     ...
 def _step_d(arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg2: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arg3: typing.SupportsFloat | typing.SupportsIndex, arg4: typing.Any, arg5: bool, arg6: typing.SupportsInt | typing.SupportsIndex, arg7: typing.SupportsFloat | typing.SupportsIndex, arg8: typing.SupportsFloat | typing.SupportsIndex, arg9: typing.SupportsInt | typing.SupportsIndex) -> None:
     ...

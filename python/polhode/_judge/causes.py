@@ -153,7 +153,8 @@ def _tensor_push(scope: Scope, c: Array, logs: slice, tilt: slice) -> Array:
 
 def _of_tensor(scope: Scope, matrix: Array) -> Array:
     try:
-        return difference(scope.end, dataclasses.replace(scope.law, matrix=matrix).flow(scope.t, scope.dt, scope.starts))
+        law = dataclasses.replace(scope.law, matrix=matrix)
+        return difference(scope.end, law.flow(scope.t, scope.dt, scope.starts))
     except InvalidInput:  # no such body
         return np.full((len(scope.t), 6), np.nan)
 

@@ -39,7 +39,7 @@ class Law:
 
     @staticmethod
     def of_scene(scene: Scene) -> Law:
-        """Return the law of a scene. A free rotor keeps its momentum, whatever start a step has: it is told as held."""
+        """Return the law of a scene. Free rotors become held ones with the same momentum, at any start of a step."""
         matrix: Array = scene.inertia.matrix
         if not scene.torques and not scene.rotors:
             return Law(matrix)

@@ -19,8 +19,8 @@ ROUNDING, TRIALS = 3e-15, 4
 DIGIT = 1.7  # the step of the last digit over the floor that it sets
 # What the errors of a method may look like, and which part of them stays as a pattern then.
 IMITATED, PATTERN = ("lag", "clock", "units of rates", "inertia", "damping", "kinematics"), 0.005
-# An unknown method of a high order looks like one of a low order with many steps in a sample; one of the same order does
-# with as many steps as it has.
+# An unknown method of a high order looks like one of a low order with many steps in a sample; one of the same order
+# looks like it with as many steps as it has.
 NEAR_STEPS = 4
 # Causes that are one and the same for some motions; the first is named, the other stands in its rivals.
 EQUIVALENT = {("clock", "units of rates"), ("lag", "kinematics")}

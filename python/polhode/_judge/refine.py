@@ -8,7 +8,7 @@ import numpy as np
 
 from .causes import Cause, Scope, slopes
 from .score import Numbers, Rated, Score, compress, rate
-from .shooting import Track, carry
+from .shooting import carry
 from .states import Array, difference, displace, rms
 
 MOST_SUBSTEPS = 48

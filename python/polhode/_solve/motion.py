@@ -269,9 +269,8 @@ class Motion(Wanted[MotionOm, MotionAt]):
         *parts : str
             The parts to draw; six or four that suit the scene if none is given. "polhode" (Poinsot's ellipsoid),
             "herpolhode", "momentum" (the sphere of the angular momentum in body axes), "axis" (path of body z in
-            space), "rates", "attitude", "angles" (z-x-z), "energy", "invariants" (their drift) and
-            "commands" (of controllers). If the samples are
-            too far apart for a line, curves use dense output, or a second solution of the scene.
+            space), "rates", "attitude", "angles" (z-x-z), "energy", "invariants" (their drift), "commands". If the
+            samples are too far apart for a line, curves use dense output, or a second solution of the scene.
         ax : matplotlib Axes, optional
             Where to draw a single part.
         marks : array_like or int, optional

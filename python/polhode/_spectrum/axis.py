@@ -20,8 +20,7 @@ from .._sensitivity import rotations
 from ..measured import Axis
 from .curve import PHASES, carried, fourier
 from .scan import BLOCK, Array, grid, largest_eigenvalue, peaks, periodogram, project, refine
-from .shapes import Shapes, attitudes_of, relabelled, table, variants
-from .zoom import Complex, Sums, series_of, zoom
+from .shapes import attitudes_of, relabelled, table, variants
 
 NUTATIONS = 5      # minima of each kind that are followed
 PART = 0.3         # of the median of what is left: other minima are none
@@ -29,7 +28,6 @@ GRID = (16, 12)    # angles and moduli of the shapes
 SHAPES = 12        # of a minimum
 HIGHEST = 2        # lines across l
 PRECESSIONS = 3    # of a shape
-CELLS = 6          # of the table that are looked into
 
 
 def _kinds(known: Array, top: int) -> dict[str, list[int]]:
@@ -139,45 +137,24 @@ def _bodies(t: Array, weight: Array, X: Array, l: Array, along: Array, known: Ar
         which.append(np.arange(len(met)))
         labels += [(order, back)] * len(met)
     cost, shift, shape = (np.concatenate(part) for part in (costs, shifts, which))
+    moments, omega = [np.zeros((0, 3))], [np.zeros((0, 3))]
     step = float(trials[1] - trials[0])
     lines = np.array(_highest(t, across, trials))
     near = (lines[:, None] + nu * np.arange(-3, 4)).ravel()
     phase = nu * t / (2 * np.pi) * PHASES
-    sums = Sums(t, across.conj()[:, None], (weight * (X @ l))[:, None], np.add)
-    found: list[tuple[float, int, float]] = []
     for k in np.argsort(cost, kind="stable")[:SHAPES]:
         order, back = labels[k]
-        curve = rotations.rotate(attitudes_of(shapes, shape[k : k + 1], slice(None)), rotations.rotate(back, known))
+        seen = rotations.rotate(attitudes_of(shapes, shape[k : k + 1], slice(None))[0], rotations.rotate(back, known))
         here = (phase + shift[k]) % PHASES
         low = here.astype(int) % PHASES
         part = (here - low)[:, None]
-        seen = (1 - part) * curve[0, low] + part * curve[0, (low + 1) % PHASES]
+        seen = (1 - part) * seen[low] + part * seen[(low + 1) % PHASES]
         line = np.ascontiguousarray((across * (seen[:, 0] - 1j * seen[:, 1]))[:, None])
         power = np.concatenate([periodogram(t, line, np.array([f])) for f in near])
-        for f in near[np.argsort(-power, kind="stable")[:PRECESSIONS]]:
-            kappa2 = refine(partial(periodogram, t, line), float(f), step)
-            found.append((float(sums.met(*_series(curve), nu, kappa2).max()), int(k), kappa2))
-    moments, omega, followed = [np.zeros((0, 3))], [np.zeros((0, 3))], list[tuple[int, float]]()
-    for _, k, kappa2 in sorted(found, reverse=True):
-        if len(followed) == CELLS:
-            break
-        if any(k == other and abs(kappa2 - f) * np.ptp(t) < 1 for other, f in followed):
-            continue
-        followed.append((k, kappa2))
-        order, back = labels[k]
-        rows = partial(_rows, vector=rotations.rotate(back, known))
-        finer, best, at, kappa2 = zoom(sums, rows, nu, kappa2, int(shape[k]), GRID)
-        inertia, rate, _ = finer.bodies(np.array([best]), np.array([at]), nu, np.array([kappa2]))
+        best = np.argsort(-power, kind="stable")[:PRECESSIONS]
+        kappa2 = np.array([refine(partial(periodogram, t, line), float(f), step) for f in near[best]])
+        same = np.full(len(kappa2), shape[k])
+        inertia, rate, _ = shapes.bodies(same, np.full(len(kappa2), shift[k]), nu, kappa2)
         moments.append(inertia[:, np.argsort(order)])
         omega.append(rotations.rotate(rotations.conjugate(back), rate))
     return np.concatenate(moments), np.concatenate(omega)
-
-
-def _series(curve: Array) -> tuple[Complex, Complex]:
-    """Return the series of curves (bodies, PHASES, 3) across the momentum, x + i y, and along it."""
-    return series_of(curve[:, :, :1] + 1j * curve[:, :, 1:2]), series_of(curve[:, :, 2:])
-
-
-def _rows(shapes: Shapes, vector: Array) -> tuple[Complex, Complex]:
-    """Return the series of a vector of the table's axes for all shapes."""
-    return _series(rotations.rotate(attitudes_of(shapes, slice(None), slice(None)), vector))

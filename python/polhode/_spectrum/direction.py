@@ -22,7 +22,7 @@ from .attitudes import HARMONICS
 from .curve import carried, orders
 from .scan import BLOCK, Array, grid, peaks, periodogram, project, refine
 from .shapes import Shapes, attitudes_of, relabelled, table, variants
-from .zoom import Complex, Sums, series_of, zoom
+from .zoom import NEAR, Complex, Sums, series_of, zoom
 
 NUTATIONS = 4      # maxima of each kind that are followed
 ALONG = 0.85       # of the median of what is left by harmonics: other minima are none
@@ -151,8 +151,8 @@ def _bodies(t: Array, weight: Array, X: Array, nu: float, c: int, near: Array) -
         found += [(float(best[k]), int(there[k]), float(kappa2)) for k in np.argsort(-best)[:CELLS]]
     moments, omega = [np.zeros((0, 3))], [np.zeros((0, 3))]
     seen: list[tuple[int, float]] = []
-    for _, b, kappa2 in sorted(found, reverse=True):
-        if len(seen) == CELLS:
+    for score, b, kappa2 in sorted(found, reverse=True):
+        if len(seen) == CELLS or score < (NEAR * float((X * X).sum())) ** 2:
             break
         if any(b == other and abs(kappa2 - near_by) * np.ptp(t) < 1 for other, near_by in seen):
             continue

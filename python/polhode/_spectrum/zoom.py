@@ -22,6 +22,7 @@ TOP = 8            # harmonics of a curve
 HARMONICS = np.arange(-TOP, TOP + 1)
 FINER = 5          # shapes along each side of a cell
 ZOOMS = 5          # of cells, each half as wide as the last
+NEAR = 0.7         # of what the samples could meet: a cell with less is left as it is, no body there fits
 
 
 def series_of(curves: npt.NDArray[np.generic]) -> Complex:

@@ -56,7 +56,7 @@ def test_a_picture_has_the_commands(loop, tmp_path):
     assert (tmp_path / "a.png").stat().st_size > 10_000
     figure = motion.plot("commands")
     (axes,) = figure.axes
-    assert axes.get_title() == "commands: 20 ticks" and axes.get_ylabel() == "N m"
+    assert axes.get_title(loc="left") == "commands: 20 ticks" and axes.get_ylabel() == "N m"
     t, y = (np.asarray(x) for x in axes.lines[0].get_data())
     held = np.interp([0.03, 0.05, 0.13, 0.15], t, y)   # within pulses from 0.02 to 0.08, and so on
     np.testing.assert_allclose(held, motion.ticks[0].command[[0, 0, 1, 1], 0], rtol=1e-12)
@@ -66,4 +66,4 @@ def test_a_picture_has_the_commands(loop, tmp_path):
 def test_a_scene_without_controllers_has_no_commands_to_draw():
     pytest.importorskip("matplotlib").use("agg")
     motion = ph.solve(ph.Scene(inertia=(1, 2, 2.5), omega=(0.1, 1, 0), times=np.linspace(0, 5, 51)))
-    assert motion.plot("commands").axes[0].get_title() == "commands: the scene has no controller"
+    assert motion.plot("commands").axes[0].get_title(loc="left") == "commands: the scene has no controller"

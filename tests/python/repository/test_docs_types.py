@@ -10,6 +10,8 @@ import sys
 import pytest
 from test_docs import PAGES, ROOT
 
+# matplotlib's 3D axes have no types of their own, so that pyright takes `zoom=1` for a whole number.
+THEIRS = 'parameter "zoom" of type "int" in function "set_box_aspect"'
 BLOCK = re.compile(r"^```(?:\{code-cell\} )?python\n(.*?)^```", flags=re.MULTILINE | re.DOTALL)
 
 
@@ -64,7 +66,8 @@ def check_by_pyright(folder):
     done = run("-m", "pyright", "--outputjson", "--pythonpath", sys.executable, ".", folder=folder)
     assert done.returncode in (0, 1), done.stdout + done.stderr
     return [f"{pathlib.Path(one['file']).name}:{one['range']['start']['line'] + 1}: {one['message']}"
-            for one in json.loads(done.stdout)["generalDiagnostics"] if one["severity"] == "error"]
+            for one in json.loads(done.stdout)["generalDiagnostics"]
+            if one["severity"] == "error" and THEIRS not in one["message"]]
 
 
 @pytest.mark.parametrize("check", [check_by_mypy, check_by_pyright])

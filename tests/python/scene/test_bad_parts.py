@@ -140,7 +140,8 @@ PLATES = [
 ]
 
 
-@pytest.mark.parametrize(("make", "words"), [*ROTORS, *DAMPERS, *CHANGING, *ORBITS, *PLATES], ids=lambda x: str(x)[:60])
+@pytest.mark.parametrize(("make", "words"), [
+    pytest.param(make, words, id=words[:60]) for make, words in [*ROTORS, *DAMPERS, *CHANGING, *ORBITS, *PLATES]])
 def test_a_refusal_is_one_line_with_its_number(make, words):
     with pytest.raises(ph.InvalidInput) as refusal:
         make()
