@@ -41,7 +41,7 @@ def test_the_cubesat_obeys_its_equations(left_out):
     found = solve_ivp(rates, (0, TIMES[-1]), start, method="DOP853", t_eval=TIMES, rtol=1e-10, atol=1e-12).y.T
     apart = (ph.Rotation.from_quat(found[:, 3:]).inv() * motion.rotation).magnitude()
     assert motion.success
-    if left_out is None:
-        assert np.abs(found[:, :3] - motion.omega).max() < 1e-8 * motion.omega_scale and apart.max() < 1e-6
+    if left_out is None:   # DOP853 at 1e-10 is 1e-8 off where the light ends
+        assert np.abs(found[:, :3] - motion.omega).max() < 1e-7 * motion.omega_scale and apart.max() < 1e-6
     else:
         assert apart.max() > 1e-4   # each torque counts
