@@ -111,10 +111,13 @@ def _array(values: Any) -> Any:
     return np.asarray(values, dtype=float)
 
 
+STARTS = ("inertia", "omega", "attitude", "t0", "times")
+
+
 def _motions(about: dict[str, Any], arrays: dict[str, Any]) -> Motions:
     shared = about["scenes"]
     scenes = from_plain(shared) if isinstance(shared, dict) else [from_plain(scene) for scene in shared]
-    starts = {name: arrays[f"start_{name}"] for name in ("inertia", "omega", "attitude") if f"start_{name}" in arrays}
+    starts = {name: arrays[f"start_{name}"] for name in STARTS if f"start_{name}" in arrays}
     omega: Any = arrays.get("omega")
     attitude: Any = arrays.get("attitude")
     return Motions(omega, attitude, tuple(about["status"]), tuple(about["message"]),

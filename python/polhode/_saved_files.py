@@ -136,6 +136,11 @@ def _motions(path: pathlib.Path, about: dict[str, Any], claims: dict[str, Claim]
                            f"{sorted(lengths)} times")
     expected: dict[str, Any] = {name: ((bodies,), REAL) for name in ("t_reached", "error")}
     expected |= {"steps": ((bodies,), WHOLE)} | {name: ((bodies,), TRUTH) for name in ("success", "lanes", "refused")}
+    if "start_t0" in claims:
+        expected["start_t0"] = ((bodies,), REAL)
+    if "start_times" in claims and len(shape := claims["start_times"].shape) == 2:   # each body has its own
+        lengths = {shape[1]}
+        expected["start_times"] = ((bodies, shape[1]), REAL)
     for name, width in WIDTHS.items():
         if name in claims and (not listed or name in listed[0]["want"]):
             expected[name] = ((bodies, *(lengths or {0}), width), REAL)

@@ -155,9 +155,10 @@ def _starts_of(scene: Scene, starts: dict[str, Any]) -> tuple[dict[str, Floats],
             given[name] = _rows(starts[name], width, name)
     for name, axes in (("t0", ("bodies",)), ("times", ("bodies", "samples"))):
         if starts[name] is not None:
-            given[name] = np.ascontiguousarray(to_rows(starts[name], name, None))
-            if given[name].ndim != len(axes) or 0 in given[name].shape[1:]:
-                raise _core.InvalidInput(f"{name}: must be of shape ({', '.join(axes)}), got {given[name].shape}")
+            array = to_rows(starts[name], name, None)
+            if array.ndim != len(axes) or 0 in array.shape[1:]:
+                raise _core.InvalidInput(f"{name}: must be of shape ({', '.join(axes)}), got {array.shape}")
+            given[name] = np.ascontiguousarray(array)
     sizes = {array.shape[0] for name, array in given.items() if array.ndim == 2 or name == "t0"}
     if len(sizes) != 1:
         raise _core.InvalidInput(
