@@ -52,9 +52,9 @@ Array periodogram(const Array& t, const Array& z, std::size_t count, const GridO
   return out;
 }
 
-py::tuple match_quadratics(const Array& t, const Array& y, const Array& weight, const Array& curves,
-                           std::size_t phases, const std::vector<std::size_t>& which, const Array& f, const Array& g,
-                           std::size_t shifts, const Array& functions, bool scale, bool offset) {
+std::pair<Array, Array> match_quadratics(const Array& t, const Array& y, const Array& weight, const Array& curves,
+                                         std::size_t phases, const std::vector<std::size_t>& which, const Array& f, const Array& g,
+                                         std::size_t shifts, const Array& functions, bool scale, bool offset) {
   std::vector<spectrum::Trial> trials;
   for (std::size_t k = 0; k < which.size(); ++k) trials.push_back({which[k], f.data()[k], g.data()[k]});
   const std::array<py::ssize_t, 2> shape{static_cast<py::ssize_t>(which.size()), static_cast<py::ssize_t>(shifts)};
@@ -65,7 +65,7 @@ py::tuple match_quadratics(const Array& t, const Array& y, const Array& weight, 
     spectrum::match_quadratics({to_span(t), to_span(y), to_span(weight), 1}, {to_span(curves), phases}, trials, shifts,
                                to_span(functions), {scale, offset}, cost_data, found_data);
   }
-  return py::make_tuple(cost, found);
+  return {cost, found};
 }
 
 }  // namespace

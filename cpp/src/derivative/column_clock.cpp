@@ -70,8 +70,8 @@ class Instant {
       std::vector<double>& change = at_.changes[c];
       const auto row = [&](std::size_t i) { return columns[i * count_ + c]; };
       for (std::size_t i = 0; i < 3; ++i) change[i] = row(i);
-      const Quat turned = q * Quat{0.5 * row(3), 0.5 * row(4), 0.5 * row(5), 0.0};
-      change[3] = turned.x, change[4] = turned.y, change[5] = turned.z, change[6] = turned.w;
+      const Quat change_q = q * Quat{0.5 * row(3), 0.5 * row(4), 0.5 * row(5), 0.0};
+      change[3] = change_q.x, change[4] = change_q.y, change[5] = change_q.z, change[6] = change_q.w;
       for (std::size_t i = 0; i < states_; ++i) change[body_numbers + i] = row(6 + i);
     }
     omega_ = state.omega;

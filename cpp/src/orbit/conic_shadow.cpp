@@ -24,10 +24,10 @@ class ConicPath::Track final : public shadow::Curve {
   shadow::Sizes bound(double from, double to) const override {
     const double alpha = path_.conic_.alpha.hi, q = path_.conic_.q.hi, e = path_.conic_.e.hi, rate = path_.rate_.hi;
     shadow::Sizes most;
-    double turn = 0.0;   // of dt/dp by p
+    double bend = 0.0;   // of dt/dp by p
     if (alpha > 0.0) {
       most = {(1 + e) / alpha, 1 / std::sqrt(alpha), 1.0};
-      turn = e / std::sqrt(alpha) / rate;
+      bend = e / std::sqrt(alpha) / rate;
     } else {
       const auto u = kepler::compute_anomaly(alpha, std::max(std::abs(from), std::abs(to)));
       const double across2 = q * (1 + e);
@@ -36,7 +36,7 @@ class ConicPath::Track final : public shadow::Curve {
     }
     if (path_.drifts()) {
       const double fast = std::abs(path_.drift_.node) + std::abs(path_.drift_.periapsis), pace = most.r / rate;
-      most.curvature += fast * (2 * most.slope * pace + most.r * turn + fast * most.r * pace * pace);
+      most.curvature += fast * (2 * most.slope * pace + most.r * bend + fast * most.r * pace * pace);
       most.slope += fast * most.r * pace;
     }
     constexpr double room = 1 + 1e-9;   // for their rounding
@@ -75,8 +75,8 @@ class ConicPath::Track final : public shadow::Curve {
     Triple<T> slope = add(scale(x, -u.u1), scale(y, across * u.u0));
     if (path_.drifts()) {
       const T pace = (q + e * u.u2) / choose<T>(path_.rate_);
-      const Triple<T> turn = add(Triple<T>{T(0.0), T(0.0), T(path_.drift_.node)}, scale(z, T(path_.drift_.periapsis)));
-      slope = add(slope, scale(cross(turn, r), pace));
+      const Triple<T> rotation = add(Triple<T>{T(0.0), T(0.0), T(path_.drift_.node)}, scale(z, T(path_.drift_.periapsis)));
+      slope = add(slope, scale(cross(rotation, r), pace));
     }
     return {r, slope};
   }

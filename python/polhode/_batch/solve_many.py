@@ -141,7 +141,7 @@ class Motions(Wanted[MotionOm, MotionAt]):
 
 
 def _rows(value: Any, width: int, name: str) -> Floats:
-    array = to_attitudes(value, 5) if name == "attitude" else to_rows(value, name, None)
+    array = to_attitudes(value, 6) if name == "attitude" else to_rows(value, name, None)
     if array.ndim not in (1, 2) or array.shape[-1] != width:
         raise _core.InvalidInput(f"{name}: must be of shape ({width},) or (bodies, {width}), got {array.shape}")
     return array

@@ -69,7 +69,7 @@ def scene_model() -> Any:
 def _torque_models() -> list[Any]:
     """Return the models of all torques of scene files, distinguished by `kind`."""
     kind = kinds()
-    models = orbit_torques.models()
+    models: list[Any] = []
     for key, records in _records_by_key().items():
         record = records[0]
         if key == "custom":
@@ -92,7 +92,7 @@ def _torque_models() -> list[Any]:
             else:
                 fields[parameter["name"]] = (types[parameter["kind"]], default)
         models.append(model(record["name"], **fields))
-    return models
+    return models + orbit_torques.models()
 
 
 def _records_by_key() -> dict[str, list[dict[str, Any]]]:

@@ -86,7 +86,8 @@ def _explain(table: Any, error: Any) -> str:
     if error["type"] == "missing":
         return f"{where}: missing"
     if error["type"] == "extra_forbidden":
-        near = difflib.get_close_matches(str(error["loc"][-1]), _keys(table.model_json_schema()), n=1)
+        key = str(error["loc"][-1])   # which another table may have
+        near = difflib.get_close_matches(key, _keys(table.model_json_schema()) - {key}, n=1)
         return f"{where}: unknown key{f', did you mean {near[0]!r}?' if near else ''}"
     if error["type"] == "value_error":
         return f"{where}: {error['ctx']['error']}"

@@ -57,7 +57,7 @@ CASES = {
     "before a table": (lambda: table().at(-0.25), "t: must be within the table, 0 to 1 s, got -0.25"),
     "after a table": (lambda: table().at([0.5, 1.25]), "t: must be within the table, 0 to 1 s, got 1.25"),
     "time NaN": (lambda: ORBIT.at(NAN), "t: must be finite, got nan"),
-    "area": (lambda: ph.Plate(-0.25, (0, 0, 1), (0, 0, 0)), "Plate.area: must be at least 0, got -0.25"),
+    "area": (lambda: ph.Plate(-0.25, (0, 0, 1), (0, 0, 0)), "Plate.area: must be at least 0 and finite, got -0.25"),
     "area NaN": (lambda: ph.Plate(NAN, (0, 0, 1), (0, 0, 0)), "Plate.area"),
     "normal": (lambda: ph.Plate(1.0, (0, 0, 0), (0, 0, 0)), "Plate.normal: must be not 0, got (0, 0, 0)"),
     "centre NaN": (lambda: T.Drag(ph.Plate(1.0, (0, 0, 1), (0, NAN, 0)), ORBIT, **AIR),
@@ -177,7 +177,7 @@ def test_other_numbers_of_a_parameter_are_in_the_file(tmp_path):
 @pytest.mark.parametrize(("change", "words"), [
     (('orbit = "main"\ncoefficient', 'orbit = "moon"\ncoefficient'), "must name a table of [orbits], got 'moon'"),
     (('orbit = "main", strength', 'orbit = "moon", strength'), "field.orbit: must be an orbit of the file (main), got"),
-    (("area = 1.0", "area = -0.5"), "drag: plates[0]: Plate.area: must be at least 0, got -0.5"),
+    (("area = 1.0", "area = -0.5"), "drag: plates[0]: Plate.area: must be at least 0 and finite, got -0.5"),
     (("specular = 0.5", "specular = 1.5"), "plates[0]: Plate.specular, Plate.diffuse: must be at least 0 and together"),
     (("specular = 0.5", "shiny = 0.5"), "unknown key"),
     (("scale_height = 0.5", "scale_height = -0.5"), "Drag.scale_height: must be positive and finite, got -0.5"),

@@ -18,9 +18,9 @@ constexpr OrbitRange unknown{0.0, std::numeric_limits<double>::infinity(), std::
 #ifndef POLHODE_WITHOUT_ORBITS
 constexpr double room = 1 + 1e-9;   // positions and elements are rounded
 
-/// How much the secular rates of J2 add: to the mean motion as a share, and to the turn of the plane [rad/s].
+/// How much the secular rates of J2 add: to the mean motion as a share, and to the rotation of the plane [rad/s].
 struct DriftBound {
-  double faster = 0.0, turn = 0.0;
+  double faster = 0.0, rotation = 0.0;
 };
 DriftBound bound_drift(const Orbit& orbit, double q, double e) {
   const auto* elements = std::get_if<OrbitElements>(&orbit.given());
@@ -56,7 +56,7 @@ OrbitRange find_range(const formula::Ephemeris& ephemeris, [[maybe_unused]] doub
     if (falls || rises) most = std::min(most, std::max(a.r.norm(), b.r.norm()));
   }
   // Vis viva; the speed is largest at the least distance.
-  const double speed = std::sqrt(std::max(2 * mu / least - mu * (1 - e) / q, 0.0)) * (1 + drift.faster) + drift.turn * most;
+  const double speed = std::sqrt(std::max(2 * mu / least - mu * (1 - e) / q, 0.0)) * (1 + drift.faster) + drift.rotation * most;
   return {least / room, most * room, speed * room};
 #else
   static_cast<void>(ephemeris);
