@@ -127,9 +127,10 @@ def test_gains_are_fitted():
     guess = scene.replace(controllers=[law.replace(parameters={"kp": 1.5, "kd": 2.5})])
     found = ph.fit(data, guess, ("controllers.0.kp", "controllers.0.kd"))
     assert found.success
-    apart = np.array([found.parameters["controllers.0.kp"], found.parameters["controllers.0.kd"]]) - (2.0, 3.0)
+    assert found.parameters == ("controllers.0.kp", "controllers.0.kd")
+    apart = found.x - (2.0, 3.0)
     assert (np.abs(apart) < 5 * found.stderr).all() and (np.abs(apart) < 0.02).all()
-    assert found.scene.controllers[0].parameters["kp"] == found.parameters["controllers.0.kp"]
+    assert found.scene.controllers[0].parameters["kp"] == found.x[0]
 
 
 def test_a_damped_loop_has_no_growth():

@@ -85,7 +85,7 @@ def test_a_face_away_from_the_light_feels_nothing():
 
 
 @pytest.mark.parametrize(("call", "words"), [
-    (lambda: ph.Plate(-1.0, (0, 0, 1), (0, 0, 0)), "area: must be at least 0, got -1.0"),
+    (lambda: ph.Plate(-1.0, (0, 0, 1), (0, 0, 0)), "area: must be at least 0 and finite, got -1.0"),
     (lambda: ph.Plate(1.0, (0, 0, 0), (0, 0, 0)), "normal: must be not 0"),
     (lambda: ph.Plate(1.0, (0, 1), (0, 0, 0)), r"normal: must be of shape \(3,\)"),
     (lambda: ph.Plate(1.0, (0, 0, 1), (0, 0, 0), 0.7, 0.4), "together at most 1, got 0.7 and 0.4"),
