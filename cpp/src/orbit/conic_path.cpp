@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <tuple>
 
@@ -15,6 +16,12 @@ using math::DD;
 namespace {
 
 constexpr double circle = 1e-17;   // below it the eccentricity moves r by less than rounding, and has few digits
+
+/// Squares of extreme starts overflow.
+void require_held(std::initializer_list<DD> parts) {
+  for (const DD& part : parts)
+    if (!std::isfinite(part.hi)) throw InvalidInput("orbit", "of elements that a double holds", to_text(part.hi));
+}
 
 }  // namespace
 
@@ -37,6 +44,7 @@ ConicPath::ConicPath(double mu, const Vector3d& r0, const Vector3d& v0, double t
   axes_.x = radial_ ? scale(normalize(r), DD(-1.0)) : normalize(round_orbit ? r : towards);
   axes_.z = radial_ ? DDVector{} : normalize(h);
   x_ = to_vector(round(axes_.x)), z_ = to_vector(round(axes_.z));
+  require_held({conic_.q, conic_.e, conic_.alpha});
   start(kepler::find_chi(conic_, distance, sigma));
 }
 
@@ -46,6 +54,7 @@ ConicPath::ConicPath(const OrbitElements& given) : Path(given), mu_(given.mu), t
   conic_.q = std::isnan(given.semi_major_axis) ? DD(given.periapsis_distance)
                                                : DD(given.semi_major_axis) * (DD(1.0) - e);
   conic_.alpha = (DD(1.0) - e) / conic_.q;
+  require_held({conic_.q, conic_.e, conic_.alpha});
   const DD chi = kepler::find_chi(conic_, given.anomaly);
   if (std::isnan(chi.hi))
     throw InvalidInput("anomaly", "between the asymptotes of the hyperbola", to_text(given.anomaly));
@@ -107,6 +116,7 @@ void ConicPath::start(DD chi) {
   if (is_closed()) revolution_ = math::scaled(math::pi<DD>(), 2.0) / (conic_.alpha * math::sqrt(conic_.alpha));
   if (radial_ && since_periapsis_.hi < 0.0 && is_closed()) since_periapsis_ = since_periapsis_ + revolution_;
   rate_ = math::sqrt(DD(mu_)) * DD(speed_up_);
+  require_held({since_periapsis_, revolution_, rate_});
 }
 
 /// Whether a radial orbit is at the centre between the start and the time n.

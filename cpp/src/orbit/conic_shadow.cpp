@@ -123,6 +123,9 @@ std::vector<Eclipse> ConicPath::find_eclipses(const Vector3d& sun, double radius
   constexpr double most = 1e7;   // revolutions of one span
   if (!(end - begin < most))
     throw InvalidInput("shadow", "of a span of fewer than 1e7 revolutions", to_text(end - begin));
+  constexpr double counted = 1e15;   // beyond, a double does not count them
+  if (!(std::max(std::abs(begin), std::abs(end)) < counted))
+    throw InvalidInput("shadow", "within 1e15 revolutions of t0", to_text(begin));
   if (drifts()) {
     double noon = find_noon(Track(*this, begin), cylinder, half);
     for (double k = begin; k <= end; ++k) {

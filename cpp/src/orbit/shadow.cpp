@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "polhode/core/error.hpp"
 #include "polhode/core/interrupt.hpp"
 
 namespace polhode::shadow {
@@ -48,7 +49,16 @@ class Search {
   Search(const Curve& curve, const Cylinder& cylinder, std::vector<Edge>& edges)
       : curve_(curve), cylinder_(cylinder), edges_(edges) {}
 
-  Sample look(double p) const { return {p, measure_surely(curve_, cylinder_, p)}; }
+  Sample look(double p) {
+    if (++looks_ > most_looks)
+      throw InvalidInput("shadow", "of a radius that can be searched", to_text(cylinder_.radius()),
+                         "it is too small for so long an orbit");
+    const Sample now{p, measure_surely(curve_, cylinder_, p)};
+    // A NaN would never end the search.
+    if (!std::isfinite(now.reach.g) || !std::isfinite(now.reach.dg))
+      throw InvalidInput("orbit", "with distances whose squares are finite", to_text(now.reach.g) + " m^2");
+    return now;
+  }
 
   void search(const Sample& a, const Sample& b) {
     const Reach<double>&x = a.reach, &y = b.reach;
@@ -72,7 +82,7 @@ class Search {
 
  private:
   /// Newton's steps within a bracket.
-  double solve(Sample a, Sample b, Sample m) const {
+  double solve(Sample a, Sample b, Sample m) {
     const bool rises = a.reach.g < b.reach.g;
     for (int k = 0; k < 100; ++k) {
       ((m.reach.g < 0.0) == rises ? a : b) = m;
@@ -100,9 +110,12 @@ class Search {
     if (now.along.hi < 0.0) edges_.push_back({p, curve_.time(p), enters});
   }
 
+  static constexpr int most_looks = 1'000'000;   // a second: an orbit of the Earth needs a hundred
+
   const Curve& curve_;
   const Cylinder& cylinder_;
   std::vector<Edge>& edges_;
+  int looks_ = 0;
 };
 
 }  // namespace

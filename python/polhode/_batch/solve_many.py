@@ -299,4 +299,5 @@ def solve_many(
         derivatives = Sensitivity(made["omega"], made["attitude"], made["d_omega"], made["d_attitude"],
                                   tuple(made["columns"]), side, made["error"], d_states)
     return Motions(omega=out["omega"], attitude=out["attitude"], **found,
-                   scenes=scenes if isinstance(scenes, Scene) else listed, options=given, sensitivity=derivatives)
+                   scenes=scenes if isinstance(scenes, Scene) else listed, options=given,
+                   sensitivity=derivatives)  # type: ignore[arg-type]   # as the field

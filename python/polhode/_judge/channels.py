@@ -49,7 +49,8 @@ def products(steps: Array) -> Array:
     for k in range(1, rows):
         blocks[k] = multiply(blocks[k - 1, -1], blocks[k])
     out: Array = blocks.reshape(-1, 4)[:count]
-    return out / np.linalg.norm(out, axis=1, keepdims=True)
+    out /= np.linalg.norm(out, axis=1, keepdims=True)
+    return out
 
 
 def follows(samples: Samples, law: Law) -> bool:

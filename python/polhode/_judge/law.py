@@ -107,11 +107,11 @@ class Law:
         done = solve_many(self._body, omega=state[0], attitude=state[1], t0=t, times=t[:, None] + dt, rtol=ACCURACY,
                           method=self._method, threads=threads)
         assert done.attitude is not None and done.omega is not None
-        return done.omega, done.attitude
+        return np.asarray(done.omega, dtype=float), np.asarray(done.attitude, dtype=float)
 
     @cached_property
     def _inverse(self) -> Array:
-        return np.linalg.inv(self.matrix)
+        return np.asarray(np.linalg.inv(self.matrix), dtype=float)
 
     @cached_property
     def _body(self) -> Scene:
@@ -145,6 +145,7 @@ def _momentum(rotor: Rotor, omega: Array) -> float:
     """Return the momentum of a rotor about its axis: relative to the body if it is held, absolute if it is free."""
     if rotor.momentum is not None:
         return float(rotor.momentum)
+    assert rotor.speed is not None and rotor.inertia is not None
     return float(rotor.inertia * (rotor.speed + (rotor.axis @ omega if rotor.free else 0.0)))
 
 

@@ -67,7 +67,7 @@ def quadratic(fun: Callable[[Array], Array]) -> tuple[Array, float]:
     q = np.random.default_rng(0).normal(size=(RANDOM, 4))
     q /= np.linalg.norm(q, axis=1, keepdims=True)
     y, A = fun(q), _columns(rotations.to_matrix(q))
-    found = np.linalg.lstsq(A, y, rcond=None)[0]
+    found = np.asarray(np.linalg.lstsq(A, y, rcond=None)[0], dtype=float)
     left = float(((y - A @ found) ** 2).sum() / max(float(((y - y.mean()) ** 2).sum()), 1e-300))
     return found, left
 
@@ -98,7 +98,8 @@ class Light:
 
 def _clean(light: Light, high: float) -> list[float]:
     """Return the frequencies of the highest lines, each found in what the others leave."""
-    t, found = light.t, []
+    t = light.t
+    found: list[float] = []
     trials = grid(t, 0.5 / float(np.ptp(t)), high)
     step, zero = float(trials[1] - trials[0]), np.zeros(1)
     for _ in range(HIGHEST):
@@ -215,15 +216,15 @@ def bodies(light: Light, found: list[tuple[float, float, float]], orders: tuple[
     which, nus, kappas = [], [], []
     seen: list[tuple[float, float]] = []      # other pairs of lines are the same two frequencies
     for _, sigma, mu in found:
-        for kappa2 in [sign * sigma + 0.5 * k * mu for sign in (1, -1) for k in (-3, -1, 1, 3)]:
-            apart = [max(abs(0.5 * mu - a), abs(kappa2 - b)) for a, b in seen]
+        for kappa in [sign * sigma + 0.5 * k * mu for sign in (1, -1) for k in (-3, -1, 1, 3)]:
+            apart = [max(abs(0.5 * mu - a), abs(kappa - b)) for a, b in seen]
             if min(apart, default=np.inf) * np.ptp(light.t) < SAME:
                 continue
-            seen.append((0.5 * mu, kappa2))
-            there = shapes.bodies(shape, zero, 0.5 * mu, np.full(len(shape), kappa2))[2]
+            seen.append((0.5 * mu, kappa))
+            there = shapes.bodies(shape, zero, 0.5 * mu, np.full(len(shape), kappa))[2]
             which.append(there)
             nus.append(np.full(len(there), 0.5 * mu))
-            kappas.append(np.full(len(there), kappa2))
+            kappas.append(np.full(len(there), kappa))
     curve, nu, kappa2 = np.concatenate(which), np.concatenate(nus), np.concatenate(kappas)
     if not len(curve):
         return np.zeros((0, 3)), np.zeros((0, 3)), np.zeros((0, 4))

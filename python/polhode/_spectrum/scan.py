@@ -11,6 +11,7 @@ import numpy.typing as npt
 from .. import _core
 
 Array = npt.NDArray[np.float64]
+Places = npt.NDArray[Any]   # integers
 
 STEP = 0.8       # of a grid, over the span of the times: a line is 2 pi / span wide
 BLOCK = 20_000   # trials at once

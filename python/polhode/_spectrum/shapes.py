@@ -17,7 +17,7 @@ import numpy as np
 from .._batch.closed_forms import free_motion
 from .._sensitivity import rotations
 from .curve import LEAST, PHASES, SLACK
-from .scan import Array
+from .scan import Array, Places
 
 ANGLES = 8                                                   # of the encircled axis from the momentum, where nearest
 
@@ -31,7 +31,7 @@ class Shapes:
     v: Array
     bend: Array
 
-    def bodies(self, which: Array, phase: Array, nu: float | Array, kappa2: Array) -> tuple[Array, Array, Array]:
+    def bodies(self, which: Places, phase: Places, nu: float | Array, kappa2: Array) -> tuple[Array, Array, Array]:
         """Return (moments, omega, places in the arguments) of the bodies that exist, at phases of the curves.
 
         `which`, `phase` and `kappa2` have one number a body, `nu` one for all or one a body. `phase` counts the table's
@@ -97,7 +97,7 @@ def _complete(square: Array) -> Array:
     return np.asarray(np.pi / (2 * a))
 
 
-def attitudes_of(shapes: Shapes, which: slice | Array, phases: slice | Array) -> Array:
+def attitudes_of(shapes: Shapes, which: slice | Places, phases: slice | Array) -> Array:
     """Return attitudes from the table's axes to the frame of the momentum, with 2 kappa t left out."""
     m = shapes.m[which]
     rate = (shapes.u[which, None] * m[..., 0] ** 2 + shapes.v[which, None] * m[..., 1] ** 2) / (1 + m[..., 2])

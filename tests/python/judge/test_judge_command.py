@@ -224,7 +224,8 @@ def test_the_simulators_of_nasas_check_case_2(name):
     if name == "02":
         assert np.degrees(np.linalg.norm(main[0]["size"])) == pytest.approx(0.123, abs=0.003)
     if name == "05":
-        inertia = next(f for f in content["findings"] if f["cause"] == "inertia")
+        inertia = content["findings"][0]     # 61 samples do not tell it from an integrator's error
+        assert inertia["cause"] == "cannot tell" and inertia["rivals"] == ["inertia", "integrator"]
         np.testing.assert_allclose(inertia["size"], [-1.1e-6, 1.4e-7], atol=2e-7)
     if name == "06":
         assert main[0]["where"] == [0] and content["noise"]["attitude_rms"] < 1e-10

@@ -248,3 +248,24 @@ def solve_with(torque):
 def test_wrong_shadows_are_refused(call, words):
     with pytest.raises(ph.InvalidInput, match=words):
         call()
+
+
+@pytest.mark.parametrize("size", [1e-310, 1e-200, 1e200, 1e308])
+def test_the_sun_is_a_direction_of_any_length(size):
+    found, expected = (circle(0.5).eclipses((x, x, 0), 0.75, 0.0, 9.0) for x in (size, 1.0))
+    assert len(found) > 0
+    np.testing.assert_array_equal(found, expected)
+
+
+def test_searches_without_an_end_are_refused():
+    """Elements or squares that overflow, revolutions that a double does not count, a shadow too thin for the orbit."""
+    with pytest.raises(ph.InvalidInput, match="of elements that a double holds"):
+        ph.Orbit(1.0, (1e200, 0, 0), (0, 1e-100, 0))
+    far = ph.Orbit.from_elements(1.0, periapsis_distance=1e160, e=1.0)
+    with pytest.raises(ph.InvalidInput, match="squares are finite"):
+        far.eclipses((1, 0, 0), 1e159, 0.0, 1.0)
+    with pytest.raises(ph.InvalidInput, match="1e15 revolutions"):
+        circle(0.5).eclipses((1, 0, 0), 0.5, -1e155, -1e155)
+    thin = ph.Orbit(7.8, (0.138, 0.011, -0.706), (2.6e-127, 3.6e-127, -4.0e-127))
+    with pytest.raises(ph.InvalidInput, match="too small for so long an orbit"):
+        thin.eclipses((0.01, 0.002, 0.009), 0.4 * thin.periapsis_distance, -8.0, 9.0)

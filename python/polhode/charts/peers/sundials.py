@@ -47,11 +47,14 @@ def _start(scene: Scene, method: str) -> Run:
     times = np.concatenate([[scene.t0], scene.times]) if scene.times[0] != scene.t0 else np.array(scene.times)
 
     def run(rtol: float, limit: float | None) -> Answer:
+        right_hand_side: Any
         if f is not None:
             function = watched(f, limit)
 
-            def right_hand_side(t: float, y: Any, yp: Any) -> None:
+            def fill(t: float, y: Any, yp: Any) -> None:
                 yp[:] = function(t, y)
+
+            right_hand_side = fill
         else:
             right_hand_side = compiled if limit is None else _watched_filling(compiled, limit)
 
