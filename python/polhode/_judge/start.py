@@ -38,13 +38,14 @@ def check_start(
         return tuple(float(np.sum((residual[:, part] / scale) ** 2)) / rows for part, scale in data.channels)
 
     after, before = squares(track.residual[0]), squares(track.residual[0] - track.carried[0] @ offset)
-    if from_scene and (own := _own(scene, data)) is not None:  # exact, where the motion amplifies rounding
+    own, error = _own(scene, data)
+    if from_scene and own is not None:  # exact, where the motion amplifies rounding
         before = squares(difference(own, data.state))
     elif max(np.max(np.abs(offset[part])) / size for part, size in data.channels) < 10 * max(floor):
         return None
     gain = likelihood(after, floor, rows, 6, sigma) - likelihood(before, floor, rows, 0, sigma)
     effect = math.sqrt(3 * max(before))
-    if gain < GAIN or effect < 3 * max(floor):
+    if gain < GAIN or effect < max(3 * max(floor), error):
         return None
     d_omega, d_attitude = -offset[:3], -offset[3:]
     slope = law.field(data.t[:1], *given)[0][0]
@@ -68,12 +69,13 @@ def check_start(
     )
 
 
-def _own(scene: Scene, data: Data) -> State | None:
-    """Return the scene's motion at the samples, None where it is not sure."""
+def _own(scene: Scene, data: Data) -> tuple[State | None, float]:
+    """Return the scene's motion at the samples, None where it is not sure, and the error that it states."""
     try:
         motion = solve(scene.replace(times=data.t, want=("omega", "attitude")), ACCURACY)
     except (InvalidInput, IntegrationFailure):
-        return None
-    if not motion.success or motion.error > SURE or motion.omega is None or motion.attitude is None:
-        return None
-    return motion.omega, motion.attitude
+        return None, 0.0
+    error = float(motion.error or 0.0)     # stated, too, where the accuracy is not reached
+    if not motion.success or error > SURE or motion.omega is None or motion.attitude is None:
+        return None, error
+    return (motion.omega, motion.attitude), error
