@@ -177,6 +177,7 @@ def basis(starts: Array) -> tuple[Array, Array]:
     return u * shown[:, None, :], inverse / np.swapaxes(size, 1, 2)
 
 
+OVER = 1e100  # of derivatives whose squares are summed
 NEAR = 1e-5  # a change of states that leaves the derivatives of the steps as they are
 
 
@@ -199,8 +200,15 @@ def fit(data: Data, law: Law, length: int, rounds: int = 6) -> Track:
         goal = track.omega[:, 1:].reshape(-1, 3), track.attitude[:, 1:].reshape(-1, 4)
         defect = difference(goal, end).reshape(*shape, 6, 1)
         forced = np.concatenate([np.zeros((*shape, 6, 6)), defect], axis=3)
-        both = carry(track.phi, forced, np.concatenate([identity, np.zeros((len(index), 6, 1))], axis=2))
-        track.carried, own = both[..., :6], both[..., 6:]
+        with np.errstate(over="ignore", invalid="ignore"):
+            both = carry(track.phi, forced, np.concatenate([identity, np.zeros((len(index), 6, 1))], axis=2))
+        if np.max(np.abs(both), initial=0.0) < OVER:
+            track.carried, own = both[..., :6], both[..., 6:]
+        elif last < np.inf:
+            break
+        else:     # not near the data at all
+            track.carried, track.residual = np.zeros_like(both[..., :6]), np.full(both.shape[:-1], np.pi)
+            return track
         residual = difference((track.omega, track.attitude), seen)[..., None] - own
         rows = weighted(track, track.carried)
         start, _ = least_squares(rows, np.zeros((*rows.shape[:2], 0)), weighted(track, residual)[..., 0])

@@ -26,6 +26,7 @@ from .words import invariants, tell, unexplained
 MOST, MOST_DRIVEN = 2000, 800
 FEWEST, SHORTEST = 8, 0.2  # samples, and turns
 GAP = 20.0  # rad
+APART, SURE = 0.5, 0.95  # rad between samples; explained of far ones
 
 
 class Work:
@@ -101,9 +102,23 @@ class Work:
         law = self._law(data)
         if self.known:
             data = gaps.mend(data, law, self.findings)
+        most, count = MOST if law.free else MOST_DRIVEN, len(data.t)
+        step, said = -(-count // most), (len(self.findings), len(self.untold))
+        verdict = self._judge_part(data, step, law, turns)
+        near = max(1, int(APART * count / (2 * np.pi * turns)))
+        doubtful = verdict.kind != "fine" and verdict.explained < SURE
+        if doubtful and near < step:  # noise hides a law between samples that are far apart
+            del self.findings[said[0] :], self.untold[said[1] :]
+            data = data.take(slice(0, near * most))
+            part = turns * len(data.t) / count
+            self.untold.append(f"the law was judged over {part:.3g} of {turns:.3g} turns: noise hides it in the rest")
+            verdict = self._judge_part(data, near, law, part)
+        return verdict
+
+    def _judge_part(self, data: Data, step: int, law: Law, turns: float) -> Verdict:
+        """Judge each `step`-th sample."""
         self.whole = data
-        most = MOST if law.free else MOST_DRIVEN
-        data = data.take(slice(None, None, max(1, -(-len(data.t) // most))))
+        data = data.take(slice(None, None, step))
         floor, sigma, track = self._floor(data, turns), self._sigma(data), None
         if self.known:
             variant, track = choose(data, law)

@@ -131,3 +131,15 @@ def test_a_start_is_no_fault_below_the_error_of_its_own_motion():
     motion = ph.solve(scene, method="dop853", rtol=1e-13, atol=1e-15)
     found = ph.judge(motion.t, motion.attitude, motion.omega, scene=scene, tolerance=1e-11)
     assert "start" not in [finding.cause for finding in found.findings]
+
+
+@pytest.mark.parametrize("torques", [(), (ph.torques.Gravity(0.5, (0, 0, 0.2)),)], ids=["free", "heavy"])
+def test_long_noisy_motions_are_judged_where_their_samples_are_near(torques):
+    """Thinned samples are 8 rad apart: Gauss-Newton's steps from noisy ones overflow, or end in no motion."""
+    scene = ph.Scene(inertia=(1, 2, 2.5), omega=(0.5, 1, 1), torques=torques, times=np.arange(20_000) * 0.5)
+    motion, rng = ph.solve(scene, 1e-11), np.random.default_rng(3)
+    attitude = motion.attitude + 1e-3 * rng.normal(size=(20_000, 4))
+    attitude /= np.linalg.norm(attitude, axis=1)[:, None]
+    found = ph.judge(motion.t, attitude, motion.omega + 1e-3 * rng.normal(size=(20_000, 3)), scene=scene)
+    assert found.fine and {finding.cause for finding in found.findings} == {"noise"}
+    assert any("turns: noise hides it in the rest" in line for line in found.untold)
