@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "polhode/core/quat.hpp"
 #include "polhode/math/detail/double_double.hpp"
 
@@ -36,6 +39,15 @@ template <class T>
 Triple<T> cross(const Triple<T>& a, const Triple<T>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-inline DDVector normalize(const DDVector& v) { return scale(v, math::DD(1.0) / math::sqrt(dot(v, v))); }
+/// Of any length: a power of two keeps the squares finite.
+inline DDVector normalize(const DDVector& v) {
+  int exponent = 0;
+  std::frexp(std::max({std::abs(v.x.hi), std::abs(v.y.hi), std::abs(v.z.hi)}), &exponent);
+  const auto near = [exponent](const math::DD& x) {
+    return math::DD(std::ldexp(x.hi, -exponent), std::ldexp(x.lo, -exponent));
+  };
+  const DDVector u{near(v.x), near(v.y), near(v.z)};
+  return scale(u, math::DD(1.0) / math::sqrt(dot(u, u)));
+}
 
 }  // namespace polhode

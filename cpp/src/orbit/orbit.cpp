@@ -121,10 +121,7 @@ std::vector<Eclipse> Orbit::find_eclipses(const Vector3d& sun, double radius, do
   require_positive("shadow", radius);
   require_finite("begin", first), require_finite("end", last);
   if (!(first <= last)) throw InvalidInput("end", "at or after the begin, " + to_text(first), to_text(last));
-  int exponent;   // only its direction counts: scaled by a power of two, its square is finite
-  std::frexp(sun.cwiseAbs().maxCoeff(), &exponent);
-  const Vector3d towards = sun.unaryExpr([&](double x) { return std::ldexp(x, -exponent); });
-  return path_->find_eclipses(towards, radius, first, last);
+  return path_->find_eclipses(sun, radius, first, last);
 }
 
 OrbitKind Orbit::kind() const { return path_->kind(); }

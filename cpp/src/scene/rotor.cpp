@@ -26,7 +26,7 @@ bool scale_axis(Vector3d& axis) {
   if (largest == 0.0) throw InvalidInput("Rotor.axis", "a direction", "(0, 0, 0)", "a zero vector has no direction");
   constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
   if (std::abs(axis.squaredNorm() - 1.0) <= rounding) return false;
-  axis *= std::ldexp(1.0, -std::ilogb(largest));   // squares of 1e200 overflow
+  for (double& x : axis) x = std::ldexp(x, -std::ilogb(largest));   // squares of 1e200 overflow, 2^1030 for 1e-310
   axis /= std::sqrt(axis.squaredNorm());
   return true;
 }

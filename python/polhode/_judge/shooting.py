@@ -202,13 +202,12 @@ def fit(data: Data, law: Law, length: int, rounds: int = 6) -> Track:
         forced = np.concatenate([np.zeros((*shape, 6, 6)), defect], axis=3)
         with np.errstate(over="ignore", invalid="ignore"):
             both = carry(track.phi, forced, np.concatenate([identity, np.zeros((len(index), 6, 1))], axis=2))
-        if np.max(np.abs(both), initial=0.0) < OVER:
-            track.carried, own = both[..., :6], both[..., 6:]
-        elif last < np.inf:
-            break
-        else:     # not near the data at all
+        if not np.max(np.abs(both), initial=0.0) < OVER:
+            if last < np.inf:
+                break
             track.carried, track.residual = np.zeros_like(both[..., :6]), np.full(both.shape[:-1], np.pi)
-            return track
+            return track     # not near the data at all
+        track.carried, own = both[..., :6], both[..., 6:]
         residual = difference((track.omega, track.attitude), seen)[..., None] - own
         rows = weighted(track, track.carried)
         start, _ = least_squares(rows, np.zeros((*rows.shape[:2], 0)), weighted(track, residual)[..., 0])

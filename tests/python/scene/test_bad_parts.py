@@ -155,3 +155,9 @@ def test_an_orbit_that_falls_into_the_centre_within_the_span_is_refused():
     with pytest.raises(ph.InvalidInput, match="before a radial orbit meets the centre, got 2000") as refusal:
         ph.solve(falling.replace(times=[0, 500.0, 2000.0]))
     assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize("exponent", [-1074, -1030, -700, 700, 1023])
+def test_the_axis_of_a_rotor_is_a_direction_of_any_length(exponent):
+    size = 2.0**exponent
+    assert ph.Rotor(axis=(size, size, 0), momentum=1.0).axis.tolist() == rotor(axis=(1, 1, 0)).axis.tolist()
