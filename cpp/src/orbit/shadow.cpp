@@ -53,6 +53,7 @@ class Search {
     if (++looks_ > most_looks)
       throw InvalidInput("shadow", "of a radius that can be searched", to_text(cylinder_.radius()),
                          "it is too small for so long an orbit");
+    if (looks_ % 4096 == 0) check_interrupt();
     const Sample now{p, measure_surely(curve_, cylinder_, p)};
     // A NaN would never end the search.
     if (!std::isfinite(now.reach.g) || !std::isfinite(now.reach.dg))
@@ -110,7 +111,7 @@ class Search {
     if (now.along.hi < 0.0) edges_.push_back({p, curve_.time(p), enters});
   }
 
-  static constexpr int most_looks = 1'000'000;   // a second: an orbit of the Earth needs a hundred
+  static constexpr int most_looks = 20'000'000;   // some seconds: an orbit of the Earth needs a hundred
 
   const Curve& curve_;
   const Cylinder& cylinder_;
